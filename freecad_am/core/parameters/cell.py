@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters of the section `cell` of a job."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..issues import InputError
+from . import field as f
+
+Pose = tuple[float, float, float, float, float, float]
+
+SHOULDERS, ELBOWS, WRISTS = ("front", "back"), ("up", "down"), ("noflip", "flip")
+
+
+@dataclass(frozen=True)
+class NozzleParameters:
+    """The nozzle as a cone: a flat tip of `diameter`, opening by `half_angle` over `length`. mm and rad."""
+
+    half_angle: float = f.parameter(
+        math.radians(20.0), f.ANGLE, "Angle between the nozzle's axis and its side.", low=0.0, high=math.radians(89.0)
+    )
+    diameter: float = f.parameter(1.0, f.LENGTH, "Diameter of the nozzle's flat tip.", low=0.0)
+    length: float = f.parameter(60.0, f.LENGTH, "Length of the nozzle from its tip.", low=0.0, open_low=True)
+    tool: Pose = f.parameter(
+        (0.0, 0.0, 200.0, 0.0, 0.0, 0.0), f.POSE,
+        "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.",
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "cell.nozzle")
+
+
+@dataclass(frozen=True)
+class CellParameters:
+    """Machine, set-up and tooling. Angles of poses in rad: X Y Z RX RY RZ, Bryant (Chalvin 2020, eq. 9)."""
+
+    machine: str = f.parameter("fanuc-arcmate120ic", f.TEXT, "A machine of the list, or the path of a machine file.")
+    limits: str = f.parameter("maker", f.TEXT, "Which set of joint limits of the machine file holds.")
+    setup: str = f.parameter(
+        "part-on-robot", f.CHOICE, "Which of part and tool the robot carries.",
+        choices=("part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"),
+    )
+    deposition_point: Pose = f.parameter(
+        (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0), f.POSE,
+        "Where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. "
+        "In the maker's base frame.",
+    )
+    platform: float | Pose = f.parameter(
+        5.0, f.LENGTH, "From the flange to the mounting plane along the flange's Z, or a pose on the flange."
+    )
+    platform_diameter: float = f.parameter(113.0, f.LENGTH, "Diameter of the platform; counts in clearance.", low=0.0)
+    mount: str = f.parameter(
+        "auto", f.CHOICE, "Which frame sits on the platform: the feature's own, or that of the part file.",
+        choices=("auto", "feature", "part"),
+    )
+    branch: str | tuple[str, str, str] = f.parameter(
+        ("front", "up", "flip"), f.TEXT, "Shoulder, elbow and wrist of the robot, or auto to search all eight."
+    )
+    nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
+
+    def __post_init__(self) -> None:
+        if isinstance(self.platform, (tuple, list)):
+            if len(self.platform) != 6:
+                raise InputError("BAD_VALUE", "cell.platform", f"{self.platform!r} is neither a length nor six numbers")
+            object.__setattr__(self, "platform", tuple(self.platform))
+        if not isinstance(self.branch, str):
+            object.__setattr__(self, "branch", checked_branch(self.branch))
+        elif self.branch != "auto":
+            object.__setattr__(self, "branch", checked_branch(tuple(self.branch.replace(",", " ").split())))
+        skip = {name for name in ("platform", "branch") if not isinstance(getattr(self, name), (int, float))}
+        f.check(self, "cell", skip=frozenset(skip))
+
+
+def checked_branch(words: tuple[str, ...]) -> tuple[str, str, str]:
+    """The three words of a branch in their order; InputError 'BAD_VALUE' when one is unknown."""
+    wanted = (SHOULDERS, ELBOWS, WRISTS)
+    if len(words) != 3 or any(word not in known for word, known in zip(words, wanted)):
+        raise InputError(
+            "BAD_VALUE", "cell.branch", f"{list(words)!r} is not a branch; use [front|back, up|down, flip|noflip] or auto"
+        )
+    return (words[0], words[1], words[2])

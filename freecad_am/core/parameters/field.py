@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One parameter, one place: a dataclass field that carries its kind, bounds and help.
+
+The same field feeds the property of a document object, the row of a task panel and the key of a job
+file. Values are kept in mm, s, rad and plain numbers; degrees and percent exist only outside.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ..issues import InputError
+
+LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
+RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = "ratio", "number", "count", "flag", "choice", "text", "pose"
+ANGLE_RANGE = "angle range"
+GROUP = "group"
+
+# the unit a bare number has outside, and how many of ours one of it makes
+OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%"}
+TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, RATIO: 0.01}
+
+
+@dataclass(frozen=True)
+class Spec:
+    """What is known of a parameter besides its name and default.
+
+    `low` and `high` are in inner units and belong to the allowed range unless `open_low`.
+    `optional` parameters may be None. `words` are texts allowed in place of a number (such as 'auto').
+    `advanced` parameters are folded away in a panel.
+    """
+
+    kind: str
+    help: str
+    low: float | None = None
+    high: float | None = None
+    open_low: bool = False
+    choices: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    optional: bool = False
+    advanced: bool = False
+
+
+def parameter(default: Any, kind: str, help: str, **more: Any) -> Any:
+    """A dataclass field with its `Spec` in the metadata; `default` in inner units."""
+    return dataclasses.field(default=default, metadata={"spec": Spec(kind, help, **more)})
+
+
+def group(factory: type, help: str) -> Any:
+    """A nested group of parameters, itself a dataclass."""
+    return dataclasses.field(default_factory=factory, metadata={"spec": Spec(GROUP, help)})
+
+
+def spec_of(field: dataclasses.Field[Any]) -> Spec:
+    """The `Spec` of a dataclass field made by `parameter` or `group`."""
+    spec: Spec = field.metadata["spec"]
+    return spec
+
+
+def outer_text(spec: Spec, value: float) -> str:
+    """A value with its outer unit, for messages."""
+    unit = OUTER_UNIT.get(spec.kind, "")
+    return f"{value / TO_INNER.get(spec.kind, 1.0):.9g} {unit}".strip()
+
+
+def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
+    """Check every field of a parameters dataclass against its `Spec`, but for the names in `skip`.
+
+    Raises InputError 'BAD_VALUE' naming `prefix.field`, the value and the allowed range.
+    """
+    for field in dataclasses.fields(owner):
+        if field.name not in skip:
+            _check_one(spec_of(field), getattr(owner, field.name), f"{prefix}.{field.name}")
+
+
+def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
+    """The error for a word that is not one of `choices`."""
+    return InputError("BAD_VALUE", key, f"{value!r} is not known; use one of {', '.join(choices)}")
+
+
+def _check_one(spec: Spec, value: Any, key: str) -> None:
+    if spec.kind == GROUP or (value is None and spec.optional) or (isinstance(value, str) and value in spec.words):
+        return
+    if spec.kind == CHOICE:
+        if value not in spec.choices:
+            raise unknown_choice(key, value, spec.choices)
+    elif spec.kind == FLAG:
+        if not isinstance(value, bool):
+            raise InputError("BAD_VALUE", key, f"{value!r} is not true or false")
+    elif spec.kind == TEXT:
+        if not isinstance(value, str):
+            raise InputError("BAD_VALUE", key, f"{value!r} is not a text")
+    elif spec.kind == POSE:
+        if len(value) != 6 or not all(math.isfinite(number) for number in value):
+            raise InputError("BAD_VALUE", key, f"{value!r} is not a pose; give six numbers x y z RX RY RZ")
+    elif spec.kind == ANGLE_RANGE:
+        if len(value) != 2 or not value[0] < value[1]:
+            raise InputError("BAD_VALUE", key, f"{value!r} is not a range; give two angles, the smaller first")
+    else:
+        _check_number(spec, value, key)
+
+
+def _check_number(spec: Spec, value: Any, key: str) -> None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
+        also = f" or {', '.join(spec.words)}" if spec.words else ""
+        raise InputError("BAD_VALUE", key, f"{value!r} is not a number{also}")
+    if spec.kind == COUNT and value != int(value):
+        raise InputError("BAD_VALUE", key, f"{value!r} is not a whole number")
+    too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
+    if too_low or (spec.high is not None and value > spec.high):
+        raise InputError("BAD_VALUE", key, f"{outer_text(spec, value)} is out of range; give {_range_text(spec)}")
+
+
+def _range_text(spec: Spec) -> str:
+    parts = []
+    if spec.low is not None:
+        parts.append(("more than " if spec.open_low else "at least ") + outer_text(spec, spec.low))
+    if spec.high is not None:
+        parts.append("at most " + outer_text(spec, spec.high))
+    return " and ".join(parts)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters of the section `process` of a job."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import field as f
+
+
+@dataclass(frozen=True)
+class SeamParameters:
+    """Where closed beads start. rad about the axis, from the X of the feature frame."""
+
+    angle: float = f.parameter(0.0, f.ANGLE, "Where closed beads start.")
+    step: float = f.parameter(0.0, f.ANGLE, "How far the start moves from layer to layer.")
+
+    def __post_init__(self) -> None:
+        f.check(self, "process.seam")
+
+
+@dataclass(frozen=True)
+class WireParameters:
+    """The feedstock; carried to the report and to the deposit commands of a post."""
+
+    diameter: float = f.parameter(1.2, f.LENGTH, "Diameter of the wire.", low=0.0, open_low=True)
+    feed: float = f.parameter(10.0, f.SPEED, "Speed of the wire.", low=0.0)
+
+    def __post_init__(self) -> None:
+        f.check(self, "process.wire")
+
+
+@dataclass(frozen=True)
+class BetweenLayersParameters:
+    """What happens between two layers."""
+
+    lift: float = f.parameter(20.0, f.LENGTH, "How far the tool is withdrawn along its axis between beads.", low=0.0)
+    wait: float = f.parameter(0.0, f.TIME, "How long to wait between layers.", low=0.0)
+    input: int | None = f.parameter(
+        None, f.COUNT, "Number of the digital input to wait for between layers.", low=1, high=4096, optional=True
+    )
+    call: str | None = f.parameter(
+        None, f.TEXT, "Name of the program to call between layers, such as nozzle cleaning.", optional=True
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "process.between_layers")
+
+
+@dataclass(frozen=True)
+class ProcessParameters:
+    """Speeds, seams and the switching of the deposit. mm, mm/s, s, rad."""
+
+    travel_speed: float = f.parameter(
+        6.0, f.SPEED, "Speed of the torch along the deposit while depositing.", low=0.0, open_low=True
+    )
+    rapid_speed: float = f.parameter(100.0, f.SPEED, "Speed between beads.", low=0.0, open_low=True)
+    seam: SeamParameters = f.group(SeamParameters, "Where closed beads start.")
+    direction: str = f.parameter(
+        "counter-clockwise", f.CHOICE,
+        "Direction of closed beads seen against the build direction; open beads run as found unless alternate.",
+        choices=("counter-clockwise", "clockwise", "alternate", "as found"),
+    )
+    bead_width: float = f.parameter(8.0, f.LENGTH, "Width of the bead; only reported without a bead model.",
+                                    low=0.0, open_low=True)
+    wire: WireParameters = f.group(WireParameters, "The feedstock.")
+    temperature: float | None = f.parameter(None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True)
+    gas: str | None = f.parameter(None, f.TEXT, "Shielding gas; carried along.", optional=True)
+    stand_off: float | None = f.parameter(None, f.LENGTH, "Stand-off of the nozzle; carried along.", optional=True)
+    lead_on: float = f.parameter(0.0, f.TIME, "Deposit switched on this long before a bead starts.", low=0.0)
+    lead_off: float = f.parameter(0.0, f.TIME, "Deposit switched off this long after a bead ends.", low=0.0)
+    overlap: float = f.parameter(0.0, f.LENGTH, "How far a closed bead runs on past its seam.", low=0.0)
+    between_layers: BetweenLayersParameters = f.group(BetweenLayersParameters, "What happens between two layers.")
+    bead_model: str = f.parameter("none", f.TEXT, "none, csw, or the path of a calibration table.")
+
+    def __post_init__(self) -> None:
+        f.check(self, "process")

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters of the section `program` of a job."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import field as f
+
+
+@dataclass(frozen=True)
+class StartParameters:
+    """Where a job resumes; both count from 0."""
+
+    layer: int = f.parameter(0, f.COUNT, "First layer to deposit.", low=0)
+    bead: int = f.parameter(0, f.COUNT, "First bead of that layer.", low=0)
+
+    def __post_init__(self) -> None:
+        f.check(self, "program.start_at")
+
+
+@dataclass(frozen=True)
+class ProgramParameters:
+    """What is written for the controller."""
+
+    post: str = f.parameter("fanuc", f.TEXT, "The controller the program is written for, or none.")
+    motion: str = f.parameter(
+        "joint", f.CHOICE, "Points as joint values, or as positions of the tool.", choices=("joint", "cartesian")
+    )
+    max_points: int = f.parameter(2000, f.COUNT, "Most points of one program file; longer ones are chained.", low=10)
+    dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
+    start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
+    blend: int = f.parameter(100, f.COUNT, "FANUC: CNT value of the moves within a bead.", low=0, high=100, advanced=True)
+    user_frame: int = f.parameter(1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61)
+    tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)
+    deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
+
+    def __post_init__(self) -> None:
+        f.check(self, "program")

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads, layers and the toolpath: what is deposited, in which order, in which direction.
+
+Frames and units: points in mm and unit vectors in the part's own frame (the coordinates of the part
+file); angles in rad; speeds in mm/s.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .issues import Issue
+
+Array = NDArray[np.float64]
+
+
+def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
+    array = np.array(values, dtype=np.float64)
+    if array.ndim != len(shape) or any(want is not None and have != want for have, want in zip(array.shape, shape)):
+        raise ValueError(f"{name} has the shape {array.shape}, expected {shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} holds a value that is not finite")
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True)
+class Bead:
+    """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its last.
+
+    points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the
+    deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the
+    unwrapped angle about the axis on parts of revolution, else the normalised arc length. speed: (n,) mm/s
+    of the segment that ends at the point. width: (n,) mm, or None where no bead model was used.
+    """
+
+    points: Array
+    build: Array
+    tool: Array
+    parameter: Array
+    speed: Array
+    closed: bool
+    width: Array | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.points)
+        if n < 2:
+            raise ValueError("a bead has at least two points")
+        for name in ("points", "build", "tool"):
+            object.__setattr__(self, name, _frozen(getattr(self, name), (n, 3), name))
+        for name in ("parameter", "speed"):
+            object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
+        if self.width is not None:
+            object.__setattr__(self, "width", _frozen(self.width, (n,), "width"))
+        for name in ("build", "tool"):
+            if np.abs(np.linalg.norm(getattr(self, name), axis=1) - 1.0).max() > 1e-9:
+                raise ValueError(f"{name} holds a vector that is not of unit length")
+        steps = np.diff(self.parameter)
+        if not ((steps > 0).all() or (steps < 0).all()):
+            raise ValueError("the parameter of a bead must rise or fall from point to point")
+        if self.closed and np.abs(self.points[0] - self.points[-1]).max() > 1e-6:
+            raise ValueError("a closed bead must end where it starts")
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @property
+    def length(self) -> float:
+        """Length of the polyline, mm."""
+        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
+    def reversed(self) -> Bead:
+        """The same bead run the other way."""
+        return dataclasses.replace(
+            self, points=self.points[::-1], build=self.build[::-1], tool=self.tool[::-1],
+            parameter=self.parameter[::-1], speed=self.speed[::-1],
+            width=None if self.width is None else self.width[::-1],
+        )
+
+    def started_at(self, index: int) -> Bead:
+        """The closed bead started at another of its points; the parameter goes on across the old seam."""
+        if not self.closed:
+            raise ValueError("only a closed bead can be started elsewhere")
+        n = len(self) - 1
+        index %= n
+        if index == 0:
+            return self
+        turn = self.parameter[-1] - self.parameter[0]
+        order = np.r_[index:n, 0 : index + 1]
+        parameter = self.parameter[order] + np.where(np.arange(n + 1) >= n - index, turn, 0.0)
+        return dataclasses.replace(
+            self, points=self.points[order], build=self.build[order], tool=self.tool[order], parameter=parameter,
+            speed=self.speed[np.where(order == 0, n, order)], width=None if self.width is None else self.width[order],
+        )
+
+
+@dataclass(frozen=True)
+class Layer:
+    """What is deposited at one index of the slicing: one bead or more, in the order of deposit."""
+
+    beads: tuple[Bead, ...]
+
+
+@dataclass(frozen=True)
+class Toolpath:
+    """All layers from the platform up.
+
+    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error and
+    layer_height: mm. issues: findings made on the way (spacing, tilt-back, clearance).
+    """
+
+    layers: tuple[Layer, ...]
+    frame: Array
+    layer_height: float
+    chord_error: float
+    issues: tuple[Issue, ...] = ()
+    family: str = field(default="revolution")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))
+
+    def __iter__(self) -> Any:
+        """(layer index, bead index, bead) in the order of deposit."""
+        for i, layer in enumerate(self.layers):
+            for j, bead in enumerate(layer.beads):
+                yield i, j, bead
+
+    @property
+    def bead_count(self) -> int:
+        """Number of beads of all layers."""
+        return sum(len(layer.beads) for layer in self.layers)
+
+    @property
+    def point_count(self) -> int:
+        """Number of deposit points of all beads."""
+        return sum(len(bead) for _, _, bead in self)
+
+    @property
+    def length(self) -> float:
+        """Length of all beads, mm."""
+        return float(sum(bead.length for _, _, bead in self))
