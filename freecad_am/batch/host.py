@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Finds FreeCAD's modules for a Python that is not FreeCAD's own."""
+
+from __future__ import annotations
+
+import glob
+import importlib.util
+import os
+import sys
+
+LIBRARY_FOLDERS = (
+    "/usr/lib/freecad-python3/lib",
+    "/usr/lib/freecad/lib",
+    "/usr/lib64/freecad/lib",
+    "/usr/local/lib/freecad/lib",
+    "/opt/freecad/lib",
+)
+
+
+def library_folders() -> list[str]:
+    """Folders that may hold FreeCAD.so, the user's own choice (FREECAD_LIB) first."""
+    own = [os.environ[name] for name in ("FREECAD_LIB",) if os.environ.get(name)]
+    beside_python = [os.path.join(sys.prefix, "lib"), os.path.join(sys.prefix, "lib", "freecad", "lib")]
+    return own + list(LIBRARY_FOLDERS) + beside_python
+
+
+def find_freecad() -> bool:
+    """Put FreeCAD on sys.path; True when it can be imported afterwards. Imports nothing itself."""
+    if "FreeCAD" in sys.modules or importlib.util.find_spec("FreeCAD") is not None:
+        return True
+    for folder in library_folders():
+        if glob.glob(os.path.join(folder, "FreeCAD.*")):
+            sys.path.append(folder)
+            _add_shims(folder)
+            return True
+    return False
+
+
+def _add_shims(folder: str) -> None:
+    # Debian's plain import takes the library's folder as FreeCAD's home: its Qt shim and Python modules stand elsewhere
+    for share in ("/usr/share/freecad", os.path.dirname(folder)):
+        extra = [os.path.join(share, "Ext"), *sorted(glob.glob(os.path.join(share, "Mod", "*", "")))]
+        for path in (entry.rstrip("/") for entry in extra):
+            if os.path.isdir(path) and path not in sys.path:
+                sys.path.append(path)
+
+
+def missing_modules() -> list[str]:
+    """Names of the modules this Python lacks to run the headless commands."""
+    missing = [] if find_freecad() else ["FreeCAD"]
+    return missing + [name for name in ("numpy", "scipy", "yaml") if importlib.util.find_spec(name) is None]

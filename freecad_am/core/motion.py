@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The motion: every point the machine passes, in order, as columns.
+
+Per bead come its rapid rows (retract from the bead before, lifted approach, down onto the start) and then all
+its deposit rows; the first deposit row repeats the place of the last rapid row and takes no time, so that
+a bead's rows are complete. After the last bead one rapid row lifts off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Columns of n rows. Points and directions in the part's own frame, mm; joints serial, rad.
+
+    deposit: (n,) bool. layer, bead, point: (n,) int from 0; a rapid row carries the bead it leads to. position,
+    build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the segment that ends at the row. width: (n,) mm,
+    NaN without a bead model. joints: (n, axes) unwrapped along the whole job, NaN where unreachable.
+    duration: (n,) s of the segment that ends at the row.
+    """
+
+    deposit: NDArray[np.bool_]
+    layer: NDArray[np.int64]
+    bead: NDArray[np.int64]
+    point: NDArray[np.int64]
+    position: Array
+    build: Array
+    tool: Array
+    speed: Array
+    width: Array
+    joints: Array
+    duration: Array
+
+    def __post_init__(self) -> None:
+        n = len(self.deposit)
+        for field in fields(self):
+            column = getattr(self, field.name)
+            if len(column) != n:
+                raise ValueError(f"the column {field.name} has {len(column)} rows, expected {n}")
+            column.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.deposit)
+
+    @property
+    def moves(self) -> NDArray[np.bool_]:
+        """(n,) bool: the rows a controller moves to; the first row of a bead repeats where it already stands."""
+        moves: NDArray[np.bool_] = ~(self.deposit & (self.point == 0))
+        return moves
+
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """(n,) bool: rows with joint values."""
+        reachable: NDArray[np.bool_] = np.isfinite(self.joints).all(axis=1)
+        return reachable
+
+    @property
+    def total_time(self) -> float:
+        """Time of all moves, s; waits and lead times not counted."""
+        return float(self.duration.sum())

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs pytest inside the FreeCAD main window:  PYTEST_ARGUMENTS="-q tests/gui" freecad tests/gui_runner.py
+
+Arguments come by environment because FreeCAD opens every further word of its command line as a file. The exit
+status is pytest's; the script never returns to FreeCAD's main loop.
+"""
+
+import os
+import shlex
+import sys
+
+
+def run():
+    status = 3
+    try:
+        # FreeCAD's window keeps stdout and stderr for its report view
+        sys.stdout = sys.__stdout__ or os.fdopen(1, "w")
+        sys.stderr = sys.__stderr__ or os.fdopen(2, "w")
+        import pytest
+
+        status = int(pytest.main(shlex.split(os.environ.get("PYTEST_ARGUMENTS", ""))))
+    except BaseException:
+        import traceback
+
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+from PySide import QtCore  # noqa: E402
+
+QtCore.QTimer.singleShot(0, run)
