@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Builds the parameter dataclasses of the core from the plain values of a job file.
+
+Nothing here knows a single parameter: kinds, choices and words come from the `Spec` of each field, so a parameter
+added to the core can be written in a job file at once.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any, Iterable, TypeVar
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+
+from . import quantity
+
+Parameters = TypeVar("Parameters")
+_BOUND = 1e9  # a quantity beyond is a slip of the pen, and its square must stay finite
+
+
+def build(factory: type[Parameters], values: Any, prefix: str, also: Iterable[str] = ()) -> Parameters:
+    """A `factory` from the mapping `values`; keys left out keep their default, keys in `also` are ignored.
+
+    Raises InputError whose place is the dotted key: UNKNOWN_KEY, BAD_VALUE, BAD_UNIT.
+    """
+    section = mapping(values, prefix)
+    fields = {field.name: field for field in dataclasses.fields(factory)}  # type: ignore[arg-type]
+    known_keys(section, (*fields, *also), prefix)
+    given = {
+        name: _value(f.spec_of(field), field, section[name], f"{prefix}.{name}")
+        for name, field in fields.items() if name in section
+    }
+    return factory(**given)
+
+
+def mapping(values: Any, prefix: str) -> dict[str, Any]:
+    """`values` if it is a mapping. Raises InputError BAD_VALUE otherwise."""
+    if not isinstance(values, dict):
+        raise InputError("BAD_VALUE", prefix, f"{quantity.shown(values)} is not a section; write keys below {prefix}:")
+    return values
+
+
+def known_keys(section: dict[str, Any], known: Iterable[str], prefix: str) -> None:
+    """Raises InputError UNKNOWN_KEY for the first key that is not known, naming the nearest one."""
+    known = tuple(known)
+    for key in section:
+        if key not in known:
+            raise unknown_key(f"{prefix}.{key}" if prefix else key, key, known)
+
+
+def unknown_key(dotted: str, key: str, known: tuple[str, ...]) -> InputError:
+    """The error for a key nobody reads."""
+    import difflib
+
+    near = difflib.get_close_matches(key.lower().replace("-", "_"), known, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}"
+    return InputError("UNKNOWN_KEY", dotted, f"there is no key {key!r}; {hint}")
+
+
+def text(value: Any, key: str) -> str:
+    """`value` if it is a text that is not empty. Raises InputError BAD_VALUE otherwise."""
+    if not isinstance(value, str) or not value.strip():
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a text")
+    return value
+
+
+def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) -> Any:
+    if spec.kind == f.GROUP:
+        factory = field.default_factory
+        return factory() if value is None else build(factory, value, key)  # type: ignore[misc, arg-type]
+    if spec.optional and value in (None, {}):
+        return None
+    if isinstance(value, str) and value in spec.words:
+        return math.inf if value == "inf" else value
+    if isinstance(value, list):
+        return _list(spec, field, value, key)
+    if spec.kind in (f.POSE, f.ANGLE_RANGE):
+        wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a list; give {wanted}")
+    if spec.kind in quantity.WANTED:
+        return _number(value, spec, key)
+    return _plain(spec, value, key)
+
+
+def _plain(spec: f.Spec, value: Any, key: str) -> Any:
+    if spec.kind == f.CHOICE and value not in spec.choices:
+        raise _unknown_choice(key, value, spec.choices)
+    if spec.kind == f.FLAG and not isinstance(value, bool):
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is neither true nor false; give one of them")
+    if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a whole number; give one such as 3")
+    if spec.kind == f.TEXT:
+        return text(value, key)
+    return value
+
+
+def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
+    import difflib
+
+    near = difflib.get_close_matches(str(value).lower().replace("_", "-"), choices, n=1)
+    hint = f"did you mean {near[0]}? " if near else ""
+    return InputError("BAD_VALUE", key, f"{_shown(value)} is not known; {hint}use one of {', '.join(choices)}")
+
+
+def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: str) -> Any:
+    if spec.kind == f.POSE or (spec.kind == f.LENGTH and "Pose" in str(field.type)):
+        if len(value) != 6:
+            raise InputError("BAD_VALUE", key, f"a pose has six numbers x y z RX RY RZ, not {len(value)}")
+        kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
+        return tuple(_finite(number, kind, key) for number, kind in zip(value, kinds))
+    if spec.kind == f.ANGLE_RANGE:
+        if len(value) != 2:
+            raise InputError("BAD_VALUE", key, f"a range has two angles, not {len(value)}")
+        return tuple(_finite(number, f.ANGLE, key) for number in value)
+    if spec.kind == f.TEXT and "tuple" in str(field.type):
+        return tuple(text(word, key) for word in value)
+    raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is a list; give one value")
+
+
+def _number(value: Any, spec: f.Spec, key: str) -> float:
+    if isinstance(value, str) and spec.words and not any(sign.isdigit() for sign in value):
+        words = " or ".join(spec.words)
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not known; give {words} or {quantity.WANTED[spec.kind][1]}")
+    return _finite(value, spec.kind, key)
+
+
+def _finite(value: Any, kind: str, key: str) -> float:
+    if value == {}:
+        raise InputError("BAD_VALUE", key, f"there is no value; give {quantity.WANTED[kind][1]}")
+    number = quantity.read(value, kind, key)
+    if abs(number) > _BOUND:
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is too large; give {quantity.WANTED[kind][1]}")
+    return number
+
+
+def _shown(value: Any) -> str:
+    return "nothing" if value == {} else quantity.shown(value)

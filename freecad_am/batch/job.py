@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The job file: read, checked and turned into the parameters of every stage, before any work starts."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+
+from . import fields, quantity, tree
+
+STRATEGIES: dict[str, type] = {"revolution": RevolutionParameters}
+PLANNED_STRATEGIES = ("surface", "developable")  # names the interface promises; refused until they exist
+PLANNED_SETUPS = ("rotary-table", "tool-on-robot+positioner")
+SECTIONS = (
+    "version", "name", "part", "substrate", "strategy", "build_direction", "cell", "joints", "process", "program",
+)
+_FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
+_LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
+
+
+@dataclass(frozen=True)
+class PartSource:
+    """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used."""
+
+    file: str
+    object: str | None = None
+    faces: tuple[str, ...] = ()
+    settings: tuple[tuple[str, str, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class Job:
+    """A checked job. `cell` or `program` None: the stages that need them are left out."""
+
+    path: str
+    name: str
+    part: PartSource
+    strategy: RevolutionParameters
+    build_direction: BuildDirectionParameters
+    joints: JointParameters
+    process: ProcessParameters
+    cell: CellParameters | None
+    program: ProgramParameters | None
+    tree: tree.Tree = field(repr=False, compare=False)
+
+    @property
+    def folder(self) -> str:
+        """The folder of the job file, absolute; where relative paths start."""
+        return os.path.dirname(os.path.abspath(self.path))
+
+
+def read_job(path: str) -> Job:
+    """The job of a file. Raises InputError that names file, key and what to do."""
+    return from_tree(tree.read(path), path)
+
+
+def from_tree(job: tree.Tree, path: str) -> Job:
+    """The job of the values read from `path`, which may have been changed since (a row of a batch table)."""
+    try:
+        return _checked(job, path)
+    except InputError as error:
+        raise job.placed(error) from None
+
+
+def _checked(job: tree.Tree, path: str) -> Job:
+    values = job.values
+    fields.known_keys(values, SECTIONS, "")
+    version = values.get("version", 1)
+    if version != 1 or isinstance(version, bool):
+        raise InputError("BAD_VERSION", "version", f"{quantity.shown(version)} is not understood; this program reads 1")
+    if values.get("substrate") is not None:
+        raise InputError("NOT_YET", "substrate", "growing on an existing part is not supported yet; leave substrate out")
+    if values.get("part") is None:
+        raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
+    process = fields.build(ProcessParameters, values.get("process") or {}, "process")
+    if process.bead_model != "none":
+        raise _not_yet("process.bead_model", process.bead_model, "none")
+    build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
+    if build_direction.mode == "symmetry-plane":
+        raise _not_yet("build_direction.mode", build_direction.mode, "local, layer or fixed")
+    return Job(
+        path=path,
+        name=_name(values.get("name"), path),
+        part=_part(fields.mapping(values["part"], "part"), path),
+        strategy=_strategy(values.get("strategy") or {}),
+        build_direction=build_direction,
+        joints=_joints(values.get("joints") or {}),
+        process=process,
+        cell=_cell(values.get("cell"), path),
+        program=_program(values.get("program")),
+        tree=job,
+    )
+
+
+def _not_yet(key: str, value: str, instead: str) -> InputError:
+    return InputError("NOT_YET", key, f"{value!r} is not supported yet; use {instead}")
+
+
+def _name(value: Any, path: str) -> str:
+    if value is None:
+        value = os.path.splitext(os.path.basename(path))[0]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        value = str(value)
+    name = fields.text(value, "name").strip()
+    if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
+        raise InputError("BAD_NAME", "name", f"{quantity.shown(name)} names files; use no slash, control sign or leading dot")
+    if len(name.encode()) > _LONGEST_NAME:
+        raise InputError("BAD_NAME", "name", f"the name is too long for a file; use at most {_LONGEST_NAME} letters")
+    return name
+
+
+def _part(section: dict[str, Any], path: str) -> PartSource:
+    fields.known_keys(section, ("file", "object", "faces", "set"), "part")
+    if "file" not in section:
+        raise InputError("NO_PART", "part.file", "there is no file; write part: {file: shape.step}")
+    file = absolute(fields.text(section["file"], "part.file"), path)
+    is_document = file.lower().endswith(".fcstd")
+    for key in ("object", "set"):
+        if section.get(key) is not None and not is_document:
+            raise InputError("BAD_VALUE", f"part.{key}", f"only an FCStd part has objects, {os.path.basename(file)} has none")
+    if not os.path.isfile(file):
+        raise InputError("NO_FILE", "part.file", f"there is no file {file}; paths are relative to the job file")
+    name = section.get("object")
+    return PartSource(
+        file=file,
+        object=None if name is None else fields.text(name, "part.object"),
+        faces=_faces(section.get("faces")),
+        settings=tuple(_settings(section.get("set") or {})),
+    )
+
+
+def _faces(value: Any) -> tuple[str, ...]:
+    faces = [value] if isinstance(value, str) else value or []
+    if not isinstance(faces, list) or not all(isinstance(face, str) and _FACE.fullmatch(face) for face in faces):
+        raise InputError("BAD_VALUE", "part.faces", f"{quantity.shown(value)} names no faces; write [Face1, Face2]")
+    return tuple(faces)
+
+
+def _settings(section: Any) -> list[tuple[str, str, str]]:
+    settings = []
+    for name, properties in fields.mapping(section, "part.set").items():
+        for key, value in fields.mapping(properties, f"part.set.{name}").items():
+            if isinstance(value, (dict, list)) or value is None:
+                raise InputError("BAD_VALUE", f"part.set.{name}.{key}", "give one value such as 45 mm")
+            settings.append((name, key, quantity.shown(value) if isinstance(value, bool) else str(value)))
+    return settings
+
+
+def _strategy(section: Any) -> RevolutionParameters:
+    kind = fields.mapping(section, "strategy").get("kind", "revolution")
+    if kind in PLANNED_STRATEGIES:
+        raise _not_yet("strategy.kind", kind, "revolution")
+    if not isinstance(kind, str) or kind not in STRATEGIES:
+        raise f.unknown_choice("strategy.kind", kind, (*STRATEGIES, *PLANNED_STRATEGIES))
+    parameters: RevolutionParameters = fields.build(STRATEGIES[kind], section, "strategy", also=("kind",))
+    return parameters
+
+
+def _joints(section: Any) -> JointParameters:
+    one = fields.mapping(section, "joints").get("compare")
+    return fields.build(JointParameters, {**section, "compare": [one]} if isinstance(one, str) else section, "joints")
+
+
+def _cell(section: Any, path: str) -> CellParameters | None:
+    if section is None:
+        return None
+    section = dict(fields.mapping(section, "cell"))
+    machine = section.get("machine")
+    if isinstance(machine, str) and (os.sep in machine or machine.lower().endswith((".json", ".urdf"))):
+        section["machine"] = absolute(machine, path)
+    cell = fields.build(CellParameters, section, "cell")
+    if cell.setup in PLANNED_SETUPS:
+        raise _not_yet("cell.setup", cell.setup, "part-on-robot or tool-on-robot")
+    return cell
+
+
+def _program(section: Any) -> ProgramParameters | None:
+    if section is None:
+        return None
+    program = fields.build(ProgramParameters, section, "program")
+    return None if program.post == "none" else program
+
+
+def absolute(file: str, path: str) -> str:
+    """`file` as an absolute path; relative ones start at the folder of the job file `path`."""
+    return os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), os.path.expanduser(file)))

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A YAML file as plain nested dictionaries and lists, with the line of every key.
+
+Only the safe part of YAML is read, and only what means the same to everybody: a key given twice, an unknown tag, a
+merge key or a number in base 60 are not guessed at.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from freecad_am.core.issues import InputError
+
+_INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)
+_FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+_INFINITE = re.compile(r"[-+]?\.?inf", re.IGNORECASE)
+_TAG = "tag:yaml.org,2002:"
+_MOST_VALUES = 100_000  # aliases of aliases can stand for more values than fit in memory
+_LARGEST = 4_000_000  # bytes; a job is a page of text, so a larger file is not one
+
+
+@dataclass
+class Tree:
+    """The values of a file and `lines`, the line (from 1) of each dotted key."""
+
+    label: str
+    values: dict[str, Any]
+    lines: dict[str, int] = field(default_factory=dict)
+
+    def where(self, key: str) -> str:
+        """The place of a dotted key as messages name it."""
+        return f"{self.label}: {key}" if key else self.label
+
+    def with_line(self, key: str, message: str) -> str:
+        """A message with the line of its key, where the file has that key."""
+        line = self.lines.get(key)
+        return message if line is None else f"{message} (line {line})"
+
+    def placed(self, error: InputError) -> InputError:
+        """An error about a dotted key as one about this file."""
+        return InputError(error.code, self.where(error.where), self.with_line(error.where, error.message))
+
+
+def read(path: str) -> Tree:
+    """The file as a `Tree`. Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE."""
+    label = os.path.basename(path) or path
+    text = _text(path, label)
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        node = yaml.compose(text, Loader=loader)
+    except yaml.YAMLError as error:
+        raise InputError("BAD_FILE", label, f"this is not YAML: {_one_line(error)}") from None
+    except RecursionError:
+        raise InputError("BAD_FILE", label, "this is nested too deeply to be a job") from None
+    if node is None:
+        raise InputError("EMPTY_FILE", label, "the file is empty; a job needs at least part: {file: ...}")
+    tree = Tree(label, {})
+    if not isinstance(node, yaml.MappingNode):
+        raise InputError("BAD_FILE", label, "a job is a mapping of keys such as part: and strategy:, not a list or text")
+    tree.values = _Reader(yaml, tree).mapping(node, "")
+    return tree
+
+
+def _text(path: str, label: str) -> str:
+    try:
+        if os.path.getsize(path) > _LARGEST:
+            raise InputError("BAD_FILE", label, "the file is too large to be a job; give the job file, not the part")
+        with open(path, "rb") as stream:
+            data = stream.read()
+    except FileNotFoundError:
+        raise InputError("NO_FILE", path, "there is no such file; check the path") from None
+    except OSError as error:
+        raise InputError("NO_FILE", path, f"the file cannot be read: {error.strerror}") from None
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise InputError("BAD_FILE", label, f"the text is not UTF-8 (line {line}); save it as UTF-8") from None
+
+
+def _one_line(error: Any) -> str:
+    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+    mark = getattr(error, "problem_mark", None)
+    return problem if mark is None else f"{problem} (line {mark.line + 1}, column {mark.column + 1})"
+
+
+class _Reader:
+    """Turns nodes into values; remembers the nodes it stands in, so that a loop of aliases is found."""
+
+    def __init__(self, yaml: Any, tree: Tree) -> None:
+        self.yaml, self.tree = yaml, tree
+        self.open: list[Any] = []
+        self.count = 0
+
+    def mapping(self, node: Any, prefix: str) -> dict[str, Any]:
+        values: dict[str, Any] = {}
+        self._enter(node, prefix)
+        for key_node, value_node in node.value:
+            line = key_node.start_mark.line + 1
+            if not isinstance(key_node, self.yaml.ScalarNode):
+                raise InputError("BAD_FILE", self.tree.where(prefix), f"a key must be a word (line {line})")
+            key = key_node.value
+            dotted = f"{prefix}.{key}" if prefix else key
+            if key in values:
+                first = self.tree.lines[dotted]
+                raise InputError(
+                    "DUPLICATE_KEY", self.tree.where(dotted),
+                    f"the key stands twice (lines {first} and {line}); remove one",
+                )
+            self.tree.lines[dotted] = line
+            values[key] = self._value(value_node, dotted)
+        self.open.pop()
+        return values
+
+    def _value(self, node: Any, key: str) -> Any:
+        self.count += 1
+        if self.count > _MOST_VALUES:
+            raise InputError("BAD_FILE", self.tree.where(key), "there are too many values for a job")
+        if isinstance(node, self.yaml.MappingNode):
+            return self.mapping(node, key)
+        if isinstance(node, self.yaml.SequenceNode):
+            self._enter(node, key)
+            values = [self._value(item, key) for item in node.value]
+            self.open.pop()
+            return values
+        return self._scalar(node, key)
+
+    def _enter(self, node: Any, key: str) -> None:
+        if node.tag not in (_TAG + "map", _TAG + "seq"):
+            raise self._foreign_tag(node, key)
+        if any(node is other for other in self.open):
+            raise InputError("BAD_FILE", self.tree.where(key), "an alias here stands for itself; write the value out")
+        if len(self.open) > 20:
+            raise InputError("BAD_FILE", self.tree.where(key), "this is nested too deeply to be a job")
+        self.open.append(node)
+
+    def _scalar(self, node: Any, key: str) -> Any:
+        tag, text = node.tag.replace(_TAG, ""), node.value
+        if tag == "null":
+            return {} if text == "" else None  # "program:" is a section with its defaults, "program: null" is none
+        if tag == "bool":
+            return text.lower() in ("true", "yes", "on")
+        if tag == "int" and _INTEGER.fullmatch(text):
+            return int(text)
+        if tag == "float" and _FLOAT.fullmatch(text):
+            return float(text)
+        if tag == "float" and _INFINITE.fullmatch(text):
+            return float(text.replace(".", ""))
+        if tag in ("int", "float", "str", "timestamp", "value"):
+            return text
+        raise self._foreign_tag(node, key)
+
+    def _foreign_tag(self, node: Any, key: str) -> InputError:
+        message = f"the tag {node.tag} is not allowed here; write the plain value"
+        return InputError("BAD_VALUE", self.tree.where(key), self.tree.with_line(key, message))
