@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rotations and poses as arrays: (..., 3, 3) rotations, (..., 4, 4) poses, mm and rad.
+
+A pose takes coordinates of its own frame to those of the frame it is given in. Leading dimensions
+are free everywhere, so that one call serves one pose and a hundred thousand.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def pose(rotation: ArrayLike, origin: ArrayLike) -> Array:
+    """The pose (..., 4, 4) of a rotation (..., 3, 3) and an origin (..., 3)."""
+    rotation, origin = np.asarray(rotation, float), np.asarray(origin, float)
+    lead = np.broadcast_shapes(rotation.shape[:-2], origin.shape[:-1])
+    result = np.zeros(lead + (4, 4))
+    result[..., :3, :3] = rotation
+    result[..., :3, 3] = origin
+    result[..., 3, 3] = 1.0
+    return result
+
+
+def inverse(poses: ArrayLike) -> Array:
+    """The inverse of rigid poses (..., 4, 4)."""
+    poses = np.asarray(poses, float)
+    turned = np.swapaxes(poses[..., :3, :3], -1, -2)
+    return pose(turned, -(turned @ poses[..., :3, 3:])[..., 0])
+
+
+def about_x(angle: ArrayLike) -> Array:
+    """The rotation (..., 3, 3) by `angle` (...) about X."""
+    return rotation_about((1.0, 0.0, 0.0), angle)
+
+
+def about_y(angle: ArrayLike) -> Array:
+    """The rotation (..., 3, 3) by `angle` (...) about Y."""
+    return rotation_about((0.0, 1.0, 0.0), angle)
+
+
+def about_z(angle: ArrayLike) -> Array:
+    """The rotation (..., 3, 3) by `angle` (...) about Z."""
+    return rotation_about((0.0, 0.0, 1.0), angle)
+
+
+def rotation_about(axis: ArrayLike, angle: ArrayLike) -> Array:
+    """The rotation (..., 3, 3) by `angle` (...) about the unit vectors `axis` (..., 3), right-handed."""
+    axis, angle = np.asarray(axis, float), np.asarray(angle, float)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    versine = 1.0 - cosine
+    x, y, z = axis[..., 0], axis[..., 1], axis[..., 2]
+    result = np.empty(np.broadcast_shapes(axis.shape[:-1], angle.shape) + (3, 3))
+    result[..., 0, 0] = x * x * versine + cosine
+    result[..., 1, 1] = y * y * versine + cosine
+    result[..., 2, 2] = z * z * versine + cosine
+    result[..., 0, 1] = x * y * versine - z * sine
+    result[..., 1, 0] = x * y * versine + z * sine
+    result[..., 0, 2] = x * z * versine + y * sine
+    result[..., 2, 0] = x * z * versine - y * sine
+    result[..., 1, 2] = y * z * versine - x * sine
+    result[..., 2, 1] = y * z * versine + x * sine
+    return result
+
+
+def bryant(six: ArrayLike) -> Array:
+    """The pose (..., 4, 4) of x y z RX RY RZ (..., 6), mm and rad, R = Rx(RX) Ry(RY) Rz(RZ).
+
+    Source: Chalvin 2020, eqs. 9 and 11.
+    """
+    six = np.asarray(six, float)
+    return pose(about_x(six[..., 3]) @ about_y(six[..., 4]) @ about_z(six[..., 5]), six[..., :3])
+
+
+def to_bryant(rotation: ArrayLike) -> Array:
+    """RX RY RZ (..., 3) of rotations (..., 3, 3): RX and RZ in [-pi, pi], RY in [-pi/2, pi/2].
+
+    Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there, and near it RZ
+    is taken with the RX found, so that the three always give the rotation back.
+    """
+    rotation = np.asarray(rotation, float)
+    first = np.arctan2(-rotation[..., 1, 2], rotation[..., 2, 2])
+    locked = np.hypot(rotation[..., 1, 2], rotation[..., 2, 2]) < 1e-12
+    first = np.where(locked, 0.0, first)
+    second = np.arctan2(rotation[..., 0, 2], np.hypot(rotation[..., 1, 2], rotation[..., 2, 2]))
+    sine, cosine = np.sin(first), np.cos(first)
+    third = np.arctan2(
+        cosine * rotation[..., 1, 0] + sine * rotation[..., 2, 0],
+        cosine * rotation[..., 1, 1] + sine * rotation[..., 2, 1],
+    )
+    return np.stack((first, second, third), axis=-1)
+
+
+def from_rpy(origin: ArrayLike, rpy: ArrayLike) -> Array:
+    """The pose (..., 4, 4) with roll, pitch, yaw (..., 3) rad, R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it."""
+    rpy = np.asarray(rpy, float)
+    return pose(about_z(rpy[..., 2]) @ about_y(rpy[..., 1]) @ about_x(rpy[..., 0]), origin)
+
+
+def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
+    """The rotation (..., 3, 3) by the smallest angle that takes unit vectors `start` to `end` (..., 3).
+
+    Opposite vectors have no such rotation: they get a half turn about an axis normal to both. Built of two
+    reflections, first in the plane normal to `start`, then in that normal to their bisector, which
+    keeps all digits up to the half turn.
+    """
+    start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
+    bisector = start + end
+    length = np.linalg.norm(bisector, axis=-1, keepdims=True)
+    bisector = np.where(length > 1e-14, bisector / np.where(length > 1e-14, length, 1.0), _normal_to(start))
+    return _reflection(bisector) @ _reflection(start)
+
+
+def _normal_to(vectors: Array) -> Array:
+    """Unit vectors normal to the unit vectors (..., 3): the coordinate axis least along each, made normal to it."""
+    least = np.eye(3)[np.argmin(np.abs(vectors), axis=-1)]
+    normal = np.cross(vectors, least)
+    result: Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    return result
+
+
+def _reflection(normals: Array) -> Array:
+    """The reflection (..., 3, 3) in the planes through the origin with the unit normals (..., 3)."""
+    result: Array = np.eye(3) - 2.0 * normals[..., :, None] * normals[..., None, :]
+    return result
