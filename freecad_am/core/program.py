@@ -122,7 +122,8 @@ class ReadMoves:
     joints: (n, axes) controller values, rad, exactly as many digits as the text has (None for Cartesian texts).
     digits: half of the last digit of the joint values, rad. duration: (n,) s, NaN where the text gives a speed.
     deposit: (n,) bool, whether the deposit is on during the move that ends at the point. position, rotation,
-    position_digits (mm), rotation_digits (rad): the same for Cartesian texts.
+    position_digits (mm), rotation_digits (rad): the same for Cartesian texts. speed: (n,) mm/s at the deposition
+    point, NaN where the text gives a time or a percentage.
     """
 
     joints: Array | None
@@ -133,3 +134,4 @@ class ReadMoves:
     rotation: Array | None = None
     position_digits: float = 0.0
     rotation_digits: float = 0.0
+    speed: Array | None = None

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The posts there are, by the name a job uses."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Protocol
+
+from ..core.issues import InputError
+from ..core.program import Program, ReadMoves
+from . import fanuc
+
+
+class Post(Protocol):
+    """What a post module offers."""
+
+    def write(self, program: Program) -> dict[str, bytes]:
+        """The controller's files, name -> content; raises InputError for what the controller would refuse."""
+
+    def read(self, files: dict[str, bytes]) -> ReadMoves:
+        """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
+
+
+_POSTS: dict[str, ModuleType] = {"fanuc": fanuc}
+
+NAMES = tuple(_POSTS)
+
+
+def load(name: str) -> Post:
+    """The post of that name. Raises InputError UNKNOWN_POST."""
+    if name not in _POSTS:
+        raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {', '.join(NAMES)}, or none")
+    return _POSTS[name]  # type: ignore[return-value]

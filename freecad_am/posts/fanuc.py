@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""FANUC: TP listings (.LS) of joint moves by time, or of linear moves with the tool on the robot.
+
+What is written, what must be set on the controller and what was confirmed where: docs/posts/fanuc.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+from ..core.program import (
+    RAPID, Block, Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput,
+)
+from . import fanuc_listing as text
+from . import fanuc_numbers as numbers
+from .fanuc_read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+AXES = 6
+LONGEST_NAME = 36  # 8 on controllers before the R-30iA
+ROOMY_NAME = LONGEST_NAME - 4  # what is proposed leaves room for the digits of the parts
+MOST_LINES = 9999
+
+# Where the robot stands before the program is not known, so the time of the first move cannot be: it goes at a
+# tenth of the full speed.
+_FIRST_MOVE = "10%"
+
+# names that files cannot have on the computers programs pass through, and words of the listing's own language
+_RESERVED = frozenset(
+    ["CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))]
+    + "ABORT CALL DO DI ELSE END ENDFOR ENDIF FOR IF JMP LBL MESSAGE MONITOR PAUSE RUN SELECT THEN WAIT WHEN".split()
+)
+
+
+@dataclass(frozen=True)
+class _Run:
+    """The moves start .. stop of a block with the speed word of each; every word is written as it stands."""
+
+    moves: Moves
+    speeds: Sequence[str]
+    start: int
+    stop: int
+
+    def __len__(self) -> int:
+        return self.stop - self.start
+
+
+# what a file is made of: runs of moves, and instructions as they stand
+_Piece = _Run | list[str]
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The listings of a program, file name -> content; the same bytes for the same program.
+
+    One file where it fits, else NAME.LS that calls NAME01.LS and so on, cut between beads wherever a bead fits.
+    The duration of the very first move is not used.
+
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, MOVE_TIME, MOVE_SPEED,
+    ENDLESS_STEP, TURN_NUMBER, NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
+    groups = list(_groups(program))
+    parts = _parts(groups, program.max_points, MOST_LINES - len(head) - len(remarks))
+    if len(parts) == 1:
+        return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
+    digits = max(2, len(str(len(parts))))
+    names = [f"{name}{number:0{digits}d}" for number in range(1, len(parts) + 1)]
+    if len(names[0]) > LONGEST_NAME:
+        why = f"with the {digits} digits of its parts it has more than {LONGEST_NAME} characters"
+        raise _bad_name(program.name, "name", why)
+    files = {f"{name}.LS": text.listing(name, "Robotic AM", head + remarks + [text.call(part) for part in names], "")}
+    for number, (part_name, pieces) in enumerate(zip(names, parts), 1):
+        comment = f"part {number} of {len(parts)}"
+        files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
+    _refuse_calls_of_own(program, set(names) | {name})
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    upper = name.upper() if name.isascii() else name
+    if not name:
+        raise _bad_name(name, where, "it is empty")
+    if re.search(r"[^A-Z0-9_]", upper):
+        raise _bad_name(name, where, "it may hold only the letters A to Z, digits and underscores")
+    if not upper[0].isalpha():
+        raise _bad_name(name, where, "it must start with a letter")
+    if len(upper) > LONGEST_NAME:
+        raise _bad_name(name, where, f"it has more than {LONGEST_NAME} characters")
+    if upper in _RESERVED:
+        raise _bad_name(name, where, "it is a reserved word")
+    return upper
+
+
+def _bad_name(name: str, where: str, why: str) -> InputError:
+    proposal = re.sub(r"[^A-Z0-9]+", "_", text.plain(name.replace("ß", "ss")).upper()).strip("_")
+    if not proposal or not proposal[0].isalpha() or proposal in _RESERVED:
+        proposal = f"AM_{proposal}".rstrip("_")
+    return InputError(
+        "PROGRAM_NAME", where, f"{name!r} cannot be a program name on the controller: {why}; use {proposal[:ROOMY_NAME]!r}"
+    )
+
+
+def _refuse(program: Program) -> None:
+    moves = program.moves
+    if not sum(len(run) for run in moves):
+        raise InputError("NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts")
+    if program.motion == "cartesian" and program.setup == "part-on-robot":
+        raise InputError(
+            "REMOTE_TCP", "program.motion",
+            "Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves"
+            " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
+        )
+    if program.setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {program.setup}")
+    if any(run.joints.shape[1] != AXES for run in moves) or len(program.endless) != AXES:
+        raise InputError("UNSUPPORTED_AXES", "program.post", f"the post fanuc writes {AXES} axes only; use another post")
+    if not all(np.isfinite(run.joints).all() for run in moves):
+        raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
+    for block in program.blocks:
+        if isinstance(block, Call):
+            program_name(block.program, "process.between_layers.call")
+    _refuse_endless_steps(program)
+
+
+def _refuse_endless_steps(program: Program) -> None:
+    """An axis set to turn without end takes the shorter way, so a move of half a turn or more would go wrong."""
+    axes = np.flatnonzero(program.endless)
+    joints = np.concatenate([run.joints for run in program.moves])[:, axes]
+    places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
+    large = np.abs(np.diff(joints, axis=0)) > math.radians(180.0 - 0.001)
+    if large.any():
+        move, axis = np.argwhere(large)[0]
+        run = program.moves[places[move + 1]]
+        raise InputError(
+            "ENDLESS_STEP", f"layer {run.layer} bead {run.bead}",
+            f"axis {axes[axis] + 1} turns {np.degrees(joints[move + 1, axis] - joints[move, axis]):.1f} deg in one move; an"
+            " axis of continuous turn goes less than 180 deg per move: add points, or limit the axis",
+        )
+
+
+def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
+    for block in program.blocks:
+        if isinstance(block, Call) and block.program.upper() in names:
+            raise InputError(
+                "PROGRAM_NAME", "process.between_layers.call",
+                f"{block.program!r} is a program of this very job; call another one, or rename the job",
+            )
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    for axis in np.flatnonzero(program.endless):
+        yield f"axis {axis + 1} turns without end: set it up for Continuous Turn (option)"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _groups(program: Program) -> Iterator[list[_Piece]]:
+    """The blocks as pieces, in groups that belong to one bead each: what may be cut apart with the deposit off."""
+    group: list[_Piece] = []
+    bead: tuple[int, int] | None = None
+    on, first = False, True
+    for block in program.blocks:
+        if isinstance(block, Moves):
+            if not len(block):
+                continue
+            speeds = numbers.time_words(block) if program.motion == "joint" else numbers.speed_words(block)
+            if first:
+                speeds[0], first = _FIRST_MOVE, False
+            piece: _Piece = _Run(block, speeds, 0, len(block))
+            starts = block.kind == RAPID and not on and bead not in (None, (block.layer, block.bead))
+            bead = (block.layer, block.bead)
+        else:
+            on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
+            piece = _instructions(program, block)
+            starts = isinstance(block, LayerStart) and bead is not None and bead[0] != block.layer
+            bead = None if starts else bead
+        if starts and group:
+            yield group
+            group = []
+        group.append(piece)
+    yield group
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    output = f"  DO[{program.deposit_output}]="
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else [output + "ON ;", *text.wait(block.lead)]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [*text.wait(block.lead), output + "OFF ;"]
+    if isinstance(block, LayerStart):
+        return text.remark(f"layer {block.layer}")
+    if isinstance(block, Wait):
+        return text.wait(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"  WAIT DI[{block.number}]=ON    ;"]
+    if isinstance(block, Call):
+        return [text.call(block.program.upper())]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _parts(groups: Sequence[list[_Piece]], most_points: int, most_lines: int) -> list[list[_Piece]]:
+    """The groups packed into files of at most so many points and lines, in order."""
+    if all(total <= most for total, most in zip(_size([p for group in groups for p in group]), (most_points, most_lines))):
+        return [[piece for group in groups for piece in group]]
+    parts: list[list[_Piece]] = []
+    room = (0, 0)
+    for group in groups:
+        points, lines = _size(group)
+        chunks = [group] if points <= most_points and lines <= most_lines else list(_cut(group, most_points, most_lines))
+        for chunk in chunks:
+            points, lines = _size(chunk)
+            if points > room[0] or lines > room[1] or len(chunks) > 1:
+                parts.append([])
+                room = (most_points, most_lines)
+            parts[-1].extend(chunk)
+            room = (room[0] - points, room[1] - lines)
+    return parts
+
+
+def _size(pieces: Sequence[_Piece]) -> tuple[int, int]:
+    return sum(len(piece) for piece in pieces if isinstance(piece, _Run)), sum(len(piece) for piece in pieces)
+
+
+def _cut(group: list[_Piece], most_points: int, most_lines: int) -> Iterator[list[_Piece]]:
+    """One bead too long for a file, cut inside its moves, which says so at both sides of the cut."""
+    going_on, resumed = text.remark("bead goes on in the next part"), text.remark("bead goes on here")
+    most = min(most_points, most_lines - len(going_on) - len(resumed) - sum(len(p) for p in group if isinstance(p, list)))
+    chunk: list[_Piece] = []
+    room = most
+    for piece in group:
+        if isinstance(piece, list):
+            chunk.append(piece)
+            continue
+        start = piece.start
+        while piece.stop - start > room:
+            if room:
+                chunk.append(_Run(piece.moves, piece.speeds, start, start + room))
+            yield [*chunk, going_on]
+            start, chunk, room = start + room, [resumed], most
+        chunk.append(_Run(piece.moves, piece.speeds, start, piece.stop))
+        room -= piece.stop - start
+    yield chunk
+
+
+def _file(program: Program, name: str, comment: str, head: list[str], pieces: Sequence[_Piece]) -> bytes:
+    lines, point = list(head), 0
+    runs = [piece for piece in pieces if isinstance(piece, _Run)]
+    for piece in pieces:
+        if isinstance(piece, _Run):
+            lines += _motion_lines(program, piece, point)
+            point += len(piece)
+        else:
+            lines += piece
+    return text.listing(name, comment, lines, _record_text(program, runs))
+
+
+def _motion_lines(program: Program, run: _Run, points_before: int) -> list[str]:
+    """Lines through all points of a run; the block's own last point is a stop."""
+    speeds = run.speeds[run.start : run.stop]
+    numbers = range(points_before + 1, points_before + 1 + len(run))
+    letter = "J" if program.motion == "joint" else "L"
+    lines = [f"{letter} P[{n}] {speed} CNT{program.blend}    ;" for n, speed in zip(numbers, speeds)]
+    if speeds[0] == _FIRST_MOVE:
+        lines[0] = f"J P[{numbers[0]}] {_FIRST_MOVE} FINE    ;"
+    if run.stop == len(run.moves):
+        lines[-1] = lines[-1].replace(f"CNT{program.blend}", "FINE")
+    return lines
+
+
+def _record_text(program: Program, runs: Sequence[_Run]) -> str:
+    if not runs:
+        return ""
+    if program.motion == "joint":
+        joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
+        degrees, endless = np.round(np.degrees(joints), 3), np.array(program.endless)
+        degrees[:, endless] = numbers.within_half_turn(degrees[:, endless])
+        return text.joint_records(degrees + 0.0, program.user_frame, program.tool_frame)
+    poses, configuration = [], []
+    for run in runs:
+        moves, part = run.moves, slice(run.start, run.stop)
+        if moves.position is None or moves.rotation is None:
+            raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+        poses.append(numbers.poses(moves.position[part], moves.rotation[part]))
+        configuration += numbers.configurations(moves, program.endless)[part]
+    return text.pose_records(np.concatenate(poses), configuration, program.user_frame, program.tool_frame)

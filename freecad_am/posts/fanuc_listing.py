@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The text of one FANUC listing (.LS): header, instructions, position records, as a controller exports them.
+
+Field widths and line ends follow listings that controllers wrote; docs/posts/fanuc.md says which rules were
+confirmed where.
+"""
+
+from __future__ import annotations
+
+import textwrap
+import unicodedata
+from collections.abc import Sequence
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+END_OF_LINE = "\r\n"
+REMARK_WIDTH = 32
+COMMENT_WIDTH = 16
+
+# Same job, same bytes: the controller puts the true date when it loads the file. This one is a valid day both
+# for a two-digit year and for the file dates of the controller's memory card, which begin in 1980.
+_DATE = "DATE 00-01-01  TIME 00:00:00"
+
+_HEADER = """\
+/PROG  {name}
+/ATTR
+OWNER\t\t= MNEDITOR;
+COMMENT\t\t= "{comment}";
+PROG_SIZE\t= 0;
+CREATE\t\t= {date};
+MODIFIED\t= {date};
+FILE_NAME\t= ;
+VERSION\t\t= 0;
+LINE_COUNT\t= {lines};
+MEMORY_SIZE\t= 0;
+PROTECT\t\t= READ_WRITE;
+TCD:  STACK_SIZE\t= 0,
+      TASK_PRIORITY\t= 50,
+      TIME_SLICE\t= 0,
+      BUSY_LAMP_OFF\t= 0,
+      ABORT_REQUEST\t= 0,
+      PAUSE_REQUEST\t= 0;
+DEFAULT_GROUP\t= 1,*,*,*,*;
+CONTROL_CODE\t= 00000000 00000000;
+/MN
+"""
+
+# longest single wait written, s; longer ones become several lines
+_LONGEST_WAIT = 300.0
+
+_JOINT_RECORD = (
+    "P[%d]{\r\n   GP1:\r\n\t<frame>\t\r\n"
+    "\tJ1=%10.3f deg,\tJ2=%10.3f deg,\tJ3=%10.3f deg,\r\n"
+    "\tJ4=%10.3f deg,\tJ5=%10.3f deg,\tJ6=%10.3f deg\r\n};\r\n"
+)
+_POSE_RECORD = (
+    "P[%d]{\r\n   GP1:\r\n\t<frame>\t\tCONFIG : '%s',\r\n"
+    "\tX =%10.3f  mm,\tY =%10.3f  mm,\tZ =%10.3f  mm,\r\n"
+    "\tW =%10.3f deg,\tP =%10.3f deg,\tR =%10.3f deg\r\n};\r\n"
+)
+
+
+def listing(name: str, comment: str, instructions: Sequence[str], records: str) -> bytes:
+    """One whole file. instructions: what follows the colon of each line, with its semicolon; records: the text
+    of joint_records or pose_records, '' when there are none."""
+    head = _HEADER.format(name=name, comment=plain(comment)[:COMMENT_WIDTH], date=_DATE, lines=len(instructions))
+    numbered = [f"{number:4d}:{line}" for number, line in enumerate(instructions, 1)]
+    text = head.replace("\n", END_OF_LINE) + END_OF_LINE.join(numbered) + END_OF_LINE
+    return (text + "/POS" + END_OF_LINE + records + "/END" + END_OF_LINE).encode("ascii")
+
+
+def plain(text: str) -> str:
+    """The text in characters a listing may hold: accents dropped, no semicolon or quote."""
+    ascii_text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode("ascii")
+    return " ".join(ascii_text.translate(str.maketrans({";": ",", '"': "'"})).split())
+
+
+def remark(text: str) -> list[str]:
+    """A remark, on as many lines as its width needs."""
+    return [f"  !{line} ;" for line in textwrap.wrap(plain(text), REMARK_WIDTH)]
+
+
+def wait(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.01 s; nothing for no time."""
+    lines = []
+    hundredths = max(round(seconds * 100.0), int(seconds > 0.0))
+    while hundredths > 0:
+        step = min(hundredths, round(_LONGEST_WAIT * 100.0))
+        lines.append("  WAIT" + _shortened(f"{step / 100.0:7.2f}") + "(sec) ;")
+        hundredths -= step
+    return lines
+
+
+def call(name: str) -> str:
+    """A call of another program."""
+    return f"  CALL {name}    ;"
+
+
+def joint_records(degrees: Array, user_frame: int, tool_frame: int) -> str:
+    """Records P[1].. of joint values (n, 6), degrees already rounded to 3 decimals."""
+    return _records(_JOINT_RECORD, user_frame, tool_frame, list(degrees.T))
+
+
+def pose_records(pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int) -> str:
+    """Records P[1].. of positions (n, 6) X Y Z mm, W P R deg, already rounded to 3 decimals, with their CONFIG."""
+    return _records(_POSE_RECORD, user_frame, tool_frame, [configuration, *pose.T])
+
+
+def _records(template: str, user_frame: int, tool_frame: int, columns: Sequence[Sequence[str] | Array]) -> str:
+    n = len(columns[0])
+    one = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
+    lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns]
+    values = tuple(chain.from_iterable(zip(range(1, n + 1), *lists)))
+    return _shortened(one * n % values)
+
+
+def _shortened(text: str) -> str:
+    """Numbers as controllers list them: .250 without its zero in the same width, but exact zero as 0.000."""
+    text = text.replace(" 0.", "  .").replace("-0.", " -.")
+    return text.replace("  .000 ", " 0.000 ")

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads FANUC listings back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
+that no motion can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+from ..core.program import ReadMoves
+
+Array = NDArray[np.float64]
+
+_LINE = re.compile(r" *\d*:(.*?) *; *$")
+_MOTION = re.compile(r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:FINE|CNT ?\d+)(?: ?ACC ?\d+)?$")
+_OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
+_CALL = re.compile(r"CALL (\w+)$")
+_FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
+_HARMLESS = re.compile(r"$|!|//|--eg:|WAIT +\d*\.\d+\(sec\)$|WAIT DI\[\d+(?::[^\]]*)?\]=(?:ON|OFF)$")
+
+_RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
+_FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
+_NUMBER = r" *(-?\d*\.\d+) *"
+
+
+def _values(names: str, units: str) -> str:
+    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split()))
+
+
+_JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
+_POSE = re.compile(
+    _FRAMES + r"CONFIG : '[NF] [UD] [TB], *-?\d, *-?\d, *-?\d',\s*" + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};"
+)
+
+
+@dataclass
+class _Listing:
+    """One file: its program's name, its instructions with their line numbers, and its positions."""
+
+    file: str
+    name: str
+    instructions: list[tuple[int, str]]
+    index: dict[int, int]
+    values: Array
+    cartesian: bool
+    frames: list[tuple[str, str]]
+    digits: float
+
+
+@dataclass
+class _Run:
+    """What happened so far while the programs are followed."""
+
+    rows: list[tuple[_Listing, int]] = field(default_factory=list)
+    duration: list[float] = field(default_factory=list)
+    speed: list[float] = field(default_factory=list)
+    deposit: list[bool] = field(default_factory=list)
+    frame: dict[str, str] = field(default_factory=dict)
+    output: str = ""
+    on: bool = False
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the program that no other one calls.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    listings = {listing.name: listing for listing in (_listing(file, files[file]) for file in sorted(files))}
+    if len(listings) < len(files):
+        raise _unreadable("program", "two files hold a program of the same name")
+    run = _Run()
+    _follow(_main(listings), listings, run, ())
+    if not run.rows:
+        raise _unreadable("program", "there are no moves")
+    return _moves(run)
+
+
+def _moves(run: _Run) -> ReadMoves:
+    cartesian = run.rows[0][0].cartesian
+    values = np.array([listing.values[row] for listing, row in run.rows])
+    digits = max(listing.digits for listing, _ in run.rows)
+    duration, deposit = np.array(run.duration), np.array(run.deposit)
+    speed = np.array(run.speed)
+    if not cartesian:
+        return ReadMoves(np.radians(values), np.radians(digits), duration, deposit, speed=speed)
+    return ReadMoves(
+        None, 0.0, duration, deposit, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])),
+        position_digits=digits, rotation_digits=float(np.radians(digits)), speed=speed,
+    )
+
+
+def _rotation(wpr: Array) -> Array:
+    """(n, 3, 3) rotations Rz(R) Ry(P) Rx(W) of W, P, R (n, 3) in rad."""
+    cw, cp, cr = np.cos(wpr).T
+    sw, sp, sr = np.sin(wpr).T
+    rows = (
+        (cr * cp, cr * sp * sw - sr * cw, cr * sp * cw + sr * sw),
+        (sr * cp, sr * sp * sw + cr * cw, sr * sp * cw - cr * sw),
+        (-sp, cp * sw, cp * cw),
+    )
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def _listing(file: str, content: bytes) -> _Listing:
+    lines = content.decode("latin-1").replace("\r\n", "\n").split("\n")
+    marks = [lines.index(section) if section in lines else -1 for section in ("/MN", "/POS", "/END")]
+    title = re.match(r"/PROG +(\w+)\s*$", lines[0])
+    if title is None or -1 in marks or marks != sorted(marks):
+        raise _unreadable(file, "it is not a listing with /PROG, /MN, /POS and /END in this order")
+    start, positions, end = marks
+    instructions = []
+    for number, line in enumerate(lines[start + 1 : positions], start + 2):
+        statement = _LINE.match(line)
+        if statement is None:
+            raise _unreadable(f"{file} line {number}", f"{line.strip()!r} is no instruction")
+        instructions.append((number, statement[1].strip()))
+    records = "\n".join(lines[positions + 1 : end])
+    starts = _RECORD_START.findall(records)
+    found = _JOINTS.findall(records)
+    cartesian = not found
+    found = found or _POSE.findall(records)
+    if [record[0] for record in found] != starts:
+        bad = next((n for n, record in zip(starts, [*found, ("",)]) if n != record[0]), starts[-1])
+        number = next(n for n, line in enumerate(lines, 1) if n > positions and line.startswith((f"P[{bad}]", f"P[{bad}:")))
+        raise _unreadable(f"{file} line {number}", f"the record of P[{bad}] is not understood")
+    index = {int(record[0]): row for row, record in enumerate(found)}
+    if len(index) < len(found):
+        raise _unreadable(file, "a position is recorded twice")
+    texts = [record[3:] for record in found]
+    decimals = min((len(value) - value.index(".") - 1 for row in texts for value in row), default=0)
+    return _Listing(
+        file, title[1].upper(), instructions, index, np.array(texts, dtype=np.float64).reshape(-1, 6), cartesian,
+        [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals,
+    )
+
+
+def _main(listings: dict[str, _Listing]) -> _Listing:
+    called = {
+        match[1].upper()
+        for listing in listings.values()
+        for _, statement in listing.instructions
+        if (match := _CALL.match(statement))
+    }
+    main = [listing for name, listing in listings.items() if name not in called]
+    if len(main) != 1:
+        raise _unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
+    return main[0]
+
+
+def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers: tuple[str, ...]) -> None:
+    """Carry out the instructions of a listing in order, and of those it calls."""
+    if listing.name in callers:
+        raise _unreadable(listing.file, "it calls itself")
+    for position, (number, statement) in enumerate(listing.instructions):
+        if motion := _MOTION.match(statement):
+            _move(listing, motion, run, number)
+        elif output := _OUTPUT.match(statement):
+            if run.output not in ("", output[1]):
+                raise _unreadable(f"{listing.file} line {number}", "a second output is switched")
+            run.output, run.on = output[1], output[2] == "ON"
+        elif call := _CALL.match(statement):
+            if call[1].upper() in listings:
+                _follow(listings[call[1].upper()], listings, run, (*callers, listing.name))
+        elif frame := _FRAME.match(statement):
+            run.frame[frame[1]] = frame[2]
+        elif statement == "END" and position == len(listing.instructions) - 1:
+            return
+        elif not _HARMLESS.match(statement):
+            raise _unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
+
+
+def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> None:
+    letter, point, value, unit = motion.groups()
+    row = listing.index.get(int(point))
+    where = f"{listing.file} line {number}"
+    if row is None:
+        raise _unreadable(where, f"P[{point}] is not recorded")
+    if run.rows and run.rows[0][0].cartesian != listing.cartesian:
+        raise _unreadable(where, "joint and Cartesian positions are mixed")
+    if (letter == "L") != listing.cartesian and (letter == "L" or run.rows):
+        raise _unreadable(where, "a position is moved to in another way than it is recorded")
+    if (unit == "mm/sec") != (letter == "L"):
+        raise _unreadable(where, f"{unit} is not understood here")
+    for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row]):
+        if recorded not in ("F", run.frame.get(word)):
+            raise _unreadable(where, f"P[{point}] is recorded in another U{word} than the one selected")
+    seconds = {"sec": 1.0, "msec": 0.001}.get(unit, np.nan)
+    run.rows.append((listing, row))
+    run.duration.append(float(value) * seconds)
+    run.speed.append(float(value) if unit == "mm/sec" else np.nan)
+    run.deposit.append(run.on)
+
+
+def _unreadable(where: str, why: str) -> InputError:
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
