@@ -29,5 +29,6 @@ NAMES = tuple(_POSTS)
 def load(name: str) -> Post:
     """The post of that name. Raises InputError UNKNOWN_POST."""
     if name not in _POSTS:
-        raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {', '.join(NAMES)}, or none")
-    return _POSTS[name]  # type: ignore[return-value]
+        known = ", ".join(NAMES)
+        raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {known}, or none")
+    return _POSTS[name]

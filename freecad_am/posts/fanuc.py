@@ -16,7 +16,16 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import (
-    RAPID, Block, Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput,
+    RAPID,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Wait,
+    WaitInput,
 )
 from . import fanuc_listing as text
 from . import fanuc_numbers as numbers
@@ -37,8 +46,9 @@ _FIRST_MOVE = "10%"
 
 # names that files cannot have on the computers programs pass through, and words of the listing's own language
 _RESERVED = frozenset(
-    ["CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))]
-    + "ABORT CALL DO DI ELSE END ENDFOR ENDIF FOR IF JMP LBL MESSAGE MONITOR PAUSE RUN SELECT THEN WAIT WHEN".split()
+    ("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10)))
+    + ("ABORT", "CALL", "DI", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "FOR", "IF", "JMP", "LBL", "MESSAGE", "MONITOR")
+    + ("PAUSE", "RUN", "SELECT", "THEN", "WAIT", "WHEN")
 )
 
 
@@ -82,7 +92,7 @@ def write(program: Program) -> dict[str, bytes]:
         why = f"with the {digits} digits of its parts it has more than {LONGEST_NAME} characters"
         raise _bad_name(program.name, "name", why)
     files = {f"{name}.LS": text.listing(name, "Robotic AM", head + remarks + [text.call(part) for part in names], "")}
-    for number, (part_name, pieces) in enumerate(zip(names, parts), 1):
+    for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
         comment = f"part {number} of {len(parts)}"
         files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
     _refuse_calls_of_own(program, set(names) | {name})
@@ -110,7 +120,8 @@ def _bad_name(name: str, where: str, why: str) -> InputError:
     if not proposal or not proposal[0].isalpha() or proposal in _RESERVED:
         proposal = f"AM_{proposal}".rstrip("_")
     return InputError(
-        "PROGRAM_NAME", where, f"{name!r} cannot be a program name on the controller: {why}; use {proposal[:ROOMY_NAME]!r}"
+        "PROGRAM_NAME", where,
+        f"{name!r} cannot be a program name on the controller: {why}; use {proposal[:ROOMY_NAME]!r}",
     )
 
 
@@ -127,7 +138,7 @@ def _refuse(program: Program) -> None:
     if program.setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {program.setup}")
     if any(run.joints.shape[1] != AXES for run in moves) or len(program.endless) != AXES:
-        raise InputError("UNSUPPORTED_AXES", "program.post", f"the post fanuc writes {AXES} axes only; use another post")
+        raise InputError("UNSUPPORTED_AXES", "program.post", f"the post fanuc writes {AXES} axes; use another post")
     if not all(np.isfinite(run.joints).all() for run in moves):
         raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
     for block in program.blocks:
@@ -145,10 +156,11 @@ def _refuse_endless_steps(program: Program) -> None:
     if large.any():
         move, axis = np.argwhere(large)[0]
         run = program.moves[places[move + 1]]
+        turn = math.degrees(joints[move + 1, axis] - joints[move, axis])
         raise InputError(
             "ENDLESS_STEP", f"layer {run.layer} bead {run.bead}",
-            f"axis {axes[axis] + 1} turns {np.degrees(joints[move + 1, axis] - joints[move, axis]):.1f} deg in one move; an"
-            " axis of continuous turn goes less than 180 deg per move: add points, or limit the axis",
+            f"axis {axes[axis] + 1} turns {turn:.1f} deg in one move; an axis of continuous turn goes less than 180 deg"
+            " per move: add points, or limit the axis",
         )
 
 
@@ -214,13 +226,16 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 def _parts(groups: Sequence[list[_Piece]], most_points: int, most_lines: int) -> list[list[_Piece]]:
     """The groups packed into files of at most so many points and lines, in order."""
-    if all(total <= most for total, most in zip(_size([p for group in groups for p in group]), (most_points, most_lines))):
-        return [[piece for group in groups for piece in group]]
+    everything = [piece for group in groups for piece in group]
+    points, lines = _size(everything)
+    if points <= most_points and lines <= most_lines:
+        return [everything]
     parts: list[list[_Piece]] = []
     room = (0, 0)
     for group in groups:
         points, lines = _size(group)
-        chunks = [group] if points <= most_points and lines <= most_lines else list(_cut(group, most_points, most_lines))
+        fits = points <= most_points and lines <= most_lines
+        chunks = [group] if fits else list(_cut(group, most_points, most_lines))
         for chunk in chunks:
             points, lines = _size(chunk)
             if points > room[0] or lines > room[1] or len(chunks) > 1:
@@ -238,7 +253,8 @@ def _size(pieces: Sequence[_Piece]) -> tuple[int, int]:
 def _cut(group: list[_Piece], most_points: int, most_lines: int) -> Iterator[list[_Piece]]:
     """One bead too long for a file, cut inside its moves, which says so at both sides of the cut."""
     going_on, resumed = text.remark("bead goes on in the next part"), text.remark("bead goes on here")
-    most = min(most_points, most_lines - len(going_on) - len(resumed) - sum(len(p) for p in group if isinstance(p, list)))
+    events = sum(len(piece) for piece in group if isinstance(piece, list))
+    most = min(most_points, most_lines - events - len(going_on) - len(resumed))
     chunk: list[_Piece] = []
     room = most
     for piece in group:
@@ -271,11 +287,11 @@ def _file(program: Program, name: str, comment: str, head: list[str], pieces: Se
 def _motion_lines(program: Program, run: _Run, points_before: int) -> list[str]:
     """Lines through all points of a run; the block's own last point is a stop."""
     speeds = run.speeds[run.start : run.stop]
-    numbers = range(points_before + 1, points_before + 1 + len(run))
+    points = range(points_before + 1, points_before + 1 + len(run))
     letter = "J" if program.motion == "joint" else "L"
-    lines = [f"{letter} P[{n}] {speed} CNT{program.blend}    ;" for n, speed in zip(numbers, speeds)]
+    lines = [f"{letter} P[{n}] {speed} CNT{program.blend}    ;" for n, speed in zip(points, speeds, strict=True)]
     if speeds[0] == _FIRST_MOVE:
-        lines[0] = f"J P[{numbers[0]}] {_FIRST_MOVE} FINE    ;"
+        lines[0] = f"J P[{points[0]}] {_FIRST_MOVE} FINE    ;"
     if run.stop == len(run.moves):
         lines[-1] = lines[-1].replace(f"CNT{program.blend}", "FINE")
     return lines

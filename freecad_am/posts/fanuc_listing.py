@@ -76,7 +76,7 @@ def listing(name: str, comment: str, instructions: Sequence[str], records: str) 
 def plain(text: str) -> str:
     """The text in characters a listing may hold: accents dropped, no semicolon or quote."""
     ascii_text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode("ascii")
-    return " ".join(ascii_text.translate(str.maketrans({";": ",", '"': "'"})).split())
+    return " ".join(ascii_text.translate(str.maketrans(';"', ",'")).split())
 
 
 def remark(text: str) -> list[str]:
@@ -114,7 +114,7 @@ def _records(template: str, user_frame: int, tool_frame: int, columns: Sequence[
     n = len(columns[0])
     one = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
     lists = [column.tolist() if isinstance(column, np.ndarray) else column for column in columns]
-    values = tuple(chain.from_iterable(zip(range(1, n + 1), *lists)))
+    values = tuple(chain.from_iterable(zip(range(1, n + 1), *lists, strict=True)))
     return _shortened(one * n % values)
 
 

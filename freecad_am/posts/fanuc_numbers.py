@@ -41,7 +41,7 @@ def time_words(moves: Moves) -> list[str]:
     if seconds.max() > LONGEST_SEC:
         raise InputError(
             "MOVE_TIME", _place(moves),
-            f"a move of {seconds.max():.0f} s cannot be written; at most {LONGEST_SEC:.0f} s: raise the speed or add points",
+            f"a move of {seconds.max():.0f} s is longer than {LONGEST_SEC:.0f} s; raise the speed or add points",
         )
     long = np.rint(seconds * 1000.0) > LONGEST_MSEC
     n = len(seconds)
@@ -49,15 +49,15 @@ def time_words(moves: Moves) -> list[str]:
     if ends[-1] < n and moves.kind != RAPID:
         raise InputError(
             "MOVE_TIME", _place(moves),
-            f"{n} moves take {seconds.sum():.6g} s in all and cannot be shorter than 1 ms each; use a larger chord error"
-            " or a lower speed",
+            f"{n} moves take {seconds.sum():.6g} s in all and cannot be shorter than 1 ms each; use a larger chord"
+            " error or a lower speed",
         )
     # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole
     spare = np.minimum(np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0))
     milliseconds = (1 + np.diff(spare, prepend=0)).tolist()
     return [
         f"{second:.1f}sec" if is_long else f"{whole}msec"
-        for second, is_long, whole in zip(seconds.tolist(), long.tolist(), milliseconds)
+        for second, is_long, whole in zip(seconds.tolist(), long.tolist(), milliseconds, strict=True)
     ]
 
 
@@ -83,14 +83,21 @@ def poses(position: Array, rotation: Array) -> Array:
 
 
 def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
-    """CONFIG of each point, such as 'N U T, 0, 0, 0'. Raises InputError TURN_NUMBER.
+    """CONFIG of each point, such as 'N U T, 0, 0, 0'. Raises InputError
+    NO_POSITIONS, ARM_BACKWARDS, TURN_NUMBER.
 
-    F where J5 > 0, D and B as elbow and shoulder; the last number counts the turns of J6. Whether the other two
-    belong to J1 and J4 or to J4 and J5 is told differently by different sources, so those axes must stay within
-    half a turn, where both readings agree.
+    F where J5 > 0, D where the elbow is down; the last number counts the turns of J6. Whether the other two belong
+    to J1 and J4 or to J4 and J5 is told differently by different sources, so those axes must stay within half a
+    turn, where both readings agree. What U and D mean of an arm bent over backwards (B) was not confirmed.
     """
     if moves.configuration is None:
         raise InputError("NO_POSITIONS", _place(moves), "the program has no arm configurations; use `motion: joint`")
+    if any(shoulder != "front" for shoulder, _, _ in moves.configuration):
+        raise InputError(
+            "ARM_BACKWARDS", _place(moves),
+            "Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or"
+            " `motion: joint`",
+        )
     degrees = np.degrees(moves.joints)
     turns = np.sign(degrees) * np.floor((np.abs(degrees) + 180.0 + _TURN_TOLERANCE) / 360.0)
     turns[:, np.array(endless)] = 0.0
@@ -99,14 +106,13 @@ def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
         point, axis = np.argwhere(untold)[0]
         raise InputError(
             "TURN_NUMBER", _place(moves),
-            f"axis {axis + 1} stands at {degrees[point, axis]:.1f} deg and its turn cannot be told reliably in a Cartesian"
-            " position; use `motion: joint`",
+            f"axis {axis + 1} stands at {degrees[point, axis]:.1f} deg and its turn cannot be told reliably in a"
+            " Cartesian position; use `motion: joint`",
         )
     wrists = np.where(moves.joints[:, 4] > 0.0, "F", "N").tolist()
-    return [
-        f"{wrist} {'D' if elbow == 'down' else 'U'} {'B' if shoulder == 'back' else 'T'}, 0, 0, {turn:.0f}"
-        for wrist, (shoulder, elbow, _), turn in zip(wrists, moves.configuration, (turns[:, 5] + 0.0).tolist())
-    ]
+    elbows = ["D" if elbow == "down" else "U" for _, elbow, _ in moves.configuration]
+    last = (turns[:, 5] + 0.0).tolist()
+    return [f"{wrist} {elbow} T, 0, 0, {turn:.0f}" for wrist, elbow, turn in zip(wrists, elbows, last, strict=True)]
 
 
 def _place(moves: Moves) -> str:

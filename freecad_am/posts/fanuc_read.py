@@ -19,7 +19,9 @@ from ..core.program import ReadMoves
 Array = NDArray[np.float64]
 
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
-_MOTION = re.compile(r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:FINE|CNT ?\d+)(?: ?ACC ?\d+)?$")
+_MOTION = re.compile(
+    r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:FINE|CNT ?\d+)(?: ?ACC ?\d+)?$"
+)
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
@@ -31,13 +33,12 @@ _NUMBER = r" *(-?\d*\.\d+) *"
 
 
 def _values(names: str, units: str) -> str:
-    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split()))
+    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split(), strict=True))
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-_POSE = re.compile(
-    _FRAMES + r"CONFIG : '[NF] [UD] [TB], *-?\d, *-?\d, *-?\d',\s*" + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};"
-)
+_CONFIGURATION = r"CONFIG : '[NF] [UD] [TB], *-?\d, *-?\d, *-?\d',\s*"
+_POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
 
 
 @dataclass
@@ -117,6 +118,8 @@ def _listing(file: str, content: bytes) -> _Listing:
     start, positions, end = marks
     instructions = []
     for number, line in enumerate(lines[start + 1 : positions], start + 2):
+        if not line.strip():
+            continue
         statement = _LINE.match(line)
         if statement is None:
             raise _unreadable(f"{file} line {number}", f"{line.strip()!r} is no instruction")
@@ -127,8 +130,9 @@ def _listing(file: str, content: bytes) -> _Listing:
     cartesian = not found
     found = found or _POSE.findall(records)
     if [record[0] for record in found] != starts:
-        bad = next((n for n, record in zip(starts, [*found, ("",)]) if n != record[0]), starts[-1])
-        number = next(n for n, line in enumerate(lines, 1) if n > positions and line.startswith((f"P[{bad}]", f"P[{bad}:")))
+        understood = {record[0] for record in found}
+        bad = next((point for point in starts if point not in understood), starts[-1])
+        number = next(n for n, line in enumerate(lines, 1) if n > positions and re.match(rf"P\[{bad}\b", line))
         raise _unreadable(f"{file} line {number}", f"the record of P[{bad}] is not understood")
     index = {int(record[0]): row for row, record in enumerate(found)}
     if len(index) < len(found):
@@ -188,7 +192,7 @@ def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> N
         raise _unreadable(where, "a position is moved to in another way than it is recorded")
     if (unit == "mm/sec") != (letter == "L"):
         raise _unreadable(where, f"{unit} is not understood here")
-    for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row]):
+    for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row], strict=True):
         if recorded not in ("F", run.frame.get(word)):
             raise _unreadable(where, f"P[{point}] is recorded in another U{word} than the one selected")
     seconds = {"sec": 1.0, "msec": 0.001}.get(unit, np.nan)
