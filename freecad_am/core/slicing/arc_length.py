@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers equally spaced along the wall (Chalvin 2020, section 2.1, variable height)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..geometry.profile import Array, Meridian
+from ..issues import InputError
+
+
+def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
+    """Arc lengths of the beads of each layer, the first at the base, and what is left at the top. mm.
+
+    A wall that is a whole number of layer heights has its last layer on its end. The closing of a top on the axis
+    adds none. Raises InputError 'LAYER_HEIGHT' when the layer height is larger than the wall is long.
+    """
+    if layer_height > meridian.length:
+        raise InputError(
+            "LAYER_HEIGHT", "strategy.layer_height",
+            f"{layer_height:g} mm is more than the wall is long ({meridian.length:.6g} mm); give a smaller one",
+        )
+    steps = int(np.floor(meridian.length / layer_height + 1e-6))
+    s = np.minimum(np.arange(steps + 1) * layer_height, meridian.length)
+    return [s[i : i + 1] for i in range(steps + 1)], max(0.0, meridian.length - steps * layer_height)
