@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Forward kinematics of a serial chain of revolute joints from its joint frames.
+
+Knows nothing of the closed form in `opw`, so that one can check the other. Joint frames are those of
+the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis, q_i), then the flange.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..geometry import frames
+from ..geometry.frames import Array
+
+
+class JointFrames(NamedTuple):
+    """Where the axes of a chain are: unit `directions` (..., axes, 3), a point `origins` (..., axes, 3) on each
+    axis, and the `flange` (..., 4, 4); all in base_link, mm."""
+
+    directions: Array
+    origins: Array
+    flange: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A serial chain. `origins` (axes, 4, 4) the joint frames at zero in the link before, `directions`
+    (axes, 3) unit axes in the joint frames, `flange` (4, 4) in the last link; mm."""
+
+    origins: Array
+    directions: Array
+    flange: Array
+    _links: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # each joint is turned into one about its own Z, which leaves constant poses between the rotations
+        to_axis = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3))
+        before = np.concatenate((np.eye(4)[None], frames.inverse(to_axis)))
+        after = np.concatenate((self.origins @ to_axis, self.flange[None]))
+        object.__setattr__(self, "_links", before @ after)
+        for array in (self.origins, self.directions, self.flange, self._links):
+            array.flags.writeable = False
+
+    @property
+    def axes(self) -> int:
+        """The number of joints."""
+        return len(self.directions)
+
+    def forward(self, q: ArrayLike) -> Array:
+        """The flange poses (..., 4, 4) in base_link for joint angles `q` (..., axes), rad."""
+        return self._run(q).flange
+
+    def frames(self, q: ArrayLike) -> JointFrames:
+        """The axes and the flange in base_link for joint angles `q` (..., axes), rad."""
+        return self._run(q)
+
+    def _run(self, q: ArrayLike) -> JointFrames:
+        angles = np.asarray(q, float)
+        lead = angles.shape[:-1]
+        by_joint = np.ascontiguousarray(np.moveaxis(angles, -1, 0).reshape(self.axes, -1))
+        sines, cosines = np.sin(by_joint), np.cos(by_joint)
+        count = by_joint.shape[1]
+        # one row per column of the rotation, each holding x, y, z of all poses
+        columns = np.repeat(np.eye(3).reshape(9, 1), count, axis=1).reshape(3, 3 * count)
+        directions = np.empty((self.axes, 3, count))
+        origins = np.empty((self.axes, 3, count))
+        position = np.zeros(3 * count)
+        for joint in range(self.axes):
+            columns, position = _advance(columns, position, self._links[joint])
+            directions[joint] = columns[2].reshape(3, count)
+            origins[joint] = position.reshape(3, count)
+            _turn(columns.reshape(3, 3, count), sines[joint], cosines[joint])
+        columns, position = _advance(columns, position, self._links[-1])
+        flange = np.zeros((4, 4, count))
+        flange[:3, :3] = columns.reshape(3, 3, count).transpose(1, 0, 2)
+        flange[:3, 3] = position.reshape(3, count)
+        flange[3, 3] = 1.0
+        return JointFrames(
+            np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
+            np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
+            np.ascontiguousarray(np.moveaxis(flange, -1, 0)).reshape(lead + (4, 4)),
+        )
+
+
+def _advance(columns: Array, position: Array, link: Array) -> tuple[Array, Array]:
+    """The frame (columns (3, 3n), position (3n,)) followed by the constant pose `link`."""
+    moved: Array = link[:3].T @ columns
+    return moved[:3], position + moved[3]
+
+
+def _turn(columns: Array, sine: Array, cosine: Array) -> None:
+    """Turn the frames whose columns (3, 3, n) are given about their own Z, in place."""
+    first = columns[0] * cosine
+    first += columns[1] * sine
+    columns[1] *= cosine
+    columns[1] -= columns[0] * sine
+    columns[0] = first

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Joint limits: of each axis, and of sums of axes that a linkage or a controller couples."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..geometry.frames import Array
+
+ENDLESS_STROKE = 2.0 * math.pi
+
+
+class Smallest(NamedTuple):
+    """The smallest margin of each joint vector, rad, and which limit it is to, as an index into `Limits.labels`."""
+
+    margin: Array
+    label: NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """One set of joint limits, rad, on the serial angles.
+
+    `lower` and `upper` (axes,) are infinite where an axis is endless. Each of the m coupled limits holds
+    `coefficients` (m, axes) @ q between `coupled_lower` and `coupled_upper` (m,); `labels` names the axes first,
+    then the coupled limits.
+    """
+
+    name: str
+    lower: Array
+    upper: Array
+    coefficients: Array
+    coupled_lower: Array
+    coupled_upper: Array
+    labels: tuple[str, ...]
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for array in (self.lower, self.upper, self.coefficients, self.coupled_lower, self.coupled_upper):
+            array.flags.writeable = False
+
+    @property
+    def axes(self) -> int:
+        """The number of axes."""
+        return len(self.lower)
+
+    @property
+    def stroke(self) -> Array:
+        """The strokes upper - lower (axes,), rad. An endless axis counts as one turn, 2 pi: a weight 1/stroke of
+        zero would leave it unpenalised (Chalvin 2020, eq. 17, with the errata)."""
+        width = self.upper - self.lower
+        return np.where(np.isfinite(width), width, ENDLESS_STROKE)
+
+    @property
+    def endless(self) -> NDArray[np.bool_]:
+        """Which axes (axes,) turn without end."""
+        return ~np.isfinite(self.upper - self.lower)
+
+    def margin(self, q: ArrayLike) -> Array:
+        """The distance (..., axes + m) of joint vectors `q` (..., axes) to the nearer end of every limit, rad.
+
+        Negative outside, infinite for an endless axis, NaN where q is.
+        """
+        angles = np.asarray(q, float)
+        result = np.empty(angles.shape[:-1] + (self.axes + len(self.coupled_lower),))
+        np.minimum(angles - self.lower, self.upper - angles, out=result[..., : self.axes])
+        coupled = angles @ self.coefficients.T
+        np.minimum(coupled - self.coupled_lower, self.coupled_upper - coupled, out=result[..., self.axes :])
+        return result
+
+    def smallest(self, q: ArrayLike) -> Smallest:
+        """The smallest margin (...) of each joint vector (..., axes) and which limit it is to; NaN where q is."""
+        margins = self.margin(q)
+        index = np.argmin(margins, axis=-1)
+        return Smallest(np.take_along_axis(margins, index[..., None], axis=-1)[..., 0], index)
+
+    def exceeded(self, q: ArrayLike, tolerance: float = 0.0) -> NDArray[np.bool_]:
+        """Which limits (..., axes + m) the joint vectors (..., axes) exceed by more than `tolerance`, rad."""
+        result: NDArray[np.bool_] = self.margin(q) < -tolerance
+        return result

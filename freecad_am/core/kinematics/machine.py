@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines: their geometry, limits and controller conventions, from data files that prove themselves.
+
+A machine file holds joint vectors with the flange poses they give. They are computed again each time a file is read,
+by the joint frames and by the closed form, and a file that does not give them is refused.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..geometry import frames
+from ..geometry.frames import Array
+from ..issues import InputError
+from .chain import Chain
+from .limits import Limits
+from .machine_file import Node, read
+from .opw import OpwArm
+
+BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
+MAKER = "maker"
+KEYS = (
+    "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "verified",
+    "check_poses",
+)
+# what rounding of the check poses may leave: mm, and entries of a rotation
+POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A machine. Joint angles are serial ones, rad; lengths mm.
+
+    `opw` is None where there is no closed form. `base` (4, 4) is the maker's base frame in base_link, the frame of
+    the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s, infinite where not known.
+    `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
+    C q + c0; `controller_remark` says how well that is known.
+    """
+
+    id: str
+    title: str
+    axes: tuple[str, ...]
+    chain: Chain
+    opw: OpwArm | None
+    base: Array
+    max_speed: Array
+    limit_sets: dict[str, Limits]
+    controller_matrix: Array
+    controller_offset: Array
+    controller_remark: str
+    sources: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+    def limits(self, name: str) -> Limits:
+        """The set of limits of that name; InputError 'UNKNOWN_LIMITS' when there is none."""
+        if name not in self.limit_sets:
+            raise InputError(
+                "UNKNOWN_LIMITS", "cell.limits", f"{self.id} has no limits {name!r}; use {', '.join(self.limit_sets)}"
+            )
+        return self.limit_sets[name]
+
+    def to_controller(self, q: ArrayLike) -> Array:
+        """What the controller shows (..., axes) for serial angles (..., axes), rad."""
+        result: Array = np.asarray(q, float) @ self.controller_matrix.T + self.controller_offset
+        return result
+
+    def from_controller(self, shown: ArrayLike) -> Array:
+        """The serial angles (..., axes) of what the controller shows (..., axes), rad."""
+        back = np.linalg.inv(self.controller_matrix)
+        result: Array = (np.asarray(shown, float) - self.controller_offset) @ back.T
+        return result
+
+
+def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
+    """Id and title of every machine, built in and in the user's `folders`, in order of id."""
+    return [(name, read(path)["title"].text()) for name, path in sorted(_files(folders).items())]
+
+
+def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
+    """The machine of an id or of the path of a machine file. A file of the user's `folders` goes before a built-in one.
+
+    Raises InputError: UNKNOWN_MACHINE when there is none; BAD_MACHINE, naming file, key and value, when the file is
+    wrong or does not give its own check poses.
+    """
+    text = str(name)
+    if text.lower().endswith(".json"):
+        path = Path(text).expanduser()
+        if not path.is_file():
+            raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no machine file {text}")
+        return _parse(read(path))
+    if text.lower().endswith((".urdf", ".xacro")):
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{text}: URDF cannot be read; give a machine file (.json)")
+    files = _files(folders)
+    if text not in files:
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{text!r} is not known; {_near(text, sorted(files))}")
+    machine = _parse(read(files[text]))
+    if machine.id != text:
+        raise InputError("BAD_MACHINE", f"{files[text]}: id", f"{machine.id!r} is not the name of the file, {text!r}")
+    return machine
+
+
+def _files(folders: Sequence[Path | str]) -> dict[str, Path]:
+    found = {path.stem: path for path in BUILT_IN.glob("*.json")}
+    for folder in reversed(folders):
+        found.update((path.stem, path) for path in Path(folder).expanduser().glob("*.json"))
+    return found
+
+
+def _near(name: str, names: list[str]) -> str:
+    import difflib  # only when a name was wrong: starting is most of a small job's time
+
+    near = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
+    return f"did you mean {', '.join(near)}?" if near else f"known are {', '.join(names)}"
+
+
+def _parse(top: Node) -> Machine:
+    top.only(*KEYS)
+    joints = [joint.only("name", "origin", "rpy", "axis", "max_speed") for joint in top["joints"].items()]
+    if not joints:
+        raise top["joints"].bad("there is no joint")
+    count = len(joints)
+    controller = top["controller"].only("matrix", "offset", "remark")
+    machine = Machine(
+        id=top["id"].text(),
+        title=top["title"].text(),
+        axes=tuple(f"q{index + 1}" for index in range(count)),
+        chain=Chain(
+            np.stack([joint.pose() for joint in joints]),
+            np.stack([_unit(joint["axis"]) for joint in joints]),
+            top["flange"].only("origin", "rpy").pose(),
+        ),
+        opw=_opw(top["opw"], count) if top.has("opw") else None,
+        base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
+        max_speed=np.array([math.radians(_speed(joint)) for joint in joints]),
+        limit_sets={name: _limits(name, node, count) for name, node in top["limits"].pairs()},
+        controller_matrix=controller["matrix"].matrix(count, count),
+        controller_offset=np.radians(controller["offset"].numbers(count)),
+        controller_remark=controller["remark"].text(),
+        sources=top["sources"].texts(),
+        remarks=top["remarks"].texts() if top.has("remarks") else (),
+    )
+    if MAKER not in machine.limit_sets:
+        raise top["limits"].bad(f"the set {MAKER!r} is missing")
+    if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
+        raise controller["matrix"].bad("the matrix has no inverse")
+    for array in (machine.base, machine.max_speed, machine.controller_matrix, machine.controller_offset):
+        array.flags.writeable = False
+    _check(machine, top["check_poses"])
+    return machine
+
+
+def _unit(node: Node) -> Array:
+    axis = node.numbers(3)
+    length = float(np.linalg.norm(axis))
+    if abs(length - 1.0) > 1e-6:
+        raise node.bad(f"{node.value} is not a unit vector")
+    return axis / length
+
+
+def _speed(joint: Node) -> float:
+    if not joint.has("max_speed"):
+        return math.inf
+    speed = joint["max_speed"].number()
+    if speed <= 0.0:
+        raise joint["max_speed"].bad(f"{speed:g} deg/s is not a speed; give more than 0, or null where not known")
+    return speed
+
+
+def _opw(node: Node, count: int) -> OpwArm:
+    lengths = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+    node.only(*lengths, "offsets", "signs")
+    if count != 6:
+        raise node.bad(f"the closed form is for six joints, there are {count}")
+    signs = node["signs"].numbers(6)
+    if (np.abs(signs) != 1.0).any():
+        raise node["signs"].bad(f"{node['signs'].value} must be 1 or -1 each")
+    offsets = node["offsets"].numbers(6)
+    if (np.abs(offsets) > 180.0).any() or offsets[4] != 0.0:
+        raise node["offsets"].bad(f"{node['offsets'].value} must lie within +-180, that of axis 5 must be 0")
+    for name in ("c2", "c3"):
+        if node[name].number() <= 0.0:
+            raise node[name].bad(f"{node[name].value} is not the length of an arm; give more than 0 mm")
+    return OpwArm(
+        **{name: node[name].number() for name in lengths},
+        offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs),
+    )
+
+
+def _limits(name: str, node: Node, count: int) -> Limits:
+    node.only("axes", "coupled", "source")
+    spans = np.array([axis.span() for axis in node["axes"].items(count)])
+    coupled = [c.only("label", "coefficients", "range") for c in node["coupled"].items()] if node.has("coupled") else []
+    ranges = np.array([row["range"].span() for row in coupled]).reshape(len(coupled), 2)
+    coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(len(coupled), count)
+    return Limits(
+        name=name, lower=spans[:, 0].copy(), upper=spans[:, 1].copy(), coefficients=coefficients,
+        coupled_lower=ranges[:, 0].copy(), coupled_upper=ranges[:, 1].copy(),
+        labels=tuple(f"q{axis + 1}" for axis in range(count)) + tuple(row["label"].text() for row in coupled),
+        source=node["source"].text(),
+    )
+
+
+def _check(machine: Machine, node: Node) -> None:
+    """Refuse a file whose check poses are not those of its own geometry."""
+    poses = [pose.only("q", "origin", "rotation") for pose in node.items()]
+    if len(poses) < 3:
+        raise node.bad(f"there are {len(poses)}; a machine needs at least 3 joint vectors with their flange poses")
+    q = np.radians([pose["q"].numbers(len(machine.axes)) for pose in poses])
+    if not (q == 0.0).all(axis=1).any():
+        raise node.bad("the pose at all zeros is missing")
+    wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
+    solvers = {"the joint frames": machine.chain.forward}
+    if machine.opw is not None:
+        solvers["opw"] = machine.opw.forward
+    for solver, forward in solvers.items():
+        off = np.abs(forward(q) - wanted)
+        position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
+        wrong = (position > POSITION_TOLERANCE) | (rotation > ROTATION_TOLERANCE)
+        if wrong.any():
+            index = int(np.argmax(wrong))
+            raise poses[index].bad(
+                f"{solver} give{'' if ' ' in solver else 's'} a flange {position[index]:.6g} mm and "
+                f"{rotation[index]:.3g} (largest entry of the rotation) from it; correct the geometry or the pose"
+            )
