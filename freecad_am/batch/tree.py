@@ -47,7 +47,7 @@ class Tree:
 def read(path: str) -> Tree:
     """The file as a `Tree`. Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE."""
     label = os.path.basename(path) or path
-    text = _text(path, label)
+    text = text_of(path, label)
     import yaml
 
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -61,7 +61,7 @@ def read(path: str) -> Tree:
         raise InputError("EMPTY_FILE", label, "the file is empty; a job needs at least part: {file: ...}")
     tree = Tree(label, {})
     if not isinstance(node, yaml.MappingNode):
-        raise InputError("BAD_FILE", label, "a job is a mapping of keys such as part: and strategy:, not a list or text")
+        raise InputError("BAD_FILE", label, "a job is a mapping of keys such as part: and strategy:")
     tree.values = _Reader(yaml, tree).mapping(node, "")
     return tree
 
@@ -69,7 +69,7 @@ def read(path: str) -> Tree:
 def _text(path: str, label: str) -> str:
     try:
         if os.path.getsize(path) > _LARGEST:
-            raise InputError("BAD_FILE", label, "the file is too large to be a job; give the job file, not the part")
+            raise InputError("BAD_FILE", label, "the file is too large; is it the right one?")
         with open(path, "rb") as stream:
             data = stream.read()
     except FileNotFoundError:
@@ -113,11 +113,11 @@ class _Reader:
                     f"the key stands twice (lines {first} and {line}); remove one",
                 )
             self.tree.lines[dotted] = line
-            values[key] = self._value(value_node, dotted)
+            values[key] = self.value(value_node, dotted)
         self.open.pop()
         return values
 
-    def _value(self, node: Any, key: str) -> Any:
+    def value(self, node: Any, key: str) -> Any:
         self.count += 1
         if self.count > _MOST_VALUES:
             raise InputError("BAD_FILE", self.tree.where(key), "there are too many values for a job")
@@ -125,7 +125,7 @@ class _Reader:
             return self.mapping(node, key)
         if isinstance(node, self.yaml.SequenceNode):
             self._enter(node, key)
-            values = [self._value(item, key) for item in node.value]
+            values = [self.value(item, key) for item in node.value]
             self.open.pop()
             return values
         return self._scalar(node, key)

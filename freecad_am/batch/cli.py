@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The headless commands: plan, export, batch, machines.
+
+What a command needs is imported when it runs: starting is most of the time of a small job, and a slip on the
+command line should be told at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Any
+
+DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
+COMMANDS = ("plan", "export", "batch", "machines")
+USAGE = """usage: freecad-am COMMAND
+
+  plan JOB.yaml [-o DIR]                            one job: part to programs; DIR is out/<name> beside the job file
+  export DOC.FCStd [-o DIR] [--object NAME ...]     recompute a saved document and write its programs
+  batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys
+  machines                                          list the machines known
+  demo | test | bench                               see the README
+"""
+
+
+def main(argv: list[str]) -> int:
+    """Run one command; the exit status. Messages go to stderr, what was asked for to stdout."""
+    from freecad_am.batch import console
+
+    with console.Session() as session:
+        try:
+            return _run(argv, session)
+        except KeyboardInterrupt:
+            session.say("interrupted: nothing was written")
+            return INTERRUPTED
+        except BrokenPipeError:
+            return DONE  # nobody reads on, which is for the reader to decide
+        except Exception as error:
+            return _failed(error, session)
+
+
+def _run(argv: list[str], session: Any) -> int:
+    from freecad_am.core.issues import InputError
+
+    if not argv or argv[0] in ("-h", "--help", "help"):
+        session.out(USAGE)
+        return DONE if argv else BAD_INPUT
+    command, words = argv[0], argv[1:]
+    if command not in COMMANDS:
+        import difflib
+
+        near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench"), n=1)
+        hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(COMMANDS)}"
+        raise InputError("USAGE", "command line", f"there is no command {command!r}; {hint}")
+    options = _parser(command).parse_args(words)
+    status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
+    return status
+
+
+def _failed(error: Exception, session: Any) -> int:
+    from freecad_am.core.issues import AmError
+
+    if os.environ.get("FREECAD_AM_DEBUG"):
+        import traceback
+
+        session.say(traceback.format_exc().rstrip())
+    if isinstance(error, AmError):
+        session.say(error.line())
+        return error.exit_status
+    what = " ".join(str(error).split()) or "no message"
+    session.say(f"error[INTERNAL] {type(error).__name__}: {what}; this is our fault, please report it with the job "
+                "(FREECAD_AM_DEBUG=1 shows where)")
+    return OUR_FAULT
+
+
+def _parser(command: str) -> Any:
+    import argparse
+
+    from freecad_am.core.issues import InputError
+
+    class Parser(argparse.ArgumentParser):
+        def error(self, message: str) -> Any:
+            raise InputError("USAGE", f"freecad-am {command}", f"{message}; try freecad-am {command} --help")
+
+    parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False)
+    if command == "machines":
+        return parser
+    parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")
+    if command == "plan":
+        parser.add_argument("job", metavar="JOB.yaml")
+    elif command == "export":
+        parser.add_argument("document", metavar="DOC.FCStd")
+        parser.add_argument("--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label")
+    else:
+        parser.add_argument("table", metavar="TABLE.csv")
+        parser.add_argument("--job", metavar="JOB.yaml", required=True)
+        parser.add_argument("-j", "--jobs", metavar="N", type=_count, default=1, help="rows planned at the same time")
+    return parser
+
+
+def _count(text: str) -> int:
+    import argparse
+
+    if not text.isdecimal() or not 1 <= int(text) <= 256:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes from 1 to 256")
+    return int(text)
+
+
+def _plan(options: Any, session: Any) -> int:
+    from freecad_am.batch import job, run
+
+    read = job.read_job(options.job)
+    result = run.run(read, options.output or run.default_folder(read), session)
+    session.out("".join(f"{path}\n" for path in result.paths))
+    return result.exit_status
+
+
+def _export(options: Any, session: Any) -> int:
+    from freecad_am.batch import export
+
+    paths = export.export(options.document, options.output, tuple(options.object), session)
+    session.out("".join(f"{path}\n" for path in paths))
+    return DONE
+
+
+def _batch(options: Any, session: Any) -> int:
+    from freecad_am.batch import rows
+
+    return rows.run(options.table, options.job, options.output, options.jobs, session)
+
+
+def _machines(_options: Any, session: Any) -> int:
+    from freecad_am.batch import machines
+
+    session.out(machines.listing())
+    return DONE
+
+
+if __name__ == "__main__":
+    status = main(sys.argv[1:])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)  # FreeCAD takes its time to tear down what the end of the process frees anyway

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a command says and where: stdout for what was asked for, stderr for messages, progress on a terminal only."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from typing import Any, Iterable
+
+from freecad_am.core.issues import ERROR, Issue
+
+_MOST_ISSUES = 12  # told on stderr; the report has them all
+
+
+class Session:
+    """The console of one command. Between `__enter__` and `__exit__` the libraries underneath cannot write to it.
+
+    FreeCAD and OpenCASCADE write to the file descriptors 1 and 2, which would mix with what the user asked for.
+    """
+
+    def __init__(self) -> None:
+        self._interrupted = False
+        self._progress = ""
+
+    def __enter__(self) -> Session:
+        self._handle(signal.SIGINT)
+        self._handle(signal.SIGTERM)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self._saved = (os.dup(1), os.dup(2))
+        self._tty = os.isatty(2)
+        if not os.environ.get("FREECAD_AM_DEBUG"):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, 1)
+            os.dup2(nowhere, 2)
+            os.close(nowhere)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._clear()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        for number, saved in zip((1, 2), self._saved):
+            os.dup2(saved, number)
+            os.close(saved)
+
+    def out(self, text: str) -> None:
+        """Write to stdout."""
+        self._clear()
+        _write(self._saved[0], text)
+
+    def say(self, line: str) -> None:
+        """Write a line to stderr."""
+        self._clear()
+        _write(self._saved[1], line + "\n")
+
+    def issues(self, found: Iterable[Issue]) -> None:
+        """Tell findings, errors first, on stderr; of many only some."""
+        ordered = sorted(found, key=lambda issue: issue.level != ERROR)
+        for issue in ordered[:_MOST_ISSUES]:
+            self.say(f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}")
+        if len(ordered) > _MOST_ISSUES:
+            self.say(f"note[MORE] job: {len(ordered) - _MOST_ISSUES} more findings stand in report.json")
+
+    def progress(self, text: str) -> None:
+        """Show what is being done, on a terminal only; ends the command where Ctrl-C was pressed since."""
+        self.check()
+        if self._tty:
+            self._clear()
+            _write(self._saved[1], text)
+            self._progress = text
+
+    def check(self) -> None:
+        """Raise KeyboardInterrupt where Ctrl-C was pressed while FreeCAD was working, which swallows it."""
+        if self._interrupted:
+            raise KeyboardInterrupt
+
+    def _clear(self) -> None:
+        if self._progress:
+            _write(self._saved[1], "\r\x1b[K")
+            self._progress = ""
+
+    def _handle(self, number: int) -> None:
+        # set also where the shell that started us in the background had it ignored
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(number, self._interrupt)
+
+    def _interrupt(self, *_: Any) -> None:
+        self._interrupted = True
+        raise KeyboardInterrupt
+
+
+def _write(descriptor: int, text: str) -> None:
+    data = text.encode("utf-8", "replace")
+    while data:
+        data = data[os.write(descriptor, data):]

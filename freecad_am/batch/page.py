@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""report.html: the report to look at, one file without scripts or links."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+from typing import Any, Iterable
+
+from freecad_am.core.kinematics.limits import Limits
+from freecad_am.core.motion import Motion
+from freecad_am.core.toolpath import Array, Toolpath
+
+from . import figures, view
+
+_MOST_ISSUES = 200
+_STYLE = """
+:root{--ink:#1d2430;--soft:#667085;--line:#dfe3ea;--paper:#fff;--ground:#f3f5f8;--good:#1a7f4b;--bad:#b8322a;--warn:#9a6700}
+@media(prefers-color-scheme:dark){:root{--ink:#e6e9ef;--soft:#98a2b3;--line:#323a47;--paper:#1a202b;--ground:#11151c;
+--good:#4cc38a;--bad:#ff7a70;--warn:#e2b340}}
+*{box-sizing:border-box}body{margin:0;background:var(--ground);color:var(--ink);font:15px/1.5 system-ui,sans-serif}
+main{max-width:1040px;margin:0 auto;padding:28px 20px 60px}h1{font-size:28px;margin:0}h2{font-size:18px;margin:34px 0 10px}
+header{display:flex;align-items:center;gap:14px;flex-wrap:wrap}.sub{color:var(--soft);margin:4px 0 18px}
+.status{font-weight:600;padding:2px 12px;border-radius:99px;color:#fff;background:var(--good)}
+.status.infeasible,.status.failed{background:var(--bad)}@media(prefers-color-scheme:dark){.status{color:#11151c}}
+.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(145px,1fr));gap:10px;margin:0 0 16px}
+.card,figure,.table{background:var(--paper);border:1px solid var(--line);border-radius:10px}
+.card{padding:10px 14px}.card b{display:block;font-size:20px;font-weight:600}.card span{color:var(--soft);font-size:13px}
+figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(400px,1fr));gap:10px}
+figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}.table{overflow-x:auto}
+table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
+th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
+tr:first-child>*{border-top:0}th{color:var(--soft);font-weight:500}th:first-child,td:first-child{text-align:left}
+td.text{text-align:left;white-space:normal}.error{color:var(--bad);font-weight:600}.warning{color:var(--warn);font-weight:600}
+svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px system-ui,sans-serif}
+svg .title{fill:var(--ink);font-size:13px;font-weight:600}svg .grid{stroke:var(--line)}svg .frame{fill:none;stroke:var(--soft);opacity:.5}
+svg .curve{fill:none;stroke-linejoin:round}svg .forbidden{fill:var(--bad);opacity:.13}svg .limit{stroke:var(--bad);stroke-dasharray:5 4}
+svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
+svg .far{stroke-width:1.3;opacity:.75}svg .direction{stroke:var(--ink);stroke-width:1;opacity:.45}
+svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-side{fill:var(--soft);opacity:.55}
+"""
+
+
+@dataclass(frozen=True)
+class Content:
+    """What the page shows besides the report itself; the fields of joints are None without a cell."""
+
+    report: dict[str, Any]
+    toolpath: Toolpath
+    motion: Motion
+    spacing: tuple[Array, ...]
+    platform_diameter: float | None = None
+    limits: Limits | None = None
+    speed_ratio: Array | None = None
+    condition: Array | None = None
+    threshold: Array | None = None
+
+
+def render(content: Content) -> str:
+    """The page."""
+    report = content.report
+    name, status = escape(report["name"]), report["status"]
+    sections = [
+        f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
+        f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"])}',
+        f'<figure>{view.picture(content.toolpath, content.platform_diameter)}<figcaption>The beads, coloured by layer; '
+        "short strokes show the build direction.</figcaption></figure>",
+        *_joints(content),
+        _process(content),
+        _comparison(report),
+        _pairs("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
+        _programs(report["programs"]),
+    ]
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{_STYLE}</style></head>'
+        f'<body><main>{"".join(sections)}</main></body></html>\n'
+    )
+
+
+def _subtitle(content: Content) -> str:
+    joints = content.report["joints"]
+    if joints is None:
+        return "toolpath only: the job names no cell"
+    return f"{content.report['machine']['title']}, limits {content.report['machine']['limits']}, joints {joints['method']}"
+
+
+def _cards(report: dict[str, Any]) -> str:
+    counts, spacing = report["counts"], report["spacing_mm"]
+    cards = [
+        (f"{counts['layers']:,}", "layers"), (f"{counts['beads']:,}", "beads"), (f"{counts['points']:,}", "points"),
+        (f"{report['length_mm'] / 1000:.3f} m", "length of the beads"), (_clock(report["duration_s"]), "time of all moves"),
+    ]
+    if spacing["mean"] is not None:
+        cards.append((f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}"))
+    if report["joints"] is not None:
+        cards.append((_figure(report["joints"]["condition_min"]), "smallest condition"))
+    boxes = "".join(f'<div class="card"><b>{escape(value)}</b><span>{escape(word)}</span></div>' for value, word in cards)
+    return f'<div class="cards">{boxes}</div>'
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s"
+
+
+def _joints(content: Content) -> list[str]:
+    if content.limits is None or content.speed_ratio is None:
+        return []
+    plots = "".join(f"<figure>{plot}</figure>" for plot in figures.joint_plots(content.motion, content.limits))
+    names = content.limits.labels[: content.limits.axes]
+    sections = [f'<h2>Joints against their limits</h2><div class="grid">{plots}</div>', _joint_table(content)]
+    if content.motion.reachable.any():
+        sections.append(f"<h2>Speed and condition</h2><figure>{figures.speed_plot(content.motion, content.speed_ratio, names)}</figure>")
+    if content.condition is not None and content.threshold is not None:
+        plot = figures.condition_plot(content.motion, content.condition, content.threshold)
+        sections.append(f'<figure style="margin-top:10px">{plot}</figure>')
+    return sections
+
+
+def _joint_table(content: Content) -> str:
+    joints, axes = content.report["joints"], content.report["machine"]["axes"]
+    rows = [("", axes)] + [
+        (word, [_figure(value) for value in joints[key]]) for key, word in (
+            ("min_deg", "smallest, deg"), ("max_deg", "largest, deg"),
+            ("range_per_layer_max_deg", "largest range within a layer, deg"), ("limit_margin_deg", "margin to the limit, deg"),
+            ("speed_ratio_max", "largest share of the speed limit"),
+        )
+    ]
+    return _table(rows)
+
+
+def _process(content: Content) -> str:
+    plots = [figures.travel_plot(content.motion)]
+    if content.spacing:
+        plots.insert(0, figures.spacing_plot(content.spacing, content.toolpath.layer_height))
+    return f'<h2>Layers and path</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
+
+
+def _comparison(report: dict[str, Any]) -> str:
+    entries = report["comparison"]
+    if not entries:
+        return ""
+    keys = list(dict.fromkeys(key for entry in entries for key in entry))
+    rows = [(key.replace("_", " "), [_figure(entry.get(key)) for entry in entries]) for key in keys]
+    return f"<h2>Comparison of the methods</h2>{_table(rows)}"
+
+
+def _issues(issues: list[dict[str, Any]]) -> str:
+    if not issues:
+        return ""
+    rows = []
+    for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
+        place = " ".join(f"{word} {issue[word]}" for word in ("layer", "bead", "point") if issue[word] is not None)
+        rows.append(
+            f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
+            f'<td class="text">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
+        )
+    more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
+    return f'<h2>Findings</h2><div class="table"><table>{"".join(rows)}</table></div>{more}<h2>Path</h2>'
+
+
+def _programs(programs: list[str]) -> str:
+    return _pairs("Programs", {str(number): name for number, name in enumerate(programs, 1)}) if programs else ""
+
+
+def _pairs(title: str, values: dict[str, str]) -> str:
+    return f"<h2>{title}</h2>{_table([(word, [value]) for word, value in values.items()])}"
+
+
+def _table(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
+    lines = "".join(
+        f"<tr><td>{escape(word)}</td>{''.join(f'<td>{escape(str(value))}</td>' for value in values)}</tr>"
+        for word, values in rows
+    )
+    return f'<div class="table" style="margin-top:10px"><table>{lines}</table></div>'
+
+
+def _figure(value: Any) -> str:
+    if value is None:
+        return "\u2013"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}" if abs(value) >= 1e-3 or value == 0.0 else f"{value:.1e}"
+    if isinstance(value, (list, tuple)):
+        return "  ".join(_figure(entry) for entry in value)
+    return str(value)

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Drawing for the report: axes, curves, bars and colours as inline SVG; numbers in, text out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from html import escape
+
+import numpy as np
+
+from freecad_am.core.toolpath import Array
+
+# anchors of a perceptually even scale from dark blue over green to yellow
+_SCALE = np.array([
+    (68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142),
+    (31, 158, 137), (53, 183, 121), (109, 205, 89), (180, 222, 44), (253, 231, 37),
+], dtype=float)
+_MOST_COLUMNS = 700
+
+
+def colour(share: float) -> str:
+    """A colour of the scale at 0 to 1, as #rrggbb."""
+    at = min(max(share, 0.0), 1.0) * (len(_SCALE) - 1)
+    low = min(int(at), len(_SCALE) - 2)
+    red, green, blue = (_SCALE[low] + (at - low) * (_SCALE[low + 1] - _SCALE[low])).round().astype(int)
+    return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def path_data(x: Array, y: Array, decimals: int = 1) -> str:
+    """The `d` of a path through points; a NaN lifts the pen."""
+    pieces, pen = [], "M"
+    for px, py in zip(np.round(x, decimals).tolist(), np.round(y, decimals).tolist()):
+        if math.isnan(px) or math.isnan(py):
+            pen = "M"
+            continue
+        pieces.append(f"{pen}{px:g} {py:g}")
+        pen = "L"
+    return "".join(pieces)
+
+
+def thinned(x: Array, y: Array) -> tuple[Array, Array]:
+    """A curve with fewer points that looks the same: least and largest value of each column of the picture."""
+    if len(x) <= 4 * _MOST_COLUMNS:
+        return x, y
+    keep: list[int] = []
+    for part in np.array_split(np.arange(len(x)), _MOST_COLUMNS):
+        finite = part[np.isfinite(y[part])]
+        if len(finite) == 0:
+            keep.append(int(part[0]))
+            continue
+        keep += sorted({int(part[0]), int(finite[y[finite].argmin()]), int(finite[y[finite].argmax()])})
+    return x[keep], y[keep]
+
+
+def ticks(low: float, high: float, most: int = 6) -> list[float]:
+    """Round numbers inside low..high, at most about `most`."""
+    if not high > low:
+        return [low]
+    raw = (high - low) / most
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(power * factor for factor in (1, 2, 2.5, 5, 10) if power * factor >= raw * 0.999)
+    return [0.0 if abs(k * step) < step * 1e-9 else k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
+
+
+@dataclass
+class Plot:
+    """A frame with scales; draw into it in its own units, then take `text()`."""
+
+    title: str
+    x: tuple[float, float]
+    y: tuple[float, float]
+    x_label: str = ""
+    y_label: str = ""
+    width: int = 460
+    height: int = 230
+    parts: list[str] = field(default_factory=list)
+
+    left, right, top, bottom = 58, 14, 30, 38
+
+    def to_x(self, values: Array) -> Array:
+        """Picture coordinates of values on the x axis."""
+        low, high = self.x
+        share: Array = (np.asarray(values, dtype=float) - low) / ((high - low) or 1.0)
+        return self.left + share * (self.width - self.left - self.right)
+
+    def to_y(self, values: Array) -> Array:
+        """Picture coordinates of values on the y axis."""
+        low, high = self.y
+        share: Array = (np.asarray(values, dtype=float) - low) / ((high - low) or 1.0)
+        return self.height - self.bottom - share * (self.height - self.top - self.bottom)
+
+    def curve(self, x: Array, y: Array, stroke: str, name: str = "", wide: float = 1.6) -> None:
+        """A line through points."""
+        px, py = thinned(np.asarray(x, float), np.asarray(y, float))
+        title = f"<title>{escape(name)}</title>" if name else ""
+        self.parts.append(
+            f'<path class="curve" stroke="{stroke}" stroke-width="{wide}" d="{path_data(self.to_x(px), self.to_y(py))}">'
+            f"{title}</path>"
+        )
+
+    def band(self, low: float, high: float, name: str) -> None:
+        """A forbidden strip across the plot."""
+        top, bottom = (float(v) for v in self.to_y(np.array([min(high, self.y[1]), max(low, self.y[0])])))
+        if bottom > top:
+            inner = self.width - self.left - self.right
+            self.parts.append(
+                f'<rect class="forbidden" x="{self.left}" y="{top:.1f}" width="{inner}" height="{bottom - top:.1f}">'
+                f"<title>{escape(name)}</title></rect>"
+            )
+
+    def rule(self, y: float, name: str, kind: str = "limit") -> None:
+        """A horizontal line with a name at its right end."""
+        if self.y[0] <= y <= self.y[1]:
+            at = float(self.to_y(np.array([y]))[0])
+            self.parts.append(f'<line class="{kind}" x1="{self.left}" x2="{self.width - self.right}" y1="{at:.1f}" y2="{at:.1f}"/>')
+            self.parts.append(
+                f'<text class="rule" x="{self.width - self.right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>'
+            )
+
+    def bars(self, edges: Array, heights: Array) -> None:
+        """A histogram."""
+        at, zero = self.to_x(edges), float(self.to_y(np.array([0.0]))[0])
+        for i, top in enumerate(self.to_y(heights).tolist()):
+            if heights[i] > 0:
+                self.parts.append(
+                    f'<rect class="bar" x="{at[i] + 0.5:.1f}" y="{top:.1f}" width="{max(at[i + 1] - at[i] - 1.0, 0.8):.1f}" '
+                    f'height="{zero - top:.1f}"><title>{edges[i]:.4g} to {edges[i + 1]:.4g}: {heights[i]:.4g} %</title></rect>'
+                )
+
+    def legend(self, names: list[tuple[str, str]]) -> None:
+        """Names of curves with their colours, in the top right corner."""
+        at = self.width - self.right
+        for name, stroke in reversed(names):
+            at -= 9 + 6.2 * len(name)
+            self.parts.append(f'<text class="key" x="{at + 8:.1f}" y="19">{escape(name)}</text>')
+            self.parts.append(f'<circle cx="{at + 2:.1f}" cy="15" r="3.5" fill="{stroke}"/>')
+            at -= 8
+
+    def text(self) -> str:
+        """The picture."""
+        return (
+            f'<svg class="plot" viewBox="0 0 {self.width} {self.height}" role="img" aria-label="{escape(self.title)}">'
+            f'<text class="title" x="{self.left}" y="19">{escape(self.title)}</text>{self._grid()}{"".join(self.parts)}'
+            f'<rect class="frame" x="{self.left}" y="{self.top}" width="{self.width - self.left - self.right}" '
+            f'height="{self.height - self.top - self.bottom}"/></svg>'
+        )
+
+    def _grid(self) -> str:
+        parts = []
+        down, up = self.height - self.bottom, self.top
+        for value in ticks(*self.x):
+            at = float(self.to_x(np.array([value]))[0])
+            parts.append(f'<line class="grid" x1="{at:.1f}" x2="{at:.1f}" y1="{up}" y2="{down}"/>')
+            parts.append(f'<text class="tick" x="{at:.1f}" y="{down + 14}" text-anchor="middle">{value:g}</text>')
+        for value in ticks(*self.y, most=5):
+            at = float(self.to_y(np.array([value]))[0])
+            parts.append(f'<line class="grid" x1="{self.left}" x2="{self.width - self.right}" y1="{at:.1f}" y2="{at:.1f}"/>')
+            parts.append(f'<text class="tick" x="{self.left - 6}" y="{at + 3.5:.1f}" text-anchor="end">{value:g}</text>')
+        middle = (self.left + self.width - self.right) / 2
+        parts.append(f'<text class="label" x="{middle}" y="{self.height - 6}" text-anchor="middle">{escape(self.x_label)}</text>')
+        centre = (up + down) / 2
+        parts.append(
+            f'<text class="label" transform="translate(13 {centre}) rotate(-90)" text-anchor="middle">{escape(self.y_label)}</text>'
+        )
+        return "".join(parts)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The table of a batch: one row, one job. Columns are dotted job keys; an empty cell keeps the job's own value."""
+
+from __future__ import annotations
+
+import copy
+import csv
+import io
+import os
+from dataclasses import dataclass
+from typing import Any
+
+from freecad_am.core.issues import InputError
+
+from . import job, tree
+
+SETTING = "part.set."
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row: its number (from 1), the cells by column, the job or why there is none, and its folder's name."""
+
+    number: int
+    cells: dict[str, str]
+    folder: str
+    job: job.Job | None
+    error: InputError | None
+
+
+def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
+    """Columns and rows. Raises InputError for a table or job file that cannot be read at all."""
+    label = os.path.basename(table)
+    base = tree.read(job_path)
+    columns, cells = _cells(tree.text_of(table, label), label)
+    folders = _folders(columns, cells)
+    return columns, [_row(n, columns, row, folder, base, job_path, label)
+                     for n, (row, folder) in enumerate(zip(cells, folders), 1)]
+
+
+def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
+    try:
+        lines = [[cell.strip() for cell in line] for line in csv.reader(io.StringIO(text, newline=""), strict=True)]
+    except csv.Error as error:
+        raise InputError("BAD_FILE", label, f"this is not a table: {error}; separate cells by commas") from None
+    lines = [line for line in lines if any(line)]
+    if len(lines) < 2:
+        raise InputError("EMPTY_FILE", label, "there are no rows; give a line of job keys and a line per job below it")
+    columns = lines[0]
+    for column in columns:
+        if not column or columns.count(column) > 1:
+            raise InputError("BAD_FILE", label, f"the column {column!r} is empty or stands twice; name each one once")
+        if ";" in column or "\t" in column:
+            raise InputError("BAD_FILE", label, "cells are not separated by commas; save the table with commas")
+        if column.split(".")[0] not in job.SECTIONS:
+            raise InputError("UNKNOWN_KEY", f"{label}: {column}", "there is no such key; use job keys such as strategy.layer_height")
+    for number, line in enumerate(lines[1:], 1):
+        if len(line) != len(columns):
+            raise InputError("BAD_FILE", f"{label} row {number}", f"{len(line)} cells for {len(columns)} columns; quote cells with commas")
+    return columns, lines[1:]
+
+
+def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
+    """The rows' names where they have different ones that can name a folder, else their numbers."""
+    width = max(3, len(str(len(cells))))
+    numbers = [f"row-{number:0{width}d}" for number in range(1, len(cells) + 1)]
+    names = [row[columns.index("name")] for row in cells] if "name" in columns else []
+    usable = len({name.lower() for name in names}) == len(cells) and all(
+        name and "/" not in name and "\\" not in name and name[0] != "." for name in names
+    )
+    return names if usable else numbers
+
+
+def _row(number: int, columns: list[str], cells: list[str], folder: str, base: tree.Tree, path: str, label: str) -> Row:
+    changed = tree.Tree(f"{label} row {number}", copy.deepcopy(base.values))
+    try:
+        for column, cell in zip(columns, cells):
+            if cell:
+                _put(changed.values, column, tree.scalar(cell, changed.where(column)), changed)
+        return Row(number, dict(zip(columns, cells)), folder, job.from_tree(changed, path), None)
+    except InputError as error:
+        return Row(number, dict(zip(columns, cells)), folder, None, error)
+
+
+def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) -> None:
+    keys = column.split(".")
+    if column.startswith(SETTING):
+        name, _, key = column[len(SETTING):].rpartition(".")  # a Label may have dots, a property has none
+        if not name:
+            raise InputError("UNKNOWN_KEY", changed.where(column), "write part.set.<object>.<property>")
+        keys = ["part", "set", name, key]
+    for key in keys[:-1]:
+        if not isinstance(values.get(key), dict):
+            values[key] = {}
+        values = values[key]
+    values[keys[-1]] = value

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The picture of the toolpath: beads seen obliquely from above, coloured by layer, on their platform."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from freecad_am.core.toolpath import Array, Toolpath
+
+from . import svg
+
+WIDTH, HEIGHT, MARGIN = 960, 620, 34
+_AZIMUTH, _ELEVATION = math.radians(-62.0), math.radians(24.0)
+_MOST_POINTS = 60_000
+_TICKS = 260  # build directions shown
+
+
+def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
+    """The inline SVG of a toolpath; the axis of the feature stands upright."""
+    inverse = np.linalg.inv(toolpath.frame)
+    beads = [(layer, bead.points @ inverse[:3, :3].T + inverse[:3, 3], bead.build @ inverse[:3, :3].T)
+             for layer, _, bead in toolpath]
+    platform = _disc(platform_diameter)
+    length = 0.07 * float(np.ptp(np.concatenate([points for _, points, _ in beads]), axis=0).max())
+    tips = np.concatenate([points + length * build for _, points, build in beads])
+    scale, shift = _fit(np.concatenate((_seen(tips), _seen(platform)[:, :])))
+    parts = [_platform(platform, scale, shift)]
+    step = max(1, toolpath.point_count // _MOST_POINTS)
+    last = max(1, len(toolpath.layers) - 1)
+    every = max(1, toolpath.point_count // _TICKS)
+    # what lies farther away is drawn first; the far half of each layer lies behind the near half of all others
+    far = [_half(points, step, scale, shift, svg.colour(layer / last), near=False) for layer, points, _ in beads]
+    near = [_half(points, step, scale, shift, svg.colour(layer / last), near=True) for layer, points, _ in beads]
+    parts += [*far, *near, _directions(beads, every, length, scale, shift), _scale_bar(last)]
+    return (
+        f'<svg class="view" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="the path, coloured by layer">'
+        f'{"".join(parts)}</svg>'
+    )
+
+
+def _seen(points: Array) -> Array:
+    """(n, 3) right, down and depth towards the eye, of points with Z upright."""
+    x, y, z = points.T
+    right = -x * math.sin(_AZIMUTH) + y * math.cos(_AZIMUTH)
+    towards = x * math.cos(_AZIMUTH) + y * math.sin(_AZIMUTH)
+    up = z * math.cos(_ELEVATION) - towards * math.sin(_ELEVATION)
+    return np.column_stack((right, -up, towards * math.cos(_ELEVATION) + z * math.sin(_ELEVATION)))
+
+
+def _fit(seen: Array) -> tuple[float, Array]:
+    low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
+    room = np.array([WIDTH - 2 * MARGIN - 70, HEIGHT - 2 * MARGIN], dtype=float)
+    scale = float((room / np.maximum(high - low, 1e-9)).min())
+    return scale, np.array([MARGIN, MARGIN]) + (room - scale * (high - low)) / 2 - scale * low
+
+
+def _disc(diameter: float | None) -> Array:
+    angle = np.linspace(0.0, 2.0 * math.pi, 97)
+    radius = 0.5 * (diameter or 0.0)
+    return np.column_stack((radius * np.cos(angle), radius * np.sin(angle), np.zeros_like(angle)))
+
+
+def _platform(disc: Array, scale: float, shift: Array) -> str:
+    if not disc.any():
+        return ""
+    at = _seen(disc)[:, :2] * scale + shift
+    below = _seen(disc - [0.0, 0.0, 0.035 * float(np.ptp(disc[:, 0]))])[:, :2] * scale + shift
+    return (
+        f'<path class="platform-side" d="{svg.path_data(*below.T)}Z"/><path class="platform" d="{svg.path_data(*at.T)}Z"/>'
+    )
+
+
+def _half(points: Array, step: int, scale: float, shift: Array, stroke: str, near: bool) -> str:
+    """The part of a bead on the near or the far side of the feature's axis."""
+    kept = points if step == 1 else points[np.unique(np.r_[0 : len(points) : step, len(points) - 1])]
+    seen = _seen(kept)
+    towards = kept[:, 0] * math.cos(_AZIMUTH) + kept[:, 1] * math.sin(_AZIMUTH)
+    mine = towards >= 0.0 if near else towards <= 0.0
+    mine |= np.roll(mine, 1) & np.r_[False, np.ones(len(mine) - 1, dtype=bool)]  # joins the halves
+    at = np.where(mine[:, None], seen[:, :2] * scale + shift, np.nan)
+    data = svg.path_data(*at.T)
+    return f'<path class="{"near" if near else "far"}" stroke="{stroke}" d="{data}"/>' if data else ""
+
+
+def _directions(beads: list[tuple[int, Array, Array]], every: int, length: float, scale: float, shift: Array) -> str:
+    points = np.concatenate([points for _, points, _ in beads])[::every]
+    build = np.concatenate([build for _, _, build in beads])[::every]
+    facing = points[:, 0] * math.cos(_AZIMUTH) + points[:, 1] * math.sin(_AZIMUTH) >= 0.0
+    start = _seen(points[facing])[:, :2] * scale + shift
+    end = _seen((points + length * build)[facing])[:, :2] * scale + shift
+    data = "".join(
+        f"M{a:.1f} {b:.1f}L{c:.1f} {d:.1f}" for (a, b), (c, d) in zip(start.tolist(), end.tolist())
+    )
+    return f'<path class="direction" d="{data}"><title>build directions</title></path>'
+
+
+def _scale_bar(last: int) -> str:
+    x, top, height = WIDTH - MARGIN - 16, 120, HEIGHT - 240
+    stops = "".join(f'<stop offset="{i * 10}%" stop-color="{svg.colour(1 - i / 10)}"/>' for i in range(11))
+    return (
+        f'<defs><linearGradient id="layers" x1="0" y1="0" x2="0" y2="1">{stops}</linearGradient></defs>'
+        f'<rect x="{x}" y="{top}" width="14" height="{height}" rx="3" fill="url(#layers)"/>'
+        f'<text class="tick" x="{x - 6}" y="{top + 10}" text-anchor="end">{last}</text>'
+        f'<text class="tick" x="{x - 6}" y="{top + height}" text-anchor="end">0</text>'
+        f'<text class="label" x="{x + 14}" y="{top - 10}" text-anchor="end">layer</text>'
+    )
