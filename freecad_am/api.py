@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The macro interface: every stage as a function on document objects.
+
+    import FreeCAD as App
+    import freecad_am.api as am
+
+    doc = App.newDocument()
+    part = am.open_part(doc, "hemisphere.step")
+    cell = am.make_cell(doc, limits="paper")
+    feature = am.make_feature(doc, part, layer_height=1)
+    toolpath = am.make_toolpath(doc, feature, cell)
+    joint_path = am.make_joint_path(doc, toolpath, cell)
+    program = am.make_program(doc, joint_path, name="hemisphere")
+    am.export(program, "out")
+
+Parameters are the keys of the job file with `_` for nested keys (`nozzle_half_angle`, `seam_step`): numbers are mm,
+deg, mm/s and s, texts are quantities such as "360 mm/min", poses are six numbers x y z RX RY RZ. Each function is one
+step of undo. Errors are `core.issues.InputError` and `InfeasibleError`; a function that raises leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import FreeCAD as App
+
+from .core.issues import AmError, InputError, Issue
+from .core.parameters.build_direction import BuildDirectionParameters
+from .core.parameters.cell import CellParameters
+from .core.parameters.joints import JointParameters
+from .core.parameters.process import ProcessParameters
+from .core.parameters.program import ProgramParameters
+from .core.parameters.strategy import RevolutionParameters
+from .objects import stage as stages
+from .objects.cell import Cell
+from .objects.feature import RevolutionFeature
+from .objects.joint_path import JointPath
+from .objects.program import Program, files_of
+from .objects.settings import given
+from .objects.toolpath import Toolpath
+
+__all__ = (
+    "change", "export", "issues", "make_all", "make_cell", "make_feature", "make_joint_path", "make_program",
+    "make_toolpath", "open_part", "recompute", "result", "stages_of",
+)
+
+
+def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any) -> Any:
+    """A cell: machine, set-up, platform and nozzle. `am.make_cell(doc, machine="kuka-kr16-2", nozzle_length=80)`"""
+    return _make(doc, Cell, "Cell", label, {}, [parameters], values)
+
+
+def make_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), label: str = "Feature", *, axis: Any = None,
+    strategy: RevolutionParameters | None = None, build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
+) -> Any:
+    """A feature of revolution of an object with a shape, or of some of its faces.
+
+    `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
+    """
+    links = {"Source": (source, list(faces)), "Axis": axis}
+    return _make(doc, RevolutionFeature, "Feature", label, links, [strategy, build_direction], values)
+
+
+def make_toolpath(
+    doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, process: ProcessParameters | None = None,
+    **values: Any,
+) -> Any:
+    """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`"""
+    return _make(doc, Toolpath, "Toolpath", label, {"Feature": feature, "Cell": cell}, [process], values)
+
+
+def make_joint_path(
+    doc: Any, toolpath: Any, cell: Any, label: str = "Joint path", *, joints: JointParameters | None = None,
+    **values: Any,
+) -> Any:
+    """Joint values of a toolpath in a cell. `am.make_joint_path(doc, doc.Toolpath, doc.Cell, method="constant")`
+
+    A sound job that cannot be carried out makes an object with the status 'infeasible' and its issues.
+    """
+    return _make(doc, JointPath, "JointPath", label, {"Toolpath": toolpath, "Cell": cell}, [joints], values)
+
+
+def make_program(
+    doc: Any, joint_path: Any, label: str = "Program", *, name: str = "", program: ProgramParameters | None = None,
+    **values: Any,
+) -> Any:
+    """The controller's files of a joint path, read back and checked: `am.make_program(doc, joint_path)`"""
+    links = {"JointPath": joint_path, "ProgramName": name or label}
+    return _make(doc, Program, "Program", label, links, [program], values)
+
+
+def make_all(doc: Any, source: Any, faces: Sequence[str] = (), *, name: str = "") -> tuple[Any, ...]:
+    """All stages of a part at their defaults, in one step: (cell, feature, toolpath, joint path[, program]).
+
+    There is no program when the joint path is infeasible. `am.make_all(doc, doc.Revolve)`
+    """
+    with _one_step(doc, "New job"):
+        cell = make_cell(doc)
+        feature = make_feature(doc, source, faces)
+        toolpath = make_toolpath(doc, feature, cell)
+        joint_path = make_joint_path(doc, toolpath, cell)
+        made = (cell, feature, toolpath, joint_path)
+        if joint_path.Status != "up to date":
+            return made
+        return (*made, make_program(doc, joint_path, name=name or source.Label))
+
+
+def change(obj: Any, **values: Any) -> Any:
+    """Change parameters of a stage (or its ProgramName, as `name`), and renew it and what follows; the object.
+
+    `am.change(doc.Feature, layer_height=2)`. An error of what follows is told in its own Status.
+    """
+    proxy = _stage(obj)
+    with _one_step(obj.Document, f"Edit {obj.Label}"):
+        if "name" in values and isinstance(proxy, Program):
+            obj.ProgramName = values.pop("name")
+        given(obj, proxy, [], values)
+        _renew(obj)
+        for follower in _in_order(obj.InListRecursive):
+            with contextlib.suppress(AmError):
+                _renew(follower)
+    return obj
+
+
+def recompute(target: Any, force: bool = False) -> None:
+    """Renew a document, or a stage and its inputs, shapes and expressions too. Raises the first error met, at the end.
+
+    force: compute even what fits its inputs. `am.recompute(doc)`
+    """
+    document = target if hasattr(target, "Objects") else target.Document
+    with _one_step(document, "Recompute"):
+        with stages.deferred():
+            document.recompute()
+        wanted = document.Objects if document is target else [target, *target.OutListRecursive]
+        errors = []
+        for obj in _in_order(wanted):
+            try:
+                _renew(obj, force)
+            except AmError as error:
+                errors.append(error)
+    if errors:
+        raise errors[0]
+
+
+def result(obj: Any) -> Any:
+    """What the core made: CellParameters, RevolvedWall, Toolpath, Planned (joint path and motion), Written (files).
+
+    `am.result(doc.Toolpath).layers[0].beads[0].points`; read from the document, nothing is computed.
+    """
+    return _stage(obj).value(obj)
+
+
+def issues(obj: Any) -> tuple[Issue, ...]:
+    """The findings about a stage. `[issue.message for issue in am.issues(doc.JointPath)]`"""
+    _stage(obj)
+    return stages.issues_of(obj)
+
+
+def stages_of(doc: Any, kind: str = "") -> list[Any]:
+    """The stages of a document, inputs first; all, or those of a kind: `am.stages_of(doc, "program")`"""
+    return [obj for obj in _in_order(doc.Objects) if kind in ("", obj.Proxy.kind)]
+
+
+def export(program: Any, folder: str) -> list[str]:
+    """Write the files of a program into a folder, which is made; the paths. `am.export(doc.Program, "out")`"""
+    files = files_of(program)
+    paths = []
+    try:
+        os.makedirs(folder, exist_ok=True)
+        for name, content in files.items():
+            path = os.path.join(folder, name)
+            with open(path + ".part", "wb") as file:
+                file.write(content)
+            os.replace(path + ".part", path)
+            paths.append(path)
+    except OSError as error:
+        raise InputError("NOT_WRITABLE", folder, f"{error.strerror}; choose a folder you can write to") from None
+    return paths
+
+
+def open_part(doc: Any, path: str, object: str = "") -> Any:
+    """A part file as an object of the document: STEP, IGES, BREP, or an object (Name or Label) of an FCStd file.
+
+    `am.open_part(doc, "cup.step")`
+    """
+    from .objects.part_file import part_shape
+
+    shape, label = part_shape(path, object)
+    with _one_step(doc, "Open part"):
+        part = doc.addObject("Part::Feature", "Part")
+        part.Label, part.Shape = label, shape
+        part.purgeTouched()
+    return part
+
+
+def _make(
+    doc: Any, proxy: type, name: str, label: str, links: dict[str, Any], parameters: Sequence[Any],
+    values: dict[str, Any],
+) -> Any:
+    with _one_step(doc, f"Make {label}"):
+        obj = doc.addObject("App::FeaturePython", name)
+        try:
+            stage = proxy(obj)
+            obj.Label = label
+            for property_name, value in links.items():
+                if value is not None:
+                    setattr(obj, property_name, value)
+            given(obj, stage, parameters, values)
+            for other in _in_order(obj.OutListRecursive):
+                other.Proxy.renew(other)
+            _renew(obj)
+        except BaseException:
+            doc.removeObject(obj.Name)
+            raise
+    return obj
+
+
+def _renew(obj: Any, force: bool = False) -> None:
+    obj.Proxy.renew(obj, force)
+    obj.purgeTouched()
+
+
+def _stage(obj: Any) -> stages.Stage:
+    proxy = stages.stage_of(obj)
+    if proxy is None:
+        raise InputError("BAD_INPUT", getattr(obj, "Label", repr(obj)), "it is no stage of this workbench; choose one")
+    return proxy
+
+
+def _in_order(objects: Sequence[Any]) -> list[Any]:
+    """The stages among objects, inputs first."""
+    return sorted((obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive))
+
+
+@contextlib.contextmanager
+def _one_step(doc: Any, name: str) -> Iterator[None]:
+    """One step of undo, taken back whole when it fails; part of the step that is open, if there is one."""
+    if App.getActiveTransaction() or not doc.UndoMode:
+        yield
+        return
+    doc.openTransaction(name)
+    try:
+        yield
+    except BaseException:
+        doc.abortTransaction()
+        raise
+    doc.commitTransaction()

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A feature of revolution in a document: the wall found on a shape, and how it is to be cut into layers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+
+from ..brep.revolution import find_wall
+from ..core.issues import InputError
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.strategy import RevolutionParameters
+from .stage import Link, Outcome, Section, Stage
+
+
+class RevolutionFeature(Stage):
+    """Result: core.geometry.profile.RevolvedWall, in the coordinates of the document."""
+
+    kind = "feature"
+    sections = (
+        Section(RevolutionParameters, "strategy", "Layers"),
+        Section(BuildDirectionParameters, "build_direction", "Build direction"),
+    )
+    links = (
+        Link("Source", "", "The shape to deposit, or some of its faces.", type_name="App::PropertyLinkSub"),
+        Link(
+            "Axis", "", "A straight edge, sketch axis or datum line to turn about, where the shape has none.",
+            required=False, type_name="App::PropertyLinkSub",
+        ),
+    )
+    figures = (
+        ("WallFaces", "App::PropertyStringList", "Faces of the wall, from the platform up."),
+        ("WallLength", "App::PropertyLength", "Length of the meridian."),
+    )
+
+    def compute(self, obj: Any) -> Outcome:
+        self.linked(obj)
+        strategy = self.parameters(obj, RevolutionParameters)
+        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        source, faces = _source(obj)
+        wall = find_wall(global_shape(source), faces, strategy.wall, axis_of(obj), source.Label)
+        figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
+        return Outcome(wall, wall.issues, figures)
+
+    def further_inputs(self, obj: Any) -> list[str]:
+        source, faces = _source(obj)
+        axis = axis_of(obj)
+        return [shape_fingerprint(global_shape(source)), " ".join(faces), "" if axis is None else _digits(*axis)]
+
+_LINES = ("Part::GeomLine", "Part::GeomLineSegment")
+
+
+def global_shape(source: Any) -> Any:
+    """The shape of an object in the coordinates of the document, wherever it is nested. InputError 'NO_SHAPE'."""
+    shape = getattr(source, "Shape", None)
+    if shape is None or shape.isNull():
+        raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
+    if hasattr(source, "getGlobalPlacement") and hasattr(source, "Placement"):
+        outer = source.getGlobalPlacement().multiply(source.Placement.inverse())
+        if not outer.isIdentity():
+            shape = shape.copy()
+            shape.Placement = outer.multiply(shape.Placement)
+    return shape
+
+
+def axis_of(obj: Any) -> tuple[Any, Any] | None:
+    """Point and direction of the feature's Axis as vectors in document coordinates, None where none is chosen."""
+    link = obj.Axis
+    if not link:
+        return None
+    target, names = link
+    name = names[0] if names else ""
+    placement = target.getGlobalPlacement() if hasattr(target, "getGlobalPlacement") else App.Placement()
+    sketch_axes = {"V_Axis": App.Vector(0, 1, 0), "H_Axis": App.Vector(1, 0, 0), "N_Axis": App.Vector(0, 0, 1)}
+    if name in sketch_axes:
+        return placement.Base, placement.Rotation.multVec(sketch_axes[name])
+    shape = getattr(target, "Shape", None)
+    edges = [] if shape is None or shape.isNull() else ([shape.getElement(name)] if name else shape.Edges)
+    if len(edges) == 1 and edges[0].ShapeType == "Edge" and edges[0].Curve.TypeId in _LINES:
+        edge = edges[0]
+        outer = placement.multiply(target.Placement.inverse())
+        start, end = outer.multVec(edge.valueAt(edge.FirstParameter)), outer.multVec(edge.valueAt(edge.LastParameter))
+        return start, (end - start).normalize()
+    if target.TypeId in ("App::Line", "PartDesign::Line"):
+        along = App.Vector(1, 0, 0) if target.TypeId == "App::Line" else App.Vector(0, 0, 1)
+        return placement.Base, placement.Rotation.multVec(along)
+    raise InputError(
+        "BAD_AXIS", f"{obj.Label}.Axis", f"{target.Label} {name} is no straight line; choose a straight edge or an axis"
+    )
+
+
+def shape_fingerprint(shape: Any) -> str:
+    """A text that changes with the shape but not with the last digits that saving drops."""
+    lines = [f"{shape.ShapeType} {len(shape.Faces)} {len(shape.Edges)} {len(shape.Vertexes)}"]
+    for face in shape.Faces:
+        inertia = face.MatrixOfInertia
+        kind = f"{face.Surface.TypeId} {face.Orientation}"
+        lines.append(f"{kind} {face.Area:.8g} {_digits(face.CenterOfMass)} {inertia.A11:.6g} {inertia.A33:.6g}")
+    lines += [f"{edge.Length:.8g}" for edge in shape.Edges]
+    lines += [_digits(vertex.Point) for vertex in shape.Vertexes]
+    return "\n".join(lines)
+
+
+def _digits(*vectors: Any) -> str:
+    return " ".join(f"{round(number, 6) + 0.0:.6f}" for vector in vectors for number in vector)
+
+
+def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
+    if not obj.Source:
+        raise InputError("NO_INPUT", obj.Label, "Source is missing; choose the shape to deposit, or some of its faces")
+    source, names = obj.Source
+    faces = tuple(name for name in names if name)
+    wrong = [name for name in faces if not name.rsplit(".", maxsplit=1)[-1].startswith("Face")]
+    if wrong:
+        named = ", ".join(wrong)
+        raise InputError("BAD_FACES", f"{obj.Label}.Source", f"{named} is no face; choose faces or the whole shape")
+    return source, tuple(name.rsplit(".", maxsplit=1)[-1] for name in faces)

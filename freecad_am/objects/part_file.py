@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A part from a file, as a shape for the document."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import FreeCAD as App
+
+from ..brep.read import read_shape
+from ..core.issues import InputError
+from .feature import global_shape
+
+
+def part_shape(path: str, object_name: str = "") -> tuple[Any, str]:
+    """The shape of a part file and a label for it. `object_name`: Name or Label of an object of an FCStd file.
+
+    Raises the InputErrors of `brep.read`, and NO_OBJECT.
+    """
+    stem, extension = os.path.splitext(os.path.basename(path))
+    if extension.lower() != ".fcstd":
+        return read_shape(path), stem
+    if not os.path.isfile(path):
+        raise InputError("NO_FILE", path, "there is no such file; check the path")
+    active = App.ActiveDocument
+    try:
+        document = App.openDocument(path, True)
+    except (OSError, RuntimeError, ValueError, AttributeError):
+        raise InputError("BAD_FILE", path, "it cannot be read as a FreeCAD document; save it again") from None
+    try:
+        return _shape_in(document, path, object_name)
+    finally:
+        App.closeDocument(document.Name)
+        if active is not None:
+            App.setActiveDocument(active.Name)
+
+
+def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
+    shapes = [obj for obj in document.Objects if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()]
+    if object_name:
+        found = [obj for obj in shapes if object_name in (obj.Name, obj.Label)]
+    else:
+        found = [obj for obj in shapes if not any(other in shapes for other in obj.InListRecursive)]
+    if len(found) != 1:
+        names = ", ".join(obj.Label for obj in shapes) or "none"
+        asked = repr(object_name) if object_name else "one object that nothing else is made from"
+        raise InputError("NO_OBJECT", path, f"{asked} is not found among the objects with a shape ({names}); name one")
+    return global_shape(found[0]).copy(), found[0].Label

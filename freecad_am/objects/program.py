@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The program in a document: the controller's files, written only when reading them back gives the planned path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .. import verify as verification
+from ..core.issues import InfeasibleError, InputError, has_errors
+from ..core.kinematics import cell as cells
+from ..core.parameters.process import ProcessParameters
+from ..core.parameters.program import ProgramParameters
+from ..core.planning import program as programs
+from ..posts import catalogue
+from .stage import Link, Outcome, Section, Stage
+
+
+@dataclass(frozen=True)
+class Written:
+    """The result of a program: file name -> content, and how the read-back went (None where there is no post)."""
+
+    files: dict[str, bytes]
+    verification: verification.Verification | None
+
+
+class Program(Stage):
+    """Result: `Written`. Its cell, toolpath and process are those of the joint path."""
+
+    kind = "program"
+    sections = (Section(ProgramParameters, "program", "Program"),)
+    links = (Link("JointPath", "joint path", "The joint path to write."),)
+    figures = (("Files", "App::PropertyStringList", "The controller's files; double-click to read and export them."),)
+
+    def complete(self, obj: Any) -> None:
+        if "ProgramName" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyString", "ProgramName", "Program", "Name of the program and of its files.")
+        super().complete(obj)
+
+    def compute(self, obj: Any) -> Outcome:
+        if not obj.ProgramName:
+            raise InputError("NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one")
+        joint_object = self.linked(obj)["JointPath"]
+        linked = joint_object.Proxy.linked(joint_object)
+        toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
+        parameters = self.parameters(obj, ProgramParameters)
+        if parameters.post == "none":
+            return Outcome(Written({}, None), figures=(("Files", []),))
+        toolpath = toolpath_object.Proxy.value(toolpath_object)
+        cell = cells.resolve(cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family)
+        process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
+        motion = joint_object.Proxy.value(joint_object).motion
+        post = catalogue.load(parameters.post)
+        program = programs.build(motion, cell, process, parameters, obj.ProgramName)
+        files = post.write(program)
+        checked = verification.verify(cell, motion, program, files, post)
+        if has_errors(checked.issues):
+            raise InfeasibleError(
+                "NOT_VERIFIED", obj.Label, "reading the program back does not give the planned path",
+                tuple(checked.issues),
+            )
+        return Outcome(Written(files, checked), tuple(checked.issues), (("Files", sorted(files)),))
+
+    def further_inputs(self, obj: Any) -> list[str]:
+        return [obj.ProgramName]
+
+
+def files_of(obj: Any) -> dict[str, bytes]:
+    """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, saying why."""
+    files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.ResultLayout else {}
+    if obj.Status != "up to date" or not files:
+        raise InputError("NO_PROGRAM", obj.Label, f"no program fits its inputs; first cure: {obj.Message or obj.Status}")
+    return files

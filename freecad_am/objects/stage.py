@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What all stages share: parameters as properties, a stored result with the key of its inputs, a status.
+
+A stage is computed by `renew`, which raises the errors of the core; FreeCAD's recompute goes through `execute`, which
+turns them into the status, a message and one line on the console. Results are read back when first asked for.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import FreeCAD as App
+
+from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
+from . import hooks, properties, staleness, store
+from .properties import HIDDEN, OUTPUT, READ_ONLY
+from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
+
+SCHEMA_VERSION = 1
+_RESULT = "Result"
+_deferred = 0
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link to an input: the property, its FreeCAD type, the stage it must be ('' for any object) and a help."""
+
+    name: str
+    kind: str
+    help: str
+    required: bool = True
+    type_name: str = "App::PropertyLink"
+
+
+@dataclass(frozen=True)
+class Section:
+    """A parameters dataclass of a stage, the prefix of its errors and the property group it is shown in."""
+
+    cls: type
+    prefix: str
+    group: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a stage computed: the value to store, findings, and figures to show by property name."""
+
+    value: Any
+    issues: tuple[Issue, ...] = ()
+    figures: tuple[tuple[str, Any], ...] = ()
+
+
+class Stage:
+    """Base of the proxies. Class paths are a file format; nothing is kept in the proxy that must be saved."""
+
+    kind: ClassVar[str] = ""
+    sections: ClassVar[tuple[Section, ...]] = ()
+    links: ClassVar[tuple[Link, ...]] = ()
+    figures: ClassVar[tuple[tuple[str, str, str], ...]] = ()  # property, FreeCAD type, help
+    _kept: tuple[str, Any] | None = None
+    _busy = False
+
+    def __init__(self, obj: Any) -> None:
+        obj.Proxy = self
+        self.complete(obj)
+        hooks.attach(obj)
+
+    # ---- what a stage defines
+
+    def compute(self, obj: Any) -> Outcome:
+        """The result of the present inputs. Raises InputError and InfeasibleError."""
+        raise NotImplementedError
+
+    def further_inputs(self, obj: Any) -> list[str]:
+        """Fingerprints of inputs that are neither parameters nor linked stages."""
+        return []
+
+    # ---- properties
+
+    def complete(self, obj: Any) -> None:
+        """Add the properties the object lacks, which is also the migration of an old document."""
+        staleness.watch()
+        have = set(obj.PropertiesList)
+
+        def add(type_name: str, name: str, group: str, help: str, attributes: int = 0) -> bool:
+            if name not in have:
+                obj.addProperty(type_name, name, group, help, attributes)
+            return name not in have
+
+        for link in self.links:
+            add(link.type_name, link.name, "Inputs", link.help)
+        for section in self.sections:
+            properties.add(obj, section.cls, section.group)
+        if add("App::PropertyEnumeration", "Status", _RESULT, "Whether the result fits.", READ_ONLY | OUTPUT):
+            obj.Status = list(STATUSES)
+            obj.Status = STALE
+        add("App::PropertyString", "Message", _RESULT, "What is wrong, and what to do.", READ_ONLY | OUTPUT)
+        for name, type_name, help in self.figures:
+            add(type_name, name, _RESULT, help, READ_ONLY | OUTPUT)
+        hidden = HIDDEN | OUTPUT
+        add("App::PropertyString", "Issues", _RESULT, "Findings, as JSON.", hidden)
+        add("App::PropertyString", "Key", _RESULT, "Fingerprint of the inputs the result was made from.", hidden)
+        add("App::PropertyFloat", "Seconds", _RESULT, "How long computing took.", hidden)
+        add("App::PropertyFloatList", "ResultData", _RESULT, "Arrays of the result.", hidden)
+        add("App::PropertyString", "ResultLayout", _RESULT, "What is where in the arrays.", hidden)
+        if add("App::PropertyInteger", "SchemaVersion", _RESULT, "Version of these properties.", hidden):
+            obj.SchemaVersion = SCHEMA_VERSION
+
+    def parameters(self, obj: Any, cls: type) -> Any:
+        """The parameters dataclass of the object; InputError naming Label and property."""
+        prefix = next(section.prefix for section in self.sections if section.cls is cls)
+        return properties.read(obj, cls, prefix)
+
+    # ---- computing
+
+    def renew(self, obj: Any, force: bool = False) -> Any:
+        """Compute when an input differs from those of the stored result (or when forced) and store; the value.
+
+        Raises AmError; the object then says so and keeps its last result.
+        """
+        self._busy = True
+        try:
+            key = self.key(obj)
+            if force or key != obj.Key or not obj.ResultLayout:
+                started = time.perf_counter()
+                outcome = self.compute(obj)
+                self._store(obj, outcome, key, time.perf_counter() - started)
+            found = issues_of(obj)
+            _say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
+        except InfeasibleError as error:
+            obj.Issues = _issues_text(error.issues or (Issue(ERROR, error.code, error.message),))
+            _say(obj, INFEASIBLE, str(error))
+            raise
+        except BaseException as error:
+            _say(obj, FAILED, error.message if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
+            raise
+        finally:
+            self._busy = False
+        return self.value(obj)
+
+    def value(self, obj: Any) -> Any:
+        """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
+        if not obj.ResultLayout:
+            raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
+        if self._kept is None or self._kept[0] != obj.Key:
+            self._kept = (obj.Key, store.unpack(obj.ResultData, obj.ResultLayout, obj.Label))
+        return self._kept[1]
+
+    def key(self, obj: Any) -> str:
+        """Fingerprint of all inputs. Raises InputError for a missing or failed one."""
+        texts = [type(self).__name__, str(SCHEMA_VERSION)]
+        for section in self.sections:
+            texts += properties.fingerprint(obj, section.cls)
+        texts += [linked.Key for linked in self.linked(obj).values() if linked is not None]
+        return hashlib.sha256("\n".join(texts + self.further_inputs(obj)).encode()).hexdigest()[:32]
+
+    def linked(self, obj: Any) -> dict[str, Any]:
+        """The linked stages by property name, checked: of the right kind, and computed."""
+        missing = self.missing(obj)
+        if missing:
+            raise InputError("NO_INPUT", obj.Label, missing)
+        return {link.name: _checked(obj, link) for link in self.links if link.kind}
+
+    def missing(self, obj: Any) -> str:
+        """What to do about a required input that is not there, '' when all are."""
+        for link in self.links:
+            if link.required and not getattr(obj, link.name):
+                return f"{link.name} is missing; choose {link.help[0].lower()}{link.help[1:].rstrip('.')}"
+        return ""
+
+    def _store(self, obj: Any, outcome: Outcome, key: str, seconds: float) -> None:
+        floats, text = store.pack(outcome.value)
+        obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
+        obj.Issues = _issues_text(outcome.issues)
+        for name, figure in outcome.figures:
+            setattr(obj, name, figure)
+        self._kept = (key, outcome.value)
+        obj.Key = key  # last: views draw when it changes
+
+    # ---- called by FreeCAD
+
+    def execute(self, obj: Any) -> None:
+        """Renew, and report what is wrong in the status and in one line on the console."""
+        if _deferred:
+            return
+        try:
+            self.renew(obj)
+        except AmError as error:
+            App.Console.PrintError(error.line() + "\n")
+
+    def mustExecute(self, obj: Any) -> bool:
+        """A stale stage is due at the next recompute, whatever made it stale."""
+        return bool(obj.Status == STALE)
+
+    def onChanged(self, obj: Any, name: str) -> None:
+        """Mark what follows as stale at once."""
+        if not self._busy and "Status" in obj.PropertiesList and name not in staleness.RESULTS:
+            staleness.changed(obj, name)
+
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Migrate an old document, and show a document that was made without a window."""
+        self._busy = True
+        try:
+            self.complete(obj)
+        finally:
+            self._busy = False
+        hooks.attach(obj)
+
+    def dumps(self) -> None:
+        """Nothing: all is in properties."""
+
+    def loads(self, state: Any) -> None:
+        """Nothing to restore."""
+
+    # FreeCAD up to 0.21.1 calls this pair, later ones the other
+    __getstate__ = dumps
+    __setstate__ = loads
+
+
+@contextlib.contextmanager
+def deferred() -> Iterator[None]:
+    """Within it a recompute renews shapes and expressions but no stage; `renew` is then called one by one."""
+    global _deferred
+    _deferred += 1
+    try:
+        yield
+    finally:
+        _deferred -= 1
+
+
+def stage_of(obj: Any) -> Stage | None:
+    """The proxy of an object of ours, None for any other object."""
+    proxy = getattr(obj, "Proxy", None)
+    return proxy if isinstance(proxy, Stage) else None
+
+
+def issues_of(obj: Any) -> tuple[Issue, ...]:
+    """The findings stored with the object."""
+    return tuple(Issue(**entry) for entry in json.loads(obj.Issues or "[]"))
+
+
+def first_message(issues: tuple[Issue, ...]) -> str:
+    """The first error, else the first warning, with its place; '' when there is neither."""
+    for level in (ERROR, "warning"):
+        for issue in issues:
+            if issue.level == level:
+                return f"{issue.where}: {issue.message}" if issue.where else issue.message
+    return ""
+
+
+def _issues_text(issues: tuple[Issue, ...]) -> str:
+    return json.dumps([issue.as_dict() for issue in issues])
+
+
+def _say(obj: Any, status: str, message: str) -> None:
+    if obj.Message != message:
+        obj.Message = message
+    if obj.Status != status:
+        obj.Status = status
+
+
+def _checked(obj: Any, link: Link) -> Any:
+    linked = getattr(obj, link.name)
+    if linked is None:
+        return None
+    stage = stage_of(linked)
+    if stage is None or stage.kind != link.kind:
+        raise InputError("BAD_INPUT", f"{obj.Label}.{link.name}", f"{linked.Label} is no {link.kind}; choose one")
+    if linked.Status == INFEASIBLE:
+        raise InfeasibleError(
+            "INPUT_INFEASIBLE", obj.Label, f"{linked.Label} cannot be carried out: {linked.Message}", issues_of(linked)
+        )
+    if linked.Status == FAILED or not linked.Key:
+        raise InputError("INPUT_FAILED", obj.Label, f"waits for {linked.Label}: {linked.Message or 'recompute it'}")
+    return linked

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Results of the core as two values a document can hold: one list of floats and one text.
+
+Dataclasses, tuples, arrays, bytes and plain values go in; the same come out. The floats are the arrays one after
+the other (whole numbers and truth values are exact in a float; bytes go compressed, six to a float); the text is
+JSON that says what is where. A FloatList is kept as a compressed binary file in the FCStd, and unlike an included
+file it follows undo and copies of the object by value.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import json
+import zlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+
+_PACKAGE = __name__.split(".", maxsplit=1)[0]
+_BYTES_PER_FLOAT = 6
+_DTYPES = ("float64", "int64", "bool")
+
+
+def pack(value: Any) -> tuple[list[float], str]:
+    """The floats and the text of a value. TypeError for what is not data."""
+    parts: list[NDArray[np.float64]] = []
+    text = json.dumps(_Packer(parts).tree(value), separators=(",", ":"))
+    return (np.concatenate(parts).tolist() if parts else []), text
+
+
+def unpack(floats: list[float], text: str, where: str) -> Any:
+    """The value of `pack`; InputError 'BAD_RESULT' naming `where` for a damaged or unknown one."""
+    try:
+        return _Reader(np.array(floats, dtype=np.float64)).value(json.loads(text))
+    except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error) as error:
+        raise InputError("BAD_RESULT", where, f"the stored result cannot be read ({error}); recompute it") from None
+
+
+class _Packer:
+    def __init__(self, parts: list[NDArray[np.float64]]) -> None:
+        self.parts = parts
+        self.size = 0
+
+    def tree(self, value: Any) -> Any:
+        if value is None or isinstance(value, (bool, int, float, str)):
+            return value
+        if isinstance(value, np.ndarray):
+            return {"a": [_DTYPES.index(str(value.dtype)), *self.put(value.ravel()), *value.shape]}
+        if isinstance(value, np.generic):
+            return value.item()
+        if isinstance(value, (bytes, bytearray)):
+            packed = zlib.compress(bytes(value), 6)
+            return {"b": [len(packed), *self.put(_floats_of(packed))]}
+        if isinstance(value, (tuple, list)):
+            return {"t": [self.tree(entry) for entry in value]}
+        if isinstance(value, dict):
+            return {"d": [[key, self.tree(entry)] for key, entry in value.items()]}
+        if dataclasses.is_dataclass(value) and not isinstance(value, type):
+            kind = type(value)
+            names = [field.name for field in dataclasses.fields(value) if field.init]
+            values = {name: self.tree(getattr(value, name)) for name in names}
+            return {"c": f"{kind.__module__.removeprefix(_PACKAGE)}:{kind.__qualname__}", "v": values}
+        raise TypeError(f"{type(value).__name__} cannot be stored")
+
+    def put(self, flat: NDArray[Any]) -> tuple[int]:
+        start = self.size
+        self.parts.append(flat.astype(np.float64))
+        self.size += len(flat)
+        return (start,)
+
+
+class _Reader:
+    def __init__(self, floats: NDArray[np.float64]) -> None:
+        self.floats = floats
+
+    def value(self, tree: Any) -> Any:
+        if not isinstance(tree, dict):
+            return tree
+        if "a" in tree:
+            dtype, start, *shape = tree["a"]
+            size = int(np.prod(shape)) if shape else 1
+            return self.slice(start, size).astype(_DTYPES[dtype]).reshape(shape)
+        if "b" in tree:
+            length, start = tree["b"]
+            return zlib.decompress(_bytes_of(self.slice(start, -(-length // _BYTES_PER_FLOAT)), length))
+        if "t" in tree:
+            return tuple(self.value(entry) for entry in tree["t"])
+        if "d" in tree:
+            return {key: self.value(entry) for key, entry in tree["d"]}
+        return _class(tree["c"])(**{name: self.value(entry) for name, entry in tree["v"].items()})
+
+    def slice(self, start: int, size: int) -> NDArray[np.float64]:
+        if start + size > len(self.floats):
+            raise ValueError("it is cut short")
+        return self.floats[start : start + size]
+
+
+def _class(name: str) -> Any:
+    # only our own dataclasses: a document must not name what is called when it is opened
+    module, _, qualified = name.partition(":")
+    ours = module.startswith((".core.", ".objects.", ".verify"))
+    kind = getattr(importlib.import_module(_PACKAGE + module), qualified) if ours else None
+    if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
+        raise ValueError(f"{name} is not a result")
+    return kind
+
+
+def _floats_of(data: bytes) -> NDArray[np.float64]:
+    padded = np.frombuffer(data + bytes(-len(data) % _BYTES_PER_FLOAT), dtype=np.uint8).reshape(-1, _BYTES_PER_FLOAT)
+    whole = np.zeros((len(padded), 8), dtype=np.uint8)
+    whole[:, :_BYTES_PER_FLOAT] = padded
+    return whole.view("<u8").ravel().astype(np.float64)
+
+
+def _bytes_of(floats: NDArray[np.float64], length: int) -> bytes:
+    whole = floats.astype("<u8").view(np.uint8).reshape(-1, 8)
+    return whole[:, :_BYTES_PER_FLOAT].tobytes()[:length]

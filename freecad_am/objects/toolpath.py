@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The toolpath in a document: layers and beads with build directions, made from a feature."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.cell import NozzleParameters
+from ..core.parameters.process import ProcessParameters
+from ..core.parameters.strategy import RevolutionParameters
+from ..core.strategies import revolution
+from .stage import Link, Outcome, Section, Stage, stage_of
+
+
+class Toolpath(Stage):
+    """Result: core.toolpath.Toolpath. Without a cell the nozzle has its default shape and there is no platform."""
+
+    kind = "toolpath"
+    sections = (Section(ProcessParameters, "process", "Process"),)
+    links = (
+        Link("Feature", "feature", "The feature to deposit."),
+        Link("Cell", "cell", "The cell, for the clearance of nozzle and platform.", required=False),
+    )
+    figures = (
+        ("Layers", "App::PropertyInteger", "Number of layers."),
+        ("Beads", "App::PropertyInteger", "Number of beads."),
+        ("Points", "App::PropertyInteger", "Number of points of all beads."),
+        ("Length", "App::PropertyLength", "Length of all beads."),
+    )
+
+    def compute(self, obj: Any) -> Outcome:
+        linked = self.linked(obj)
+        feature, cell = linked["Feature"], linked["Cell"]
+        shape = stage_of(feature)
+        assert shape is not None
+        carried = None if cell is None else cell.Proxy.value(cell)
+        toolpath = revolution.plan(
+            shape.value(feature),
+            shape.parameters(feature, RevolutionParameters),
+            shape.parameters(feature, BuildDirectionParameters),
+            self.parameters(obj, ProcessParameters),
+            NozzleParameters() if carried is None else carried.nozzle,
+            0.0 if carried is None else carried.platform_diameter,
+        )
+        figures = (
+            ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
+            ("Length", toolpath.length),
+        )
+        return Outcome(toolpath, toolpath.issues, figures)

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every parameter of every dataclass goes into a document object and comes back the same."""
+
+import dataclasses
+import math
+import random
+
+import FreeCAD as App
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import METHODS, JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.objects import properties, rows
+
+CLASSES = (
+    (CellParameters, "cell"), (RevolutionParameters, "strategy"), (BuildDirectionParameters, "build_direction"),
+    (ProcessParameters, "process"), (JointParameters, "joints"), (ProgramParameters, "program"),
+)
+TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas": "argon 4.6", "bead_model": "csw",
+         "post": "siemens"}
+
+
+@pytest.fixture
+def holder(doc):
+    obj = doc.addObject("App::FeaturePython", "Holder")
+    obj.Label = "Héros n° 1"
+    return obj
+
+
+def random_number(spec, rng):
+    widest = math.pi if spec.kind == f.ANGLE else 1000.0
+    low = spec.low if spec.low is not None else -widest
+    high = spec.high if spec.high is not None else max(low, 0.0) + widest
+    if spec.kind == f.COUNT:
+        return rng.randint(int(low), int(min(high, low + 500)))
+    return rng.uniform(low, high)
+
+
+def random_value(row, rng):
+    spec = row.spec
+    if row.form == f.POSE:
+        return tuple(rng.uniform(-1500, 1500) for _ in range(3)) + tuple(rng.uniform(-1.5, 1.5) for _ in range(3))
+    if row.form == rows.LENGTH_OR_POSE:
+        pose = tuple(rng.uniform(-50, 50) for _ in range(6))
+        return rng.choice([rng.uniform(0, 50), pose])
+    if row.form == rows.TEXT_LIST:
+        return tuple(rng.sample(METHODS, rng.randint(0, len(METHODS))))
+    if row.key == "branch":
+        return rng.choice(["auto", ("back", "down", "noflip"), ("front", "up", "flip")])
+    if spec.optional and rng.random() < 0.3:
+        return None
+    if spec.words and rng.random() < 0.3:
+        return rng.choice(spec.words)
+    if spec.kind == f.CHOICE:
+        return rng.choice(spec.choices)
+    if spec.kind == f.FLAG:
+        return rng.random() < 0.5
+    if spec.kind == f.TEXT:
+        return TEXTS[row.path[-1]]
+    return random_number(spec, rng)
+
+
+def random_parameters(cls, rng):
+    values = {row.key: random_value(row, rng) for row in rows.rows(cls)}
+    for key in [key for key in values if key.endswith("_low") and key[:-4] + "_high" in values]:
+        values[key[:-4] + "_high"] = values[key] + rng.uniform(0.1, math.pi)
+    return rows.build(cls, values)
+
+
+def assert_same(one, other):
+    have, want = rows.flat(one), rows.flat(other)
+    assert have.keys() == want.keys()
+    for key in want:
+        if isinstance(want[key], float) or (isinstance(want[key], tuple) and key != "branch" and want[key][:1] != ()):
+            assert have[key] == pytest.approx(want[key], rel=1e-13, abs=1e-12), key
+        else:
+            assert have[key] == want[key] and type(have[key]) is type(want[key]), key
+
+
+@pytest.mark.parametrize(("cls", "section"), CLASSES)
+def test_defaults_come_back_equal(holder, cls, section):
+    properties.add(holder, cls, "Group")
+    assert properties.read(holder, cls, section) == cls()
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(("cls", "section"), CLASSES)
+def test_random_values_come_back_also_from_a_file(doc, holder, tmp_path, cls, section, seed):
+    rng = random.Random(seed * 100 + len(section))
+    parameters = random_parameters(cls, rng)
+    properties.add(holder, cls, "Group")
+    properties.write(holder, parameters)
+    assert_same(properties.read(holder, cls, section), parameters)
+    mark = properties.fingerprint(holder, cls)
+    doc.saveAs(str(tmp_path / "p.FCStd"))
+    again = App.openDocument(str(tmp_path / "p.FCStd")).getObject("Holder")
+    try:
+        assert_same(properties.read(again, cls, section), parameters)
+        assert properties.fingerprint(again, cls) == mark
+    finally:
+        App.closeDocument(again.Document.Name)
+
+
+@pytest.mark.parametrize("cls", [cls for cls, _ in CLASSES])
+def test_every_field_of_the_dataclass_has_a_row_and_rows_have_different_names(cls):
+    def leaves(kind):
+        for field in dataclasses.fields(kind):
+            spec = f.spec_of(field)
+            if spec.kind == f.GROUP:
+                yield from leaves(field.default_factory)
+            else:
+                yield from [field.name] * (2 if spec.kind == f.ANGLE_RANGE else 1)
+
+    names = [row.name for row in rows.rows(cls)]
+    assert len(names) == len(set(names)) == len(list(leaves(cls)))
+    assert rows.build(cls, {}) == cls()
+
+
+def test_units_of_properties(holder):
+    for cls, _ in CLASSES:
+        properties.add(holder, cls, "Group")
+    holder.LayerHeight = "0.1 cm"
+    holder.TravelSpeed = "360 mm/min"
+    holder.NozzleHalfAngle = "0.1 rad"
+    holder.Rz = "90 deg"
+    holder.Platform = "0 0 12 0 0 90"
+    holder.DepositionPoint = App.Placement(App.Vector(1, 2, 3), App.Rotation(App.Vector(0, 1, 0), 30))
+    assert properties.read(holder, RevolutionParameters, "strategy").layer_height == pytest.approx(1.0)
+    assert properties.read(holder, ProcessParameters, "process").travel_speed == pytest.approx(6.0)
+    cell = properties.read(holder, CellParameters, "cell")
+    assert cell.nozzle.half_angle == pytest.approx(0.1)
+    assert cell.platform == pytest.approx((0, 0, 12, 0, 0, math.pi / 2))
+    assert cell.deposition_point == pytest.approx((1, 2, 3, 0, math.radians(30), 0))
+    assert properties.read(holder, JointParameters, "joints").rz == pytest.approx(math.pi / 2)
+    assert "(mm)" in holder.getDocumentationOfProperty("Platform")
+    assert holder.getGroupOfProperty("LayerHeight") == "Group"
+
+
+@pytest.mark.parametrize(
+    ("cls", "section", "name", "value", "code"),
+    [
+        (RevolutionParameters, "strategy", "LayerHeight", 0, "BAD_VALUE"),
+        (JointParameters, "joints", "Rz", "some", "BAD_VALUE"),
+        (JointParameters, "joints", "Rz", "3 mm", "BAD_UNIT"),
+        (JointParameters, "joints", "MinCondition", "1.5", "BAD_VALUE"),
+        (JointParameters, "joints", "Degree", 99, "BAD_VALUE"),
+        (JointParameters, "joints", "Compare", ["nothing"], "BAD_VALUE"),
+        (CellParameters, "cell", "Branch", "front sideways flip", "BAD_VALUE"),
+        (CellParameters, "cell", "Platform", "1,5 mm", "BAD_VALUE"),
+        (CellParameters, "cell", "NozzleLength", 0, "BAD_VALUE"),
+        (ProcessParameters, "process", "BetweenLayersInput", "1.5", "BAD_VALUE"),
+        (ProcessParameters, "process", "StandOff", "2 deg", "BAD_UNIT"),
+        (ProgramParameters, "program", "StartAtLayer", -1, "BAD_VALUE"),
+    ],
+)
+def test_bad_values_name_label_and_property(holder, cls, section, name, value, code):
+    properties.add(holder, cls, "Group")
+    setattr(holder, name, value)
+    with pytest.raises(InputError) as caught:
+        properties.read(holder, cls, section)
+    assert caught.value.code == code
+    assert caught.value.where == f"Héros n° 1.{name}"
+
+
+def test_an_angle_that_freecad_would_cut_is_refused(holder):
+    properties.add(holder, ProcessParameters, "Group")
+    with pytest.raises(InputError, match="720 deg is out of range"):
+        properties.write(holder, rows.build(ProcessParameters, {"seam_angle": 4 * math.pi}))
+
+
+def test_old_objects_get_the_properties_they_lack_and_keep_the_others(holder):
+    holder.addProperty("App::PropertyLength", "LayerHeight", "Group", "").LayerHeight = 3.0
+    holder.addProperty("App::PropertyEnumeration", "Spacing", "Group", "")
+    holder.Spacing = ["iso-height", "some old way"]
+    holder.addProperty("App::PropertyEnumeration", "Wall", "Group", "")
+    holder.Wall = ["gone"]
+    properties.add(holder, RevolutionParameters, "Group")
+    want = RevolutionParameters(layer_height=3.0, spacing="iso-height")
+    assert properties.read(holder, RevolutionParameters, "strategy") == want
+    properties.add(holder, RevolutionParameters, "Group")
+    assert properties.read(holder, RevolutionParameters, "strategy") == want

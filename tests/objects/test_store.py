@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Results come back from floats and text bit for bit."""
+
+import json
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError, Issue
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.objects import store
+
+
+def toolpath(seed=0):
+    rng = np.random.default_rng(seed)
+
+    def bead(n):
+        unit = rng.normal(size=(2, n, 3))
+        unit /= np.linalg.norm(unit, axis=2, keepdims=True)
+        width = rng.random(n) if n % 2 else None
+        rising = np.cumsum(rng.random(n) + 0.1)
+        return Bead(rng.normal(size=(n, 3)), unit[0], unit[1], rising, rng.random(n), False, width)
+
+    layers = tuple(Layer(tuple(bead(n) for n in rng.integers(2, 9, size=k))) for k in (1, 3, 2))
+    return Toolpath(layers, np.eye(4), 1.0, 0.01, (Issue("warning", "X", "é\n\"", 1, None, 3),))
+
+
+def equal(one, other):
+    if isinstance(one, np.ndarray):
+        return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+    if isinstance(one, tuple):
+        return isinstance(other, tuple) and len(one) == len(other) and all(map(equal, one, other))
+    if hasattr(one, "__dataclass_fields__"):
+        names = one.__dataclass_fields__
+        return type(one) is type(other) and all(equal(getattr(one, n), getattr(other, n)) for n in names)
+    return type(one) is type(other) and one == other
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_toolpaths_come_back(seed):
+    path = toolpath(seed)
+    floats, text = store.pack(path)
+    assert all(type(number) is float for number in floats)
+    assert equal(store.unpack(floats, text, "x"), path)
+
+
+@pytest.mark.parametrize("length", [0, 1, 5, 6, 7, 1000, 100_003])
+def test_bytes_come_back(length):
+    data = np.random.default_rng(length).integers(0, 256, length, dtype=np.uint8).tobytes()
+    files = {"A.LS": data, "é.LS": b""}
+    assert store.unpack(*store.pack(files), "x") == files
+
+
+def test_special_numbers_and_types_come_back():
+    values = (
+        np.array([np.nan, -0.0, np.inf, -np.inf, 5e-324, 0.1]), np.array([True, False]), np.array([2**53, -1]),
+        np.zeros((0, 3)), np.arange(6.0).reshape(3, 2)[:, ::-1], None, True, 3, 0.1, "ü", (), np.float64(2.5),
+    )
+    back = store.unpack(*store.pack(values), "x")
+    assert equal(back[:5], tuple(np.ascontiguousarray(v) for v in values[:5]))
+    assert back[5:] == (None, True, 3, 0.1, "ü", (), 2.5)
+
+
+def test_a_document_cannot_name_what_is_called():
+    for name in ("os:system", ".api:open_part", ".core.issues:InputError", ".batch.host:find_freecad", ".objects.store:pack"):
+        with pytest.raises(InputError, match="recompute"):
+            store.unpack([], json.dumps({"c": name, "v": {}}), "x")
+
+
+def test_damaged_results_are_told():
+    floats, text = store.pack(toolpath())
+    for bad in ((floats[:-1], text), (floats, text[:-1]), (floats, "{}"), ([float("nan")] * len(floats), text)):
+        with pytest.raises(InputError) as caught:
+            store.unpack(*bad, "My path")
+        assert caught.value.code == "BAD_RESULT" and caught.value.where == "My path"
+
+
+def test_what_is_no_data_is_refused():
+    with pytest.raises(TypeError):
+        store.pack(object())
