@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The cell: a machine, what it carries, and where the deposit comes out.
+
+The one freedom left at a point of the toolpath is the rotation phi about the tool axis. It is measured from a
+reference carried along without twist: the smallest rotation that takes the tool axis to the Z of the platform.
+With M the rotation that takes part coordinates to those of the deposition point, M = Rz(phi) S(t) and M t = Z
+(Chalvin 2020, eq. 10). RZ of the paper is the last Bryant angle of the same M = Rx(RX) Ry(RY) Rz(RZ) (eq. 9);
+the two differ, and RZ degenerates where t is horizontal (ERRATA).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..issues import InputError
+from ..parameters.cell import CellParameters, NozzleParameters
+from . import machine as machines
+from . import opw
+from .limits import Limits
+from .machine import Machine
+
+Array = NDArray[np.float64]
+
+PART_ON_ROBOT, TOOL_ON_ROBOT = "part-on-robot", "tool-on-robot"
+
+UP = (0.0, 0.0, 1.0)
+
+# the tip's Z points out of the nozzle, the tool axis from the deposit towards the tool
+_TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A resolved cell. Frames are (4, 4) in mm.
+
+    station: in base_link, the deposition point (part on robot) or the fixed platform (tool on robot).
+    carried: on the flange, the platform (part on robot) or the nozzle's tip (tool on robot).
+    mount: in part coordinates, the frame that sits on the platform.
+    branch: index of the branch (opw.branch_index), or None when all are to be searched.
+    """
+
+    machine: Machine
+    limits: Limits
+    setup: str
+    station: Array
+    carried: Array
+    mount: Array
+    branch: int | None
+    nozzle: NozzleParameters = field(default_factory=NozzleParameters)
+
+    def pose_frames(self, position: Array, tool: Array) -> PoseFrames:
+        """What is constant in the flange poses of n points while the rotation varies.
+
+        position (n, 3) mm and tool (n, 3) unit vectors in part coordinates.
+        """
+        to_platform = frames.inverse(self.mount)
+        points = position @ to_platform[:3, :3].T + to_platform[:3, 3]
+        axes = tool @ to_platform[:3, :3].T
+        upright = frames.smallest_rotation(axes, UP)
+        if self.setup == PART_ON_ROBOT:
+            moved = frames.pose(upright, -np.einsum("nij,nj->ni", upright, points))
+            return PoseFrames(self.station[None], 1.0, moved @ frames.inverse(self.carried))
+        stands = frames.pose(np.swapaxes(upright, 1, 2), points)
+        return PoseFrames(self.station @ stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
+
+    def flange_poses(self, position: Array, tool: Array, phi: Array) -> Array:
+        """(n, 4, 4) poses of the flange in base_link for n points with the rotation phi (n,) about the tool axis."""
+        return self.pose_frames(position, tool).at(phi)
+
+    def tip_in_part(self, flange: Array) -> tuple[Array, Array]:
+        """Where the nozzle is, seen from the part: its tip (n, 3) mm and tool axis (n, 3), part coordinates.
+
+        flange: (n, 4, 4) in base_link.
+        """
+        if self.setup == PART_ON_ROBOT:
+            platform = flange @ self.carried
+            seen = frames.inverse(platform) @ self.station
+        else:
+            seen = frames.inverse(self.station) @ (flange @ self.carried @ _TURNED)
+        in_part = self.mount @ seen
+        return in_part[:, :3, 3], in_part[:, :3, 2]
+
+    def deposition_point(self, flange: Array) -> Array:
+        """(n, 3) mm, the point of deposit in base_link for the flange poses (n, 4, 4)."""
+        if self.setup == PART_ON_ROBOT:
+            return np.broadcast_to(self.station[:3, 3], (len(flange), 3))
+        tip: Array = (flange @ self.carried)[:, :3, 3]
+        return tip
+
+    def spin_axis(self, flange: Array) -> Array:
+        """(n, 3) angular velocity of the flange in base_link per unit of phi, about the deposition point."""
+        if self.setup == PART_ON_ROBOT:
+            return np.broadcast_to(self.station[:3, 2], (len(flange), 3))
+        axis: Array = (flange @ self.carried)[:, :3, 2]
+        return axis
+
+    def phi_of_rz(self, tool: Array, rz: Array) -> tuple[Array, Array]:
+        """The rotation phi (n,) that the paper's RZ (n,) amounts to, and d phi / d RZ (n,) (eqs. 14 and 15)."""
+        t = tool @ self.mount[:3, :3]
+        cos, sin = np.cos(rz), np.sin(rz)
+        sx = t[:, 1] * cos + t[:, 0] * sin
+        sy = -(t[:, 0] * cos - t[:, 1] * sin)
+        cx = np.sqrt(sy * sy + t[:, 2] ** 2)
+        ry = np.arctan2(sy, t[:, 2])
+        rotation = frames.about_x(np.arctan2(sx, cx)) @ frames.about_y(ry) @ frames.about_z(rz)
+        spun = rotation @ np.swapaxes(frames.smallest_rotation(t, UP), 1, 2)
+        return np.arctan2(spun[:, 1, 0], spun[:, 0, 0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
+
+    def rz_of_phi(self, tool: Array, phi: Array) -> Array:
+        """The paper's RZ (n,) rad of the rotations phi (n,) about the tool axes (n, 3) in part coordinates."""
+        t = tool @ self.mount[:3, :3]
+        upright = frames.smallest_rotation(t, UP)
+        first = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
+        side = np.where(t[:, 2] < 0.0, -1.0, 1.0)
+        rz: Array = np.arctan2(-first[:, 1] * side, first[:, 0] * side)
+        return rz
+
+
+@dataclass(frozen=True)
+class PoseFrames:
+    """Flange poses as left . Rz(sign phi) . right; left and right are (n, 4, 4) or (1, 4, 4)."""
+
+    left: Array
+    sign: float
+    right: Array
+
+    def at(self, phi: Array) -> Array:
+        """(..., n, 4, 4) flange poses for rotations phi (..., n)."""
+        cos, sin = np.cos(phi), self.sign * np.sin(phi)
+        spun = np.empty((*phi.shape, 4, 4))
+        if len(self.left) == 1:
+            spun[..., 0, :] = cos[..., None] * self.right[:, 0] - sin[..., None] * self.right[:, 1]
+            spun[..., 1, :] = sin[..., None] * self.right[:, 0] + cos[..., None] * self.right[:, 1]
+            spun[..., 2:, :] = self.right[:, 2:]
+            return _moved_by(self.left[0], spun)
+        spun[..., :, 0] = cos[..., None] * self.left[:, :, 0] + sin[..., None] * self.left[:, :, 1]
+        spun[..., :, 1] = cos[..., None] * self.left[:, :, 1] - sin[..., None] * self.left[:, :, 0]
+        spun[..., :, 2:] = self.left[:, :, 2:]
+        turned: Array = (spun.reshape(-1, 4) @ self.right[0]).reshape(spun.shape)
+        return turned
+
+
+def _moved_by(frame: Array, poses: Array) -> Array:
+    """frame @ poses; most cells stand upright, so the rotation is often none at all."""
+    if np.array_equal(frame[:3, :3], np.eye(3)):
+        poses[..., :3, 3] += frame[:3, 3]
+        return poses
+    moved: Array = frame @ poses
+    return moved
+
+
+def resolve(
+    parameters: CellParameters, feature_frame: Array, family: str = "revolution", folders: Sequence[str] = ()
+) -> Cell:
+    """The cell of a job: machine file read, frames put together.
+
+    feature_frame: (4, 4) the feature's own frame in part coordinates; it sits on the platform when `mount` is
+    'feature' (the default for parts of revolution), else the frame of the part file does.
+
+    Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET (set-ups to come), NO_CLOSED_FORM.
+    """
+    if parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
+        raise InputError(
+            "NOT_YET", "cell.setup", f"{parameters.setup} cannot be planned yet; use {PART_ON_ROBOT} or {TOOL_ON_ROBOT}"
+        )
+    machine = machines.load(parameters.machine, tuple(folders))
+    if machine.opw is None:
+        raise InputError(
+            "NO_CLOSED_FORM", "cell.machine",
+            f"{machine.title} has no spherical wrist; choose a robot that has one (see `freecad-am machines`)",
+        )
+    mount = parameters.mount if parameters.mount != "auto" else ("feature" if family == "revolution" else "part")
+    platform = parameters.platform
+    platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
+    carried = platform_pose if parameters.setup == PART_ON_ROBOT else parameters.nozzle.tool
+    return Cell(
+        machine=machine,
+        limits=machine.limits(parameters.limits),
+        setup=parameters.setup,
+        station=machine.base @ frames.bryant(parameters.deposition_point),
+        carried=frames.bryant(carried),
+        mount=np.array(feature_frame) if mount == "feature" else np.eye(4),
+        branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
+        nozzle=parameters.nozzle,
+    )

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The figures by which joint paths are compared: ranges, margins, speeds, accelerations and jerks of the axes."""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .joint_path import BeadPath
+from .task import Task
+
+Array = NDArray[np.float64]
+
+
+def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
+    """The figures of a joint path, angles in degrees, lists in axis order; None where there is no value.
+
+    limit_margin_deg is the smallest distance to a limit of each axis (None: endless). Speeds, accelerations and jerks
+    are the largest within the beads at their travel speed, by differences over the points.
+    """
+    joints = np.concatenate([path.joints for path in paths])
+    limits = task.cell.limits
+    ranges = np.array([np.ptp(path.joints, axis=0) for path in paths if path.reachable])
+    margin = np.nanmin(np.minimum(joints - limits.lower, limits.upper - joints), axis=0) if len(ranges) else None
+    rates = [_rates(path) for path in paths if path.reachable]
+    largest = [np.max([rate[k] for rate in rates], axis=0) if rates else None for k in range(3)]
+    speed = largest[0]
+    return {
+        "min_deg": _degrees(np.nanmin(joints, axis=0) if len(ranges) else None),
+        "max_deg": _degrees(np.nanmax(joints, axis=0) if len(ranges) else None),
+        "range_per_layer_max_deg": _degrees(ranges.max(axis=0) if len(ranges) else None),
+        "limit_margin_deg": _degrees(margin),
+        "condition_min": float(min(path.condition.min() for path in paths)),
+        "objective_value": float(sum(path.objective for path in paths)) if len(ranges) == len(paths) else None,
+        "manipulability_min": None,
+        "speed_max_deg_s": _degrees(speed),
+        "acceleration_max_deg_s2": _degrees(largest[1]),
+        "jerk_max_deg_s3": _degrees(largest[2]),
+        "speed_ratio_max": None if speed is None else [float(v) for v in speed / task.cell.machine.max_speed],
+    }
+
+
+def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
+    """Largest speed, acceleration and jerk of each axis over one bead, rad/s, rad/s^2, rad/s^3."""
+    length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
+    time = length / path.bead.speed[1:]
+    speed = np.diff(path.joints, axis=0) / time[:, None]
+    none = np.zeros(path.joints.shape[1])
+    if len(speed) < 2:
+        return np.abs(speed).max(axis=0), none, none
+    between = 0.5 * (time[1:] + time[:-1])
+    acceleration = np.diff(speed, axis=0) / between[:, None]
+    if len(acceleration) < 2:
+        return np.abs(speed).max(axis=0), np.abs(acceleration).max(axis=0), none
+    jerk = np.diff(acceleration, axis=0) / (0.5 * (between[1:] + between[:-1]))[:, None]
+    return np.abs(speed).max(axis=0), np.abs(acceleration).max(axis=0), np.abs(jerk).max(axis=0)
+
+
+def _degrees(values: Array | None) -> list[float | None] | None:
+    if values is None:
+        return None
+    return [float(value) if np.isfinite(value) else None for value in np.degrees(values)]

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a joint path is judged by (Chalvin 2020, eqs. 1 to 6 as corrected in ERRATA, and eq. 17).
+
+Every criterion is to be minimised and comes per bead with its derivative along d q / d phi of each point. The sums
+over points are means, so that a bead with more points is not judged worse; eq. 17 stays a sum.
+"""
+
+from __future__ import annotations
+
+from typing import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinematics import jacobian as jac
+from .points import Points, steps
+from .task import Task
+
+Array = NDArray[np.float64]
+
+# value (..., B) for joints (..., T, axes), condition left to the caller's need
+Values = Callable[[Task, Points, Array], Array]
+
+
+def displacement(task: Task, points: Points, joints: Array) -> Array:
+    """Eq. 17: sum over points and axes of alpha (q_i - q_i-1)^2; (..., B), rad."""
+    step = steps(joints, points.starts)
+    return points.total((step * step) @ task.weights)
+
+
+def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
+    """(T,) derivative of eq. 17 by the phi of each point; rates (T, axes) are d q / d phi."""
+    step = steps(joints, points.starts) * task.weights
+    ahead = np.zeros_like(step)
+    ahead[:-1] = step[1:]
+    result: Array = 2.0 * np.einsum("ij,ij->i", step - ahead, rates)
+    return result
+
+
+def limits_liegeois(task: Task, points: Points, joints: Array) -> Array:
+    """Eq. 1: mean over points of the sum of ((q - mean) / (mean - max))^2; (..., B)."""
+    return _mean(points, (task.rows.offset(joints) ** 2).sum(axis=-1))
+
+
+def limits_fournier(task: Task, points: Points, joints: Array) -> Array:
+    """Eq. 2: mean over points of the sum of ((q - mean) / stroke)^2; (..., B)."""
+    return 0.25 * limits_liegeois(task, points, joints)
+
+
+def limits_klein(task: Task, points: Points, joints: Array) -> Array:
+    """Eq. 3: the largest |q - mean| / stroke of any axis at any point; (..., B)."""
+    return -points.worst(-0.5 * np.abs(task.rows.offset(joints)).max(axis=-1))
+
+
+def _liegeois_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
+    slope = 2.0 * task.rows.offset(joints) / task.rows.half
+    return np.einsum("im,im->i", slope, rates @ task.rows.matrix.T) / _count(points)
+
+
+def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
+    offset = task.rows.offset(joints)
+    row = np.abs(offset).argmax(axis=1)
+    at = np.arange(len(points))
+    slope = 0.5 * np.sign(offset[at, row]) / task.rows.half[row] * (rates @ task.rows.matrix.T)[at, row]
+    return np.where(_is_worst(points, -np.abs(offset[at, row])), slope, 0.0)
+
+
+def manipulability(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
+    """Eq. 5: mean over points of 1 / sqrt(det(J J^T)), translation rows divided by the length; (B,)."""
+    length = task.parameters.characteristic_length
+    return _mean(points, 1.0 / np.maximum(jac.manipulability(matrix, length), 1e-300))
+
+
+def condition(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
+    """Eq. 6 turned round: mean over points of sigma_max / sigma_min; (B,)."""
+    return _mean(points, 1.0 / np.maximum(jac.condition(matrix, task.parameters.characteristic_length), 1e-300))
+
+
+def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Array:
+    """(B,) the objective chosen in the job; the Jacobian (T, 6, axes) only where the objective asks for it."""
+    name = task.parameters.objective
+    if name in JOINT_ONLY:
+        return JOINT_ONLY[name](task, points, joints)
+    assert matrix is not None
+    return (manipulability if name == "manipulability" else condition)(task, points, joints, matrix)
+
+
+def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array) -> Array:
+    """(T,) derivative of the objective by the phi of each point."""
+    name = task.parameters.objective
+    if name == "displacement":
+        return displacement_rate(task, points, joints, rates)
+    if name == "limits-liegeois":
+        return _liegeois_rate(task, points, joints, rates)
+    if name == "limits-fournier":
+        return 0.25 * _liegeois_rate(task, points, joints, rates)
+    if name == "limits-klein":
+        return _klein_rate(task, points, joints, rates)
+    length = task.parameters.characteristic_length
+    if name == "manipulability":
+        w = np.maximum(jac.manipulability(matrix, length), 1e-300)
+        return -jac.manipulability_rate(task.cell.machine.chain, joints, matrix, rates, length) / w**2 / _count(points)
+    ratio = np.maximum(jac.condition(matrix, length), 1e-300)
+    return -condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points)
+
+
+def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:
+    """(T,) derivative of sigma_min / sigma_max by the phi of each point."""
+    result: Array = jac.condition_rate(matrix, rates, task.parameters.characteristic_length)
+    return result
+
+
+JOINT_ONLY: dict[str, Values] = {
+    "displacement": displacement,
+    "limits-liegeois": limits_liegeois,
+    "limits-fournier": limits_fournier,
+    "limits-klein": limits_klein,
+}
+
+
+def _count(points: Points) -> Array:
+    return np.bincount(points.bead).astype(float)[points.bead]
+
+
+def _mean(points: Points, values: Array) -> Array:
+    mean: Array = points.total(values) / np.bincount(points.bead)
+    return mean
+
+
+def _is_worst(points: Points, values: Array) -> NDArray[np.bool_]:
+    # one point per bead, the first of the worst ones, so that a sum over points is the gradient of the maximum
+    worst = values <= points.worst(values)[points.bead]
+    seen = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
+    return worst & (seen == 1)

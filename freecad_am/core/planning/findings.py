@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Looks a planned bead over, point by point, and names what forbids it: layer, point and axis."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import ERROR, Issue
+from .joint_path import BeadPath
+from .task import Task
+
+Array = NDArray[np.float64]
+
+# a limit met exactly is kept: closed form and turns leave a rounding error of this size, rad
+ROUNDING = 1e-9
+
+
+def findings(task: Task, path: BeadPath) -> list[Issue]:
+    """At most one issue of a kind and axis for the bead, at the point where it is worst."""
+    place = {"layer": path.layer, "bead": path.index}
+    lost = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
+    if len(lost):
+        return [Issue(
+            ERROR, "UNREACHABLE",
+            f"{len(lost)} of {len(path.joints)} points cannot be reached with this branch; move the deposition point, "
+            f"choose another branch or tilt less",
+            point=int(lost[0]), **place,
+        )]
+    return _limit_findings(task, path, place) + _condition_findings(path, place) + _range_findings(task, path, place)
+
+
+def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
+    rows = task.rows
+    values = path.joints @ rows.matrix.T
+    over = np.maximum(rows.lower - values, values - rows.upper)
+    found = []
+    for row in np.flatnonzero((over > ROUNDING).any(axis=0)):
+        point = int(over[:, row].argmax())
+        value = values[point, row]
+        limit = rows.lower[row] if value < rows.lower[row] else rows.upper[row]
+        found.append(Issue(
+            ERROR, "LIMIT",
+            f"{rows.labels[row]} would be at {math.degrees(value):.2f} deg, its limit is {math.degrees(limit):g} deg",
+            point=point, **place,
+        ))
+    return found
+
+
+def _condition_findings(path: BeadPath, place: dict[str, int]) -> list[Issue]:
+    short = path.threshold - path.condition
+    point = int(short.argmax())
+    if short[point] <= ROUNDING:
+        return []
+    return [Issue(
+        ERROR, "SINGULAR",
+        f"condition {path.condition[point]:.4f} is below the {path.threshold[point]:.4f} asked for: too near a singularity",
+        point=point, **place,
+    )]
+
+
+def _range_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
+    low, high = task.parameters.rotation_range
+    if high - low >= 2.0 * np.pi - 1e-9:
+        return []
+    over = np.maximum(low - path.phi, path.phi - high)
+    point = int(over.argmax())
+    if over[point] <= ROUNDING:
+        return []
+    return [Issue(
+        ERROR, "ROTATION_RANGE",
+        f"the rotation about the tool axis would be {math.degrees(path.phi[point]):.2f} deg, outside the range allowed",
+        point=point, **place,
+    )]

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The joint path: what the planning found for every bead."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import Issue, has_errors
+from ..toolpath import Bead, Toolpath
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BeadPath:
+    """The joints of one bead of n points.
+
+    bead: the bead, its seam moved or its course split where an axis asked for it. phi: (n,) rotation about the tool
+    axis, rad. joints: (n, axes) serial, rad, counted on within the bead, NaN where unreachable. condition and
+    threshold: (n,) sigma_min / sigma_max and the smallest allowed. coefficients: of the layer's polynomial, the
+    constant first, None where there is none. reason, iterations: why and when the optimiser stopped.
+    """
+
+    layer: int
+    index: int
+    bead: Bead
+    phi: Array
+    joints: Array
+    condition: Array
+    threshold: Array
+    objective: float
+    margin: float
+    coefficients: Array | None = None
+    reason: str = ""
+    iterations: int = 0
+
+    @property
+    def reachable(self) -> bool:
+        """True when every point has joint values."""
+        return bool(np.isfinite(self.joints).all())
+
+
+@dataclass(frozen=True)
+class JointPath:
+    """The joint path of a toolpath: beads in the order of deposit and what was found on the way."""
+
+    method: str
+    objective: str
+    branch: tuple[str, str, str]
+    limits: str
+    beads: tuple[BeadPath, ...]
+    issues: tuple[Issue, ...]
+    comparison: tuple[dict[str, object], ...] = ()
+
+    @property
+    def feasible(self) -> bool:
+        """True when no point is unreachable and no limit, condition or collision forbids a program."""
+        return not has_errors(self.issues)
+
+    @property
+    def joints(self) -> Array:
+        """(T, axes) joints of all deposit points, rad."""
+        return np.concatenate([bead.joints for bead in self.beads])
+
+    def toolpath(self, planned: Toolpath) -> Toolpath:
+        """The toolpath with its beads as they will be run: seams moved, courses split."""
+        layers = []
+        for index, layer in enumerate(planned.layers):
+            beads = tuple(path.bead for path in self.beads if path.layer == index)
+            layers.append(replace(layer, beads=beads))
+        return replace(planned, layers=tuple(layers))

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From a toolpath and a cell to the joint path: branch, method, turns, points between, findings."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from typing import Callable, Sequence
+
+import numpy as np
+
+from ..issues import ERROR, WARNING, Issue, has_errors
+from ..kinematics import opw
+from ..kinematics.cell import Cell
+from ..parameters.joints import JointParameters
+from ..toolpath import Bead, Toolpath
+from . import comparison, constant, layer_by_layer, point_by_point, search, turns
+from .findings import findings
+from .joint_path import BeadPath, JointPath
+from .points import gather
+from .straight import kept_straight
+from .task import Task
+
+Progress = Callable[[float, str], None]
+
+METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
+BRANCHES = 8
+
+
+def _silent(fraction: float, text: str) -> None:
+    pass
+
+
+def plan_joints(
+    toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress = _silent
+) -> JointPath:
+    """The joint path of a toolpath.
+
+    Findings (unreachable, over a limit, singular, too fast) are issues of the result with layer, bead and point; the
+    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel.
+    """
+    places = [(layer, index) for layer, index, _ in toolpath]
+    beads = [bead for _, _, bead in toolpath]
+    branch = cell.branch if cell.branch is not None else best_branch(beads, cell, parameters)
+    task = Task(cell, branch, parameters)
+    paths, issues = _planned(task, beads, places, toolpath.chord_error, parameters.method, progress)
+    comparisons = tuple(
+        _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
+    )
+    return JointPath(
+        parameters.method, parameters.objective, opw.branch_name(branch), cell.limits.name, tuple(paths),
+        tuple(issues), comparisons,
+    )
+
+
+def best_branch(beads: Sequence[Bead], cell: Cell, parameters: JointParameters) -> int:
+    """The branch in which most beads are feasible; of several, the one with the least objective, then margin."""
+    points = gather(beads, cell, search.POINTS_PER_BEAD)
+    ranks = []
+    for branch in range(BRANCHES):
+        task = Task(cell, branch, parameters)
+        found = search.everywhere(task, points, task.thresholds(points))
+        best, each = found.best(), np.arange(len(beads))
+        margin, objective = found.margin[best, each], found.objective[best, each]
+        feasible = margin >= 0.0
+        worth = float(objective[feasible].sum()) if feasible.any() else np.inf
+        ranks.append((-int(feasible.sum()), worth, -float(margin.min()), branch))
+    return min(ranks)[-1]
+
+
+def _compare_order(parameters: JointParameters) -> list[str]:
+    return [method for method in METHODS if method in parameters.compare and method != parameters.method]
+
+
+def _planned(
+    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], chord_error: float, method: str,
+    progress: Progress,
+) -> tuple[list[BeadPath], list[Issue]]:
+    paths, issues = METHODS[method](task, beads, places, progress)
+    straight = [kept_straight(task, path, chord_error) for path in paths]
+    paths, notes = turns.counted_on(task, [path for path, _ in straight])
+    issues = issues + notes + [issue for _, found in straight for issue in found]
+    for path in paths:
+        issues += findings(task, path)
+    if not has_errors(issues):
+        issues += too_fast(task, paths)
+    return paths, issues
+
+
+def _compared(
+    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], method: str, progress: Progress
+) -> dict[str, object]:
+    started = time.perf_counter()
+    other = Task(task.cell, task.branch, dataclasses.replace(task.parameters, method=method))
+    paths, issues = METHODS[method](other, beads, places, progress)
+    for path in paths:
+        issues += findings(other, path)
+    return {
+        "method": method,
+        "feasible": not has_errors(issues),
+        **comparison.figures(other, paths),
+        "planning_time_s": time.perf_counter() - started,
+        "issues": [issue.as_dict() for issue in issues if issue.level != WARNING][:20],
+    }
+
+
+def too_fast(task: Task, paths: Sequence[BeadPath]) -> list[Issue]:
+    """An issue for every bead on which an axis would have to turn faster than it can."""
+    found = []
+    for path in paths:
+        length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
+        speed = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
+        ratio = speed / task.cell.machine.max_speed
+        point, axis = np.unravel_index(int(ratio.argmax()), ratio.shape)
+        if ratio[point, axis] > 1.0:
+            found.append(Issue(
+                ERROR, "SPEED",
+                f"axis {task.cell.machine.axes[axis]} would turn at {np.degrees(speed[point, axis]):.0f} deg/s, it can do "
+                f"{np.degrees(task.cell.machine.max_speed[axis]):.0f}; lower the travel speed to "
+                f"{path.bead.speed[point + 1] / ratio[point, axis]:.2f} mm/s",
+                path.layer, path.index, int(point) + 1,
+            ))
+    return found

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The points of many beads as one set of columns, so that all layers are handled together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinematics.cell import Cell, PoseFrames
+from ..toolpath import Bead
+
+Array = NDArray[np.float64]
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Points:
+    """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
+    first point. bead: (T,) the bead a point belongs to."""
+
+    position: Array
+    tool: Array
+    parameter: Array
+    first: NDArray[np.int64]
+    bead: NDArray[np.int64]
+    frames: PoseFrames
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @property
+    def beads(self) -> int:
+        """Number of beads B."""
+        return len(self.first)
+
+    @cached_property
+    def starts(self) -> NDArray[np.bool_]:
+        """(T,) bool, true at the first point of a bead."""
+        starts = np.zeros(len(self.position), dtype=bool)
+        starts[self.first] = True
+        return starts
+
+    def powers(self, degree: int) -> Array:
+        """(T, degree + 1) powers of the parameter, the constant first."""
+        return np.vander(self.parameter, degree + 1, increasing=True)
+
+    def polynomial(self, coefficients: Array) -> Array:
+        """(T,) the polynomial of each bead at its points; coefficients (B, degree + 1), the constant first."""
+        value = np.zeros(len(self.position))
+        for column in coefficients.T[::-1]:
+            value = value * self.parameter + column[self.bead]
+        return value
+
+    def worst(self, values: Array) -> Array:
+        """(..., B) the smallest of the values (..., T) within each bead."""
+        smallest: Array = np.minimum.reduceat(values, self.first, axis=-1)
+        return smallest
+
+    def total(self, values: Array) -> Array:
+        """(..., B) the sum of the values (..., T) within each bead."""
+        total: Array = np.add.reduceat(values, self.first, axis=-1)
+        return total
+
+
+def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None) -> Points:
+    """The points of the beads, thinned to `most` per bead and turn about the axis, both ends kept."""
+    chosen = [_thinned(bead, most) for bead in beads]
+    counts = np.array([len(index) for index in chosen])
+    position = np.concatenate([bead.points[index] for bead, index in zip(beads, chosen)])
+    tool = np.concatenate([bead.tool[index] for bead, index in zip(beads, chosen)])
+    return Points(
+        position=position,
+        tool=tool,
+        parameter=np.concatenate([bead.parameter[index] for bead, index in zip(beads, chosen)]),
+        first=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
+        bead=np.repeat(np.arange(len(beads)), counts),
+        frames=cell.pose_frames(position, tool),
+    )
+
+
+def _thinned(bead: Bead, most: int | None) -> NDArray[np.int64]:
+    if most is None:
+        return np.arange(len(bead))
+    turns = abs(bead.parameter[-1] - bead.parameter[0]) / TURN
+    most = max(most, int(np.ceil((most - 1) * turns)) + 1)
+    if len(bead) <= most:
+        return np.arange(len(bead))
+    return np.unique(np.round(np.linspace(0, len(bead) - 1, most)).astype(np.int64))
+
+
+def steps(joints: Array, starts: NDArray[np.bool_]) -> Array:
+    """(..., T, axes) motion from the point before, each axis the short way round; 0 at the first point of a bead."""
+    step = np.zeros_like(joints)
+    np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
+    step -= TURN * np.round(step / TURN)
+    step[..., starts, :] = 0.0
+    return step
+
+
+def unwrapped(joints: Array, points: Points) -> Array:
+    """(..., T, axes) joint values counted on from the first point of each bead."""
+    rising = np.cumsum(steps(joints, points.starts), axis=-2)
+    offset = joints[..., points.first, :] - rising[..., points.first, :]
+    result: Array = rising + offset[..., points.bead, :]
+    return result

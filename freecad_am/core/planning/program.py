@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Turns a motion into a program: controller values, deposit switching, what happens between layers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..issues import InputError
+from ..kinematics import opw
+from ..kinematics.cell import PART_ON_ROBOT, Cell
+from ..motion import Motion
+from ..parameters.process import BetweenLayersParameters, ProcessParameters
+from ..parameters.program import ProgramParameters, StartParameters
+from ..program import (
+    DEPOSIT, RAPID, Block, Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput,
+)
+
+Array = NDArray[np.float64]
+
+# the robot comes to its first point from wherever it stands, s: slow enough from anywhere
+FIRST_APPROACH = 10.0
+
+
+def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str) -> Program:
+    """The program of a motion.
+
+    The part on the robot can only be told in joint values; Cartesian motion (InputError REMOTE_TCP) would need the
+    remote TCP. A start past the last bead is InputError START_AT.
+    """
+    if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
+        raise InputError(
+            "REMOTE_TCP", "program.motion",
+            "with the part on the robot Cartesian motion means remote TCP, whose position records are not understood well "
+            "enough to be written; use motion: joint",
+        )
+    return Program(
+        name=name,
+        machine=cell.machine.title,
+        blocks=_blocks(motion, cell, process, parameters),
+        endless=tuple(bool(e) for e in cell.limits.endless),
+        motion=parameters.motion,
+        setup=cell.setup,
+        max_points=parameters.max_points,
+        blend=parameters.blend,
+        user_frame=parameters.user_frame,
+        tool_frame=parameters.tool_frame,
+        deposit_output=parameters.deposit_output,
+        dry_run=parameters.dry_run,
+        remarks=_remarks(cell, process),
+    )
+
+
+def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
+    """(n,) bool: the rows run when a job resumes at a bead; its retract from the bead before is left out."""
+    run = (motion.layer > start.layer) | (motion.layer == start.layer) & (motion.bead >= start.bead)
+    if not (run & motion.deposit).any() or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any():
+        raise InputError("START_AT", "program.start_at", f"there is no bead {start.bead} in a layer {start.layer}; the job has "
+                         f"layers 0 to {motion.layer.max()}")
+    first = int(np.flatnonzero(run)[0])
+    if first > 0 and _has_retract(motion, first):
+        run[first] = False
+    return run
+
+
+def _has_retract(motion: Motion, first: int) -> bool:
+    """True when the rapid rows that start here begin with the withdrawal from the bead before."""
+    rapids = 0
+    while not motion.deposit[first + rapids]:
+        rapids += 1
+    return rapids >= 3
+
+
+def _blocks(motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters) -> tuple[Block, ...]:
+    run = rows_from(motion, parameters.start_at)
+    groups = _groups(motion, np.flatnonzero(run))
+    blocks: list[Block] = []
+    layer: int | None = None
+    for number, rows in enumerate(groups):
+        first = int(rows[0])
+        if motion.deposit[first]:
+            blocks += [
+                DepositOn(process.lead_on),
+                _moves(motion, cell, rows[1:], DEPOSIT, parameters),
+                DepositOff(process.lead_off),
+            ]
+            continue
+        here = int(motion.layer[first])
+        last = number == len(groups) - 1
+        if layer is None:
+            blocks.append(LayerStart(here))
+            blocks.append(_moves(motion, cell, rows, RAPID, parameters, arriving=True))
+        elif here == layer or last:
+            blocks.append(_moves(motion, cell, rows, RAPID, parameters))
+        else:
+            withdrawal, onward = (rows[:1], rows[1:]) if len(rows) >= 3 else (rows[:0], rows)
+            if len(withdrawal):
+                blocks.append(_moves(motion, cell, withdrawal, RAPID, parameters))
+            blocks += _between(process.between_layers)
+            blocks.append(LayerStart(here))
+            blocks.append(_moves(motion, cell, onward, RAPID, parameters))
+        layer = here
+    return tuple(blocks)
+
+
+def _groups(motion: Motion, rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Rows in runs of the same kind, layer and bead."""
+    new = (
+        (np.diff(motion.deposit[rows].astype(int)) != 0)
+        | (np.diff(motion.layer[rows]) != 0)
+        | (np.diff(motion.bead[rows]) != 0)
+    )
+    return np.split(rows, np.flatnonzero(new) + 1)
+
+
+def _between(between: BetweenLayersParameters) -> list[Block]:
+    blocks: list[Block] = []
+    if between.wait > 0.0:
+        blocks.append(Wait(between.wait))
+    if between.input is not None:
+        blocks.append(WaitInput(between.input))
+    if between.call is not None:
+        blocks.append(Call(between.call))
+    return blocks
+
+
+def _moves(
+    motion: Motion, cell: Cell, rows: NDArray[np.int64], kind: str, parameters: ProgramParameters, arriving: bool = False
+) -> Moves:
+    duration = motion.duration[rows].copy()
+    if arriving:
+        duration[0] = FIRST_APPROACH
+    position = rotation = None
+    configuration = None
+    if parameters.motion == "cartesian":
+        seen = frames.inverse(cell.station) @ cell.machine.chain.forward(motion.joints[rows]) @ cell.carried
+        position, rotation = seen[:, :3, 3], seen[:, :3, :3]
+        arm = cell.machine.opw
+        assert arm is not None
+        configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(motion.joints[rows]))
+    return Moves(
+        kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
+        joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
+        position=position, rotation=rotation, configuration=configuration,
+    )
+
+
+def _remarks(cell: Cell, process: ProcessParameters) -> tuple[str, ...]:
+    point = frames.inverse(cell.machine.base) @ cell.station
+    x, y, z = point[:3, 3]
+    rx, ry, rz = np.degrees(frames.to_bryant(point[:3, :3])) + 0.0
+    where = "Deposition point" if cell.setup == PART_ON_ROBOT else "Platform"
+    return (
+        cell.machine.title,
+        f"Limits: {cell.limits.name}",
+        f"{where} {x:.3f} {y:.3f} {z:.3f}",
+        f"RX RY RZ {rx:.3f} {ry:.3f} {rz:.3f}",
+        f"Travel speed {process.travel_speed:g} mm/s",
+        *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
+    )

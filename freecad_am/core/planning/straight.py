@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Adds points where motion straight in the joints would leave the bead between its points."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import ERROR, Issue
+from ..toolpath import Bead
+from .joint_path import BeadPath
+from .task import Task
+
+Array = NDArray[np.float64]
+
+INSIDE = np.array([0.25, 0.5, 0.75])
+ROUNDS = 8
+# rounding room: beads of revolution use their chord error up by themselves, mm
+ROUNDING = 1e-6
+
+
+def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadPath, list[Issue]]:
+    """The path with as many points added as it takes to stay within the chord error (mm) of the bead between them.
+
+    Points are added on the straight segments of the bead, which lie within its own chord error of the wall.
+    """
+    for _ in range(ROUNDS):
+        if not path.reachable:
+            return path, []
+        off = deviation(task, path.bead, path.joints) > chord_error + ROUNDING
+        if not off.any():
+            return path, []
+        path = _halved(task, path, np.flatnonzero(off))
+    worst = int(deviation(task, path.bead, path.joints).argmax())
+    return path, [Issue(
+        ERROR, "NOT_STRAIGHT", "joint motion leaves the bead between two points however many are added: near a singularity",
+        path.layer, path.index, worst,
+    )]
+
+
+def deviation(task: Task, bead: Bead, joints: Array) -> Array:
+    """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
+    start, end = joints[:-1], joints[1:]
+    between = start[:, None] + (end - start)[:, None] * INSIDE[:, None]
+    flange = task.cell.machine.chain.forward(between.reshape(-1, joints.shape[1]))
+    tip, _ = task.cell.tip_in_part(flange)
+    tip = tip.reshape(len(start), len(INSIDE), 3)
+    origin, along = bead.points[:-1, None], np.diff(bead.points, axis=0)[:, None]
+    share = np.clip(((tip - origin) * along).sum(-1) / np.maximum((along * along).sum(-1), 1e-18), 0.0, 1.0)
+    distance: Array = np.linalg.norm(tip - origin - share[..., None] * along, axis=-1).max(axis=1)
+    return distance
+
+
+def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath:
+    """The path with a point in the middle of each of the segments."""
+    at = segments + 1
+
+    def middle(column: Array) -> Array:
+        return np.insert(column, at, 0.5 * (column[segments] + column[at]), axis=0)
+
+    def middle_direction(column: Array) -> Array:
+        mean = column[segments] + column[at]
+        return np.insert(column, at, mean / np.linalg.norm(mean, axis=1, keepdims=True), axis=0)
+
+    bead = path.bead
+    finer = dataclasses.replace(
+        bead, points=middle(bead.points), build=middle_direction(bead.build), tool=middle_direction(bead.tool),
+        parameter=middle(bead.parameter), speed=np.insert(bead.speed, at, bead.speed[at]),
+        width=None if bead.width is None else middle(bead.width),
+    )
+    phi = middle(path.phi)
+    new = at + np.arange(len(at))
+    arm = task.cell.machine.opw
+    assert arm is not None
+    flange = task.cell.flange_poses(finer.points[new], finer.tool[new], phi[new])
+    joints = middle(path.joints)
+    found = arm.inverse_branch(flange, task.branch)
+    joints[new] = found - 2.0 * np.pi * np.round((found - joints[new]) / (2.0 * np.pi))
+    condition = np.insert(path.condition, at, task.condition_at(flange, joints[new]))
+    return dataclasses.replace(
+        path, bead=finer, phi=phi, joints=joints, condition=condition, threshold=middle(path.threshold)
+    )

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What every method of planning has in common: cell, branch, limits, thresholds, and the joints of a rotation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinematics import jacobian as jac
+from ..kinematics.cell import Cell
+from ..kinematics.limits import Limits
+from ..parameters.joints import JointParameters
+from .points import TURN, Points, unwrapped
+
+Array = NDArray[np.float64]
+
+# Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
+# with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
+ENDLESS_STROKE = 1e6 * TURN
+CONDITION_FLOOR = 0.02
+CONDITION_SHARE = 0.25
+UNREACHABLE = -np.inf
+
+
+@dataclass(frozen=True)
+class LimitRows:
+    """The limits as m rows lower <= matrix q <= upper, endless axes left out. Angles in rad."""
+
+    matrix: Array
+    lower: Array
+    upper: Array
+    labels: tuple[str, ...]
+
+    @cached_property
+    def mean(self) -> Array:
+        """(m,) middle of each range."""
+        return 0.5 * (self.lower + self.upper)
+
+    @cached_property
+    def half(self) -> Array:
+        """(m,) half of each range."""
+        return 0.5 * (self.upper - self.lower)
+
+    @cached_property
+    def plain(self) -> bool:
+        """True when every row is one axis alone."""
+        return bool((np.count_nonzero(self.matrix, axis=1) == 1).all())
+
+    def offset(self, joints: Array) -> Array:
+        """(..., m) distance from the middle as a share of half the range; the limit is at +-1."""
+        share: Array = (joints @ self.matrix.T - self.mean) / self.half
+        return share
+
+    def margin(self, joints: Array) -> Array:
+        """(...) the smallest margin of all rows, 1 in the middle and 0 at a limit; -inf where joints are NaN."""
+        worst = np.abs(self.offset(joints)).max(axis=-1)
+        return np.where(np.isnan(worst), UNREACHABLE, 1.0 - worst)
+
+
+def limit_rows(limits: Limits) -> LimitRows:
+    """The rows of a limit set, single axes first, then what couples several."""
+    axes = len(limits.lower)
+    finite = np.isfinite(limits.lower) & np.isfinite(limits.upper)
+    return LimitRows(
+        matrix=np.vstack([np.eye(axes)[finite], limits.coefficients.reshape(-1, axes)]),
+        lower=np.concatenate([limits.lower[finite], limits.coupled_lower]),
+        upper=np.concatenate([limits.upper[finite], limits.coupled_upper]),
+        labels=tuple(np.array(limits.labels)[np.concatenate([finite, np.ones(len(limits.coupled_lower), bool)])]),
+    )
+
+
+@dataclass(frozen=True)
+class Task:
+    """A cell with one branch and the parameters of the planning."""
+
+    cell: Cell
+    branch: int
+    parameters: JointParameters
+
+    @cached_property
+    def rows(self) -> LimitRows:
+        """The limits as rows."""
+        return limit_rows(self.cell.limits)
+
+    @cached_property
+    def endless(self) -> NDArray[np.bool_]:
+        """(axes,) bool, axes without limits."""
+        return ~(np.isfinite(self.cell.limits.lower) & np.isfinite(self.cell.limits.upper))
+
+    @cached_property
+    def weights(self) -> Array:
+        """(axes,) weights of eq. 17, one over the stroke in rad."""
+        stroke = np.where(self.endless, ENDLESS_STROKE, self.cell.limits.upper - self.cell.limits.lower)
+        return np.asarray(1.0 / stroke)
+
+    def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
+        """phi (T,) and d phi / d value (T,) for the variable of the job: the rotation itself, or RZ of the paper."""
+        if self.parameters.parameter == "rotation":
+            return value, np.ones_like(value)
+        return self.cell.phi_of_rz(points.tool, value)
+
+    def raw_joints(self, points: Points, phi: Array) -> Array:
+        """(..., T, axes) joint values of the branch as the closed form gives them; NaN where unreachable."""
+        arm = self.cell.machine.opw
+        assert arm is not None  # resolve() refuses other machines
+        flange = points.frames.at(phi)
+        joints: Array = arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch)
+        return joints.reshape(*phi.shape, -1)
+
+    def joints(self, points: Points, phi: Array) -> Array:
+        """(..., T, axes) joint values counted on within each bead, in the turn that suits the limits best."""
+        return self.in_range(unwrapped(self.raw_joints(points, phi), points), points)
+
+    def in_range(self, joints: Array, points: Points) -> Array:
+        """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
+        low = np.minimum.reduceat(joints, points.first, axis=-2)
+        high = np.maximum.reduceat(joints, points.first, axis=-2)
+        limits = self.cell.limits
+        middle = np.where(self.endless, 0.0, 0.5 * (limits.lower + limits.upper))
+        turns = np.where(self.endless, 0.0, np.round((middle - 0.5 * (low + high)) / TURN)) * TURN
+        if not np.nan_to_num(turns).any():
+            return joints
+        moved: Array = joints + turns[..., points.bead, :]
+        return moved
+
+    def jacobian(self, points: Points, phi: Array, joints: Array) -> Array:
+        """(N, 6, axes) Jacobian at the deposition point, for flattened joints (N, axes)."""
+        flange = points.frames.at(phi).reshape(-1, 4, 4)
+        return self.jacobian_at(flange, joints)
+
+    def jacobian_at(self, flange: Array, joints: Array) -> Array:
+        """(N, 6, axes) Jacobian at the deposition point for flange poses (N, 4, 4) and joints (N, axes)."""
+        arm = self.cell.machine.chain
+        result: Array = jac.jacobian(arm, joints, self.cell.deposition_point(flange))
+        return result
+
+    def condition(self, points: Points, phi: Array, joints: Array) -> Array:
+        """(..., T) sigma_min / sigma_max of the scaled Jacobian at the deposition point, 0 where unreachable."""
+        flange = points.frames.at(phi).reshape(-1, 4, 4)
+        return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(joints.shape[:-1])
+
+    def condition_at(self, flange: Array, joints: Array) -> Array:
+        """(N,) the same for flange poses (N, 4, 4) and joints (N, axes)."""
+        good = np.isfinite(joints).all(axis=1)
+        value = np.zeros(len(joints))
+        if good.any():
+            value[good] = jac.condition(
+                self.jacobian_at(flange[good], joints[good]), self.parameters.characteristic_length
+            )
+        return value
+
+    def thresholds(self, points: Points) -> Array:
+        """(T,) the smallest condition allowed (eq. 19): given, or a quarter of its value at RZ = 0 with a floor."""
+        wanted = self.parameters.min_condition
+        if not isinstance(wanted, str):
+            return np.full(len(points), float(wanted))
+        phi, _ = self.cell.phi_of_rz(points.tool, np.zeros(len(points)))
+        at_zero = self.condition(points, phi, self.raw_joints(points, phi))
+        return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
+
+    def spin_rates(self, points: Points, phi: Array, joints: Array) -> tuple[Array, Array]:
+        """d q / d phi (N, axes) and the Jacobian (N, 6, axes) at N = T reachable points."""
+        flange = points.frames.at(phi)
+        matrix = self.jacobian_at(flange, joints)
+        twist = np.zeros((len(joints), 6, 1))
+        twist[:, 3:, 0] = self.cell.spin_axis(flange)
+        try:
+            rates = np.linalg.solve(matrix, twist)[:, :, 0]
+        except np.linalg.LinAlgError:
+            rates = (np.linalg.pinv(matrix) @ twist)[:, :, 0]
+        return rates, matrix
+
+
+def condition_margin(condition: Array, threshold: Array) -> Array:
+    """1 - threshold / condition: 0 where the condition is just kept, towards 1 far from singular."""
+    return np.asarray(1.0 - threshold / np.maximum(condition, 1e-12))

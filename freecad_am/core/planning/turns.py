@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Counts the turns of the axes along the whole job, and finds room for them where an axis is limited.
+
+A part of revolution turns one axis by a full turn per layer. An endless axis accumulates. A limited one turns back
+between beads; where a whole bead does not fit from the seam it was given, the seam is moved; where the axis
+has not even the stroke for a full turn, the bead is split.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import NOTE, WARNING, Issue
+from ..toolpath import Bead
+from .joint_path import BeadPath
+from .points import TURN
+from .task import Task
+
+Array = NDArray[np.float64]
+
+# an axis that moves this much between two beads is said to turn back, rad
+TURNS_BACK = 1.5 * math.pi
+# share of the stroke a piece of a split bead may use
+USABLE = 0.98
+
+
+def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with whole turns added so that each starts as near to the end of the one before as limits allow."""
+    limits = task.cell.limits
+    result: list[BeadPath] = []
+    back: dict[int, list[int]] = {}
+    before: Array | None = None
+    for path in paths:
+        if before is not None and path.reachable:
+            wanted = np.round((before - path.joints[0]) / TURN)
+            lowest = np.ceil((limits.lower - path.joints.min(axis=0)) / TURN - 1e-12)
+            highest = np.floor((limits.upper - path.joints.max(axis=0)) / TURN + 1e-12)
+            turns = np.where(lowest <= highest, np.clip(wanted, lowest, highest), 0.0)
+            path = replace(path, joints=path.joints + turns * TURN)
+            for axis in np.flatnonzero(np.abs(path.joints[0] - before) > TURNS_BACK):
+                back.setdefault(int(axis), []).append(path.layer)
+        if path.reachable:
+            before = path.joints[-1]
+        result.append(path)
+    names = task.cell.machine.axes
+    notes = [
+        Issue(NOTE, "UNWIND", f"axis {names[axis]} turns back {len(layers)} times between beads, first before layer "
+              f"{layers[0]}", layer=layers[0])
+        for axis, layers in back.items()
+    ]
+    return result, notes
+
+
+def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
+    """A closed bead started where the turning axis has room, and the index of the new start.
+
+    joints: (n, axes) counted on over the bead as it is. The bead itself where no axis turns or where no start helps.
+    """
+    axis = turning_axis(task, joints)
+    if axis is None or not bead.closed:
+        return bead, 0
+    limits = task.cell.limits
+    centre = 0.5 * (limits.lower[axis] + limits.upper[axis])
+    turn = joints[-1, axis] - joints[0, axis]
+    off = joints[:-1, axis] + 0.5 * turn - centre
+    off -= TURN * np.round(off / TURN)
+    index = int(np.abs(off).argmin())
+    return bead.started_at(index), index
+
+
+def turning_axis(task: Task, joints: Array) -> int | None:
+    """The limited axis that ends a whole turn or more away from where it started, None when there is none."""
+    if not np.isfinite(joints).all():
+        return None
+    turns = np.where(task.endless, 0.0, np.abs(np.round((joints[-1] - joints[0]) / TURN)))
+    return int(turns.argmax()) if turns.max() >= 1.0 else None
+
+
+def pieces(task: Task, bead: Bead, joints: Array) -> list[slice]:
+    """Where a bead must be split so that every limited axis has the stroke for each piece."""
+    limits = task.cell.limits
+    stroke = np.where(task.endless, np.inf, limits.upper - limits.lower) * USABLE
+    width = joints.max(axis=0) - joints.min(axis=0)
+    count = int(np.ceil((width / stroke).max()))
+    if count <= 1:
+        return [slice(0, len(bead))]
+    axis = int((width / stroke).argmax())
+    progress = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(joints[:, axis])))])
+    cuts = np.searchsorted(progress, progress[-1] * np.arange(1, count) / count)
+    ends = np.concatenate([[0], cuts, [len(bead) - 1]])
+    return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
+
+
+def cut(bead: Bead, part: slice) -> Bead:
+    """A part of a bead as an open bead of its own."""
+    return dataclasses.replace(
+        bead, points=bead.points[part], build=bead.build[part], tool=bead.tool[part], parameter=bead.parameter[part],
+        speed=bead.speed[part], width=None if bead.width is None else bead.width[part], closed=False,
+    )
+
+
+def is_spiral(bead: Bead) -> bool:
+    """True for an open bead that runs more than one turn about the axis."""
+    return not bead.closed and abs(bead.parameter[-1] - bead.parameter[0]) > 1.01 * TURN
+
+
+def seam_note(layers: list[int]) -> Issue:
+    """Says that seams were moved to find room for a limited axis."""
+    return Issue(NOTE, "SEAM_MOVED", f"the seams of {len(layers)} beads were moved to keep an axis within its limits",
+                 layer=layers[0])
+
+
+def split_note(layers: list[int]) -> Issue:
+    """Says that beads were split because an axis lacks the stroke."""
+    return Issue(WARNING, "BEAD_SPLIT", f"{len(layers)} beads were split because an axis has not the stroke for a whole "
+                 f"bead", layer=layers[0])

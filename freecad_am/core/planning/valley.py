@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Settles which of many equal optima is taken.
+
+On a part of revolution the objective does not depend on the offset of the rotation (ERRATA): the optimum is a flat
+valley. Of the solutions in it the one with the largest smallest margin to limits and singularities is taken;
+where several come equally close, the one with the least motion from the bead before.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import search
+from .points import TURN, Points
+from .task import Task
+
+Array = NDArray[np.float64]
+
+COARSE, FINE = 72, 21
+# two objectives count as equal within this share, two margins within this distance (1 is the middle of a range)
+FLAT = 1e-6
+CLOSE = 0.01
+
+
+def settle(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Array:
+    """(B, degree + 1) coefficients moved along their valley; unchanged where the optimum is the only one.
+
+    points may be thinned; coefficients (B, degree + 1) are the optimum found.
+    """
+    here = search.judge(task, points, thresholds, coefficients[None])
+    coarse = _moved(coefficients, np.broadcast_to(np.arange(COARSE)[:, None] * (TURN / COARSE), (COARSE, points.beads)))
+    rough = search.judge(task, points, thresholds, coarse)
+    flat = rough.objective <= here.objective * (1.0 + FLAT) + task.parameters.tolerance
+    margin = np.where(flat, rough.margin, -np.inf)
+    if not flat[1:].any():
+        return coefficients
+    peak = margin.argmax(axis=0) * (TURN / COARSE)
+    around = peak + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)
+    near = search.judge(task, points, thresholds, _moved(coefficients, around))
+    flat = near.objective <= here.objective * (1.0 + FLAT) + task.parameters.tolerance
+    margin = np.where(flat, near.margin, -np.inf)
+    chosen = _least_motion(task, points, near.coefficients, margin)
+    improved = margin[chosen, np.arange(points.beads)] > here.margin[0]
+    return np.where(improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients)
+
+
+def _moved(coefficients: Array, offsets: Array) -> Array:
+    moved = np.repeat(coefficients[None], len(offsets), axis=0)
+    moved[:, :, 0] += offsets
+    return moved
+
+
+def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) -> NDArray[np.int64]:
+    """(B,) index of the candidate of each bead: of those close to its largest margin, the nearest to the bead before."""
+    start = _joints_at(task, points, candidates, points.first)
+    end = _joints_at(task, points, candidates, np.append(points.first[1:], len(points)) - 1)
+    chosen = np.empty(points.beads, dtype=np.int64)
+    for bead in range(points.beads):
+        close = margin[:, bead] >= margin[:, bead].max() - CLOSE
+        if bead == 0 or not np.isfinite(margin[:, bead].max()):
+            chosen[bead] = margin[:, bead].argmax()
+            continue
+        step = start[:, bead] - end[chosen[bead - 1], bead - 1]
+        step -= TURN * np.round(step / TURN)
+        chosen[bead] = np.where(close, (step * step) @ task.weights, np.inf).argmin()
+    return chosen
+
+
+def _joints_at(task: Task, points: Points, candidates: Array, index: NDArray[np.int64]) -> Array:
+    """(C, B, axes) joints at one point of each bead, zero where unreachable."""
+    frames = points.frames
+    left = frames.left if len(frames.left) == 1 else frames.left[index]
+    right = frames.right if len(frames.right) == 1 else frames.right[index]
+    at = Points(
+        points.position[index], points.tool[index], points.parameter[index],
+        np.arange(points.beads), np.arange(points.beads), type(frames)(left, frames.sign, right),
+    )
+    value = np.stack([at.polynomial(row) for row in candidates])
+    phi = np.stack([task.rotation(at, row)[0] for row in value])
+    return np.nan_to_num(task.raw_joints(at, phi))
