@@ -56,14 +56,13 @@ class Outputs:
         except OSError as error:
             raise self._unwritable(self._target(name), error) from None
 
-    def publish(self, replaces: bool = True) -> list[str]:
+    def publish(self, earlier: set[str]) -> list[str]:
         """Move every file into place; the names, sorted. Ctrl-C waits meanwhile.
 
-        With `replaces`, what an earlier run left and this one has not is removed, programs first: none must stay
-        beside a report that does not know it.
+        What of `earlier` this run has not is removed first: no program must stay beside a report that does not know it.
         """
         names = sorted(_files(self.staging))
-        old = earlier_outputs(self.folder) - set(names) if replaces else set()
+        old = earlier - set(names)
         with _Uninterrupted():
             try:
                 self._refuse_folders(names)
@@ -117,10 +116,15 @@ class Outputs:
             os.rmdir(parent)
 
 
+def earlier_programs(folder: str) -> set[str]:
+    """Names of the controllers' texts in program/."""
+    files = _listed(os.path.join(folder, PROGRAMS))
+    return {f"{PROGRAMS}/{file}" for file in files if file.lower().endswith(PROGRAM_ENDINGS)}
+
+
 def earlier_outputs(folder: str) -> set[str]:
     """Names of the outputs of an earlier run: those its report tells of, and the controllers' texts in program/."""
-    names = {f"{PROGRAMS}/{file}" for file in _listed(os.path.join(folder, PROGRAMS))
-             if file.lower().endswith(PROGRAM_ENDINGS)}
+    names = earlier_programs(folder)
     report = _earlier_report(folder)
     if report is None:
         return names

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Brings a job's part into a document; of an FCStd part, sets properties first and recomputes it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any
+
+import FreeCAD as App
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+
+from .job import PartSource
+
+
+def bring(document: Any, part: PartSource) -> Any:
+    """The part as an object of the document. Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE."""
+    if not part.settings:
+        return api.open_part(document, part.file, part.object or "")
+    with tempfile.TemporaryDirectory() as folder:
+        changed = os.path.join(folder, os.path.basename(part.file))
+        _save_changed(part, changed)
+        return api.open_part(document, changed, part.object or "")
+
+
+def _save_changed(part: PartSource, path: str) -> None:
+    active = App.ActiveDocument
+    try:
+        source = App.openDocument(part.file, True)
+    except (OSError, RuntimeError, ValueError, AttributeError):
+        raise InputError("BAD_FILE", part.file, "it cannot be read as a FreeCAD document; save it again") from None
+    try:
+        for name, key, text in part.settings:
+            _set(source, name, key, text)
+        source.recompute()
+        invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State]
+        if invalid:
+            raise InputError("BAD_PART", "part.set", f"with these values {', '.join(invalid)} cannot be built; change them")
+        source.saveAs(path)
+    finally:
+        App.closeDocument(source.Name)
+        if active is not None:
+            App.setActiveDocument(active.Name)
+
+
+def _set(document: Any, name: str, key: str, text: str) -> None:
+    place = f"part.set.{name}.{key}"
+    name, constraints, _ = name.partition(".Constraints")
+    found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(name)
+    if len(found) != 1:
+        names = ", ".join(obj.Label for obj in document.Objects)
+        raise InputError("NO_OBJECT", place, f"{len(found)} objects are called {name!r}; there are {names}")
+    obj = found[0]
+    try:
+        if constraints:
+            obj.setDatum(key, App.Units.Quantity(text))
+        elif obj.TypeId == "Spreadsheet::Sheet":
+            if key not in obj.PropertiesList:
+                raise AttributeError(key)
+            obj.set(obj.getCellFromAlias(key) or key, text)
+        else:
+            obj.setExpression(key, None)  # a value that is set is meant, whatever it was computed from
+            setattr(obj, key, _typed(getattr(obj, key), text))
+    except AttributeError:
+        near = ", ".join(sorted(obj.PropertiesList))
+        raise InputError("BAD_VALUE", place, f"{name} has no property {key!r}; it has {near}") from None
+    except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
+        raise InputError("BAD_VALUE", place, f"{text!r} does not fit this property; give a value such as it has now") from None
+
+
+def _typed(now: Any, text: str) -> Any:
+    """The text as a value of the kind that the property has now."""
+    if "," in text and not isinstance(now, str):
+        raise ValueError(text)
+    if isinstance(now, App.Units.Quantity):
+        quantity = App.Units.Quantity(text)
+        if quantity.Unit != now.Unit and quantity.Unit != App.Units.Unit():
+            raise ValueError(text)
+        return quantity
+    if isinstance(now, bool):
+        if text not in ("true", "false"):
+            raise ValueError(text)
+        return text == "true"
+    if isinstance(now, int):
+        return int(text)
+    return float(text) if isinstance(now, float) else text

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""report.json: what was planned, and how good it is."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, Sequence
+
+import numpy as np
+
+from freecad_am.core.issues import Issue, has_errors
+from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.cell import Cell
+from freecad_am.core.motion import Motion
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.planning import comparison
+from freecad_am.core.planning.joint_path import JointPath
+from freecad_am.core.planning.task import Task
+from freecad_am.core.toolpath import Array, Toolpath
+
+VERSION = 1
+
+
+def build(
+    name: str, toolpath: Toolpath, motion: Motion, spacing: Sequence[Array], process: ProcessParameters,
+    issues: Sequence[Issue],
+) -> dict[str, Any]:
+    """The report of a toolpath alone; `add_joints` completes it. Lengths mm, times s; None where there is no value."""
+    return {
+        "version": VERSION,
+        "name": name,
+        "status": "infeasible" if has_errors(list(issues)) else "ok",
+        "issues": [issue.as_dict() for issue in issues],
+        "counts": {
+            "layers": len(toolpath.layers), "beads": toolpath.bead_count, "points": int(motion.deposit.sum())
+        },
+        "length_mm": toolpath.length,
+        "duration_s": motion.total_time + _standing(toolpath, process),
+        "spacing_mm": _spread(spacing),
+        "joints": None,
+        "comparison": [],
+        "process": _process(process),
+        "machine": None,
+        "timing_s": {},
+        "programs": [],
+    }
+
+
+def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float) -> None:
+    """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
+    branch = opw.branch_index(tuple(planned.branch.split()))
+    others = [dict(entry) for entry in planned.comparison]
+    report["joints"] = {
+        "method": planned.method,
+        "objective": planned.objective,
+        "feasible": planned.feasible,
+        **comparison.figures(Task(cell, branch, joints), planned.beads),
+        "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in others),
+        "branch": planned.branch,
+        "limits": planned.limits,
+        "stopped": _reasons(planned),
+    }
+    report["comparison"] = others
+    report["machine"] = {
+        "id": cell.machine.id, "title": cell.machine.title, "setup": cell.setup, "limits": planned.limits,
+        "axes": list(cell.machine.axes), "controller": cell.machine.controller_remark,
+    }
+
+
+def text(report: dict[str, Any]) -> str:
+    """The report as JSON; what is not finite becomes null."""
+    return json.dumps(_finite(report), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def speed_ratio(motion: Motion, cell: Cell) -> Array:
+    """(n, axes) speed of each axis on the segment that ends at the row, as a share of the largest it can do."""
+    turned = np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))
+    ratio: Array = turned / np.where(motion.duration > 0.0, motion.duration, np.inf)[:, None] / cell.machine.max_speed
+    return ratio
+
+
+def along_motion(planned: JointPath, motion: Motion) -> tuple[Array, Array]:
+    """Condition and its threshold at the deposit rows of a motion; NaN where a bead runs on over its own beginning."""
+    starts = np.flatnonzero(motion.point[motion.deposit] == 0)
+    condition = np.full(int(motion.deposit.sum()), np.nan)
+    threshold = condition.copy()
+    for start, path in zip(starts.tolist(), planned.beads):
+        condition[start : start + len(path.condition)] = path.condition
+        threshold[start : start + len(path.threshold)] = path.threshold
+    return condition, threshold
+
+
+def _standing(toolpath: Toolpath, process: ProcessParameters) -> float:
+    """Time the machine stands still on purpose, s; waits for inputs have no length."""
+    between = process.between_layers.wait * (len(toolpath.layers) - 1)
+    return between + (process.lead_on + process.lead_off) * toolpath.bead_count
+
+
+def _spread(spacing: Sequence[Array]) -> dict[str, float | None]:
+    if not spacing:
+        return {"min": None, "mean": None, "max": None}
+    values = np.concatenate(spacing)
+    return {"min": float(values.min()), "mean": float(values.mean()), "max": float(values.max())}
+
+
+def _process(process: ProcessParameters) -> dict[str, Any]:
+    return {
+        "travel_speed_mm_s": process.travel_speed, "bead_width_mm": process.bead_width,
+        "wire": {"diameter_mm": process.wire.diameter, "feed_mm_s": process.wire.feed},
+        "temperature": process.temperature, "gas": process.gas, "stand_off_mm": process.stand_off,
+    }
+
+
+def _reasons(planned: JointPath) -> dict[str, int]:
+    """Why the optimiser stopped, and on how many beads."""
+    reasons = [path.reason for path in planned.beads if path.reason]
+    return {reason: reasons.count(reason) for reason in dict.fromkeys(reasons)}
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(entry) for entry in value]
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, np.generic):
+        return _finite(value.item())
+    return value

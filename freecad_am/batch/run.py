@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs a job: part to programs in a document, and all that is written about it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from dataclasses import dataclass, field
+from typing import Any, Iterator
+
+from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
+
+from . import outputs, paths
+from .job import SECTIONS, Job
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run wrote (absolute paths) and how it ended: exit status 0 or 3."""
+
+    paths: list[str]
+    report: dict[str, Any]
+    exit_status: int
+
+
+@dataclass
+class Stages:
+    """The stages as far as they got: document objects and the findings about them."""
+
+    document: Any
+    toolpath: Any = None
+    joint_path: Any = None
+    program: Any = None
+    issues: list[Issue] = field(default_factory=list)
+    timing: dict[str, float] = field(default_factory=dict)
+
+    @contextlib.contextmanager
+    def timed(self, stage: str, session: Any) -> Iterator[None]:
+        """Tell of a stage and take its time."""
+        session.progress(stage.replace("_", " ") + " ...")
+        started = time.perf_counter()
+        yield
+        session.check()
+        self.timing[stage] = time.perf_counter() - started
+
+
+def default_folder(job: Job) -> str:
+    """Where the outputs go when nothing else is asked for."""
+    return os.path.join(job.folder, "out", job.name)
+
+
+def import_all() -> None:
+    """Import what a run needs, for a process that starts others."""
+    paths.require_freecad()
+    from freecad_am import api  # noqa: F401
+
+    from . import report  # noqa: F401
+
+
+def run(job: Job, folder: str, session: Any) -> Result:
+    """Plan a job and write its outputs into `folder`. `session` is told of progress and findings.
+
+    Raises InputError; then nothing is written. An infeasible job has a result, but no programs.
+    """
+    started = time.perf_counter()
+    paths.require_freecad()
+    import FreeCAD
+
+    try:
+        cell = check(job)
+        with outputs.Outputs(folder) as files:
+            document = FreeCAD.newDocument("Job")
+            try:
+                document.Label, document.UndoMode = job.name, 0
+                stages = plan(job, document, session)
+                result = _write(job, stages, cell, files, session, started)
+            finally:
+                FreeCAD.closeDocument(document.Name)
+            session.issues(stages.issues)
+            return result
+    except InputError as error:
+        if error.where.split(".")[0] in SECTIONS:
+            raise job.tree.placed(error) from None
+        raise
+
+
+def check(job: Job) -> Any:
+    """What can be refused before the long work starts: machine, limits, set-up, post, name of the program.
+
+    The cell without its feature, or None.
+    """
+    if job.program is not None:
+        from freecad_am.posts import catalogue
+
+        post = catalogue.load(job.program.post)
+        refuse = getattr(post, "check_name", None)
+        if refuse is not None:
+            refuse(job.name)
+    if job.cell is None:
+        return None
+    import numpy as np
+
+    from freecad_am.core.kinematics import cell
+
+    return cell.resolve(job.cell, np.eye(4))
+
+
+def plan(job: Job, document: Any, session: Any) -> Stages:
+    """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`."""
+    from freecad_am import api
+
+    from .part import bring
+
+    stages = Stages(document)
+    with stages.timed("part", session):
+        part = bring(document, job.part)
+    cell = None
+    if job.cell is not None:
+        with stages.timed("cell", session):
+            cell = api.make_cell(document, parameters=job.cell)
+    with stages.timed("feature", session):
+        feature = api.make_feature(
+            document, part, job.part.faces, strategy=job.strategy, build_direction=job.build_direction
+        )
+    stages.issues += api.issues(feature)
+    with stages.timed("toolpath", session):
+        stages.toolpath = api.make_toolpath(document, feature, cell, process=job.process)
+    stages.issues += api.issues(stages.toolpath)
+    if cell is None or has_errors(stages.issues):
+        return stages
+    with stages.timed("joint_path", session):
+        stages.joint_path = api.make_joint_path(document, stages.toolpath, cell, joints=job.joints)
+    stages.issues += api.issues(stages.joint_path)
+    if job.program is None or has_errors(stages.issues):
+        return stages
+    with stages.timed("program", session):
+        try:
+            stages.program = api.make_program(document, stages.joint_path, name=job.name, program=job.program)
+            stages.issues += api.issues(stages.program)
+        except InfeasibleError as error:
+            stages.issues += error.issues or [Issue("error", error.code, error.message)]
+    return stages
+
+
+def _write(job: Job, stages: Stages, cell: Any, files: outputs.Outputs, session: Any, started: float) -> Result:
+    """Everything but the page, which is drawn last."""
+    from freecad_am import api
+    from freecad_am.core.process import spacing
+
+    from . import report, waypoints
+
+    toolpath = api.result(stages.toolpath)
+    planned = None if stages.joint_path is None else api.result(stages.joint_path)
+    if planned is not None:
+        toolpath = planned.joint_path.toolpath(toolpath)
+    motion = waypoints.from_toolpath(toolpath) if planned is None else planned.motion
+    with stages.timed("waypoints", session):
+        files.write(outputs.WAYPOINTS, waypoints.text(motion, () if planned is None else cell.machine.axes))
+    programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
+    for name, content in programs.items():
+        files.write(f"{outputs.PROGRAMS}/{name}", content)
+    with stages.timed("document", session):
+        _save(stages.document, files.path(job.name + outputs.DOCUMENT_ENDING))
+    with stages.timed("report", session):
+        distances = spacing.between_layers(toolpath)
+        content = report.build(job.name, toolpath, motion, distances, job.process, stages.issues)
+        if planned is not None:
+            report.add_joints(content, planned.joint_path, cell, job.joints, stages.joint_path.Seconds)
+    content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
+    content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
+    files.write(outputs.REPORT, [report.text(content)])
+    with stages.timed("page", session):
+        files.write(outputs.PAGE, [_page(job, content, toolpath, motion, distances, planned, cell)])
+    written = files.publish(outputs.earlier_outputs(files.folder))
+    return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
+
+
+def _page(job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any) -> str:
+    from . import page, report
+
+    if planned is None:
+        return page.render(page.Content(content, toolpath, motion, distances))
+    condition, threshold = report.along_motion(planned.joint_path, motion)
+    return page.render(page.Content(
+        content, toolpath, motion, distances, job.cell.platform_diameter if job.cell else None, cell.limits,
+        report.speed_ratio(motion, cell), condition, threshold,
+    ))
+
+
+def _save(document: Any, path: str) -> None:
+    try:
+        document.saveAs(path)
+    except (OSError, RuntimeError) as error:
+        raise InputError("UNWRITABLE", os.path.dirname(path), f"the document cannot be saved ({error}); free the disk") from None
+    if not os.path.isfile(path):
+        raise InputError("UNWRITABLE", os.path.dirname(path), "the document cannot be saved; free the disk")
