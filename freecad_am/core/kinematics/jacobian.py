@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The geometric Jacobian over arrays of joint vectors, and how far from singular it is.
+
+A Jacobian mixes mm and rad, so every measure of it takes a characteristic length in mm that divides the
+translation rows (errata to Chalvin 2020, eq. 6). The condition is sigma_min / sigma_max of the scaled
+Jacobian: 1 is best, 0 is singular.
+
+Inside, an array holds one entry of the matrices of all poses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..geometry.frames import Array
+from . import eigen
+from .chain import Chain
+
+PIECE = 4096
+
+
+def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
+    """The geometric Jacobians (n, 6, axes): rows velocity (mm) and angular velocity per rad of each joint.
+
+    Joint angles `q` (n, axes) rad; `point` (n, 3) or (3,) in mm is the point of the last link whose velocity is
+    meant, given where it is now. Point and result in base_link.
+    """
+    angles = np.asarray(q, float)
+    count = len(angles)
+    frames = chain.frames(angles)
+    points = np.ascontiguousarray(np.broadcast_to(np.asarray(point, float), (count, 3)).T)
+    result = np.empty((6, chain.axes, count))
+    # (axes, 3, n) in memory
+    direction = frames.directions.transpose(1, 2, 0)
+    arm = points - frames.origins.transpose(1, 2, 0)
+    for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(direction[:, following], arm[:, last], out=result[row])
+        result[row] -= direction[:, last] * arm[:, following]
+        result[3 + row] = direction[:, row]
+    return result.transpose(2, 0, 1)
+
+
+def condition(jacobians: ArrayLike, length: float) -> Array:
+    """sigma_min / sigma_max (n,) of Jacobians (n, 6, axes) with translation rows divided by `length` mm.
+
+    Through the eigenvalues of J J^T: accurate to about 1e-15 divided by the condition itself.
+    """
+
+    def of_piece(scaled: Array) -> Array:
+        low, high = eigen.extremes(np.einsum("ikn,jkn->ijn", scaled, scaled))
+        result: Array = np.sqrt(np.maximum(low, 0.0) / high)
+        return result
+
+    return _in_pieces(of_piece, jacobians, length)
+
+
+def condition_bound(jacobians: ArrayLike, length: float) -> Array:
+    """A lower bound (n,) of `condition` at a fraction of its cost: 1 / (|J|_F |J^-1|_F), for (n, 6, 6).
+
+    The condition is at most 6 times the bound, for arms of the usual proportions 1 to 2.5 times. 0 where the last
+    three axes have no common inverse: at the wrist's singularity.
+    """
+    return _in_pieces(_frobenius, jacobians, length)
+
+
+def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
+    """The derivative (n,) of `condition` when the joints move with `rates` (n, 6), rad per unit of the parameter.
+
+    The point moves with the last link; where the rates leave it in place, as the rotation about the tool axis
+    does, a point fixed in the base frame gives the same. From the singular vectors and the
+    derivative of the columns: joint j turns the columns after it, and moves the point of those before it. NaN where
+    sigma_min is 0; where it is a double value the derivative is one-sided and not unique.
+    """
+    rates = np.asarray(rates, float).T
+
+    def of_piece(scaled: Array, piece: slice) -> Array:
+        change = _rate(scaled, rates[:, piece])
+        values, vectors = np.linalg.eigh(np.einsum("ikn,jkn->nij", scaled, scaled))
+        relative = []
+        for which in (0, -1):
+            left = np.ascontiguousarray(vectors[:, :, which].T)
+            # d(sigma^2) = 2 u^T dJ J^T u
+            product = np.einsum("in,ikn->kn", left, change) * np.einsum("in,ikn->kn", left, scaled)
+            relative.append(product.sum(axis=0) / values[:, which])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            result: Array = np.sqrt(values[:, 0] / values[:, -1]) * (relative[0] - relative[1])
+        return result
+
+    return _in_pieces(of_piece, jacobians, length, with_slice=True)
+
+
+def manipulability(jacobians: ArrayLike, length: float) -> Array:
+    """sqrt(det(J J^T)) (n,) of Jacobians (n, 6, 6) with translation rows divided by `length` mm; Yoshikawa 1985."""
+    result: Array = np.abs(np.linalg.det(np.asarray(jacobians, float))) / length**3
+    return result
+
+
+def _in_pieces(function: Callable[..., Array], jacobians: ArrayLike, length: float, with_slice: bool = False) -> Array:
+    """`function` of scaled Jacobians (6, axes, m), piece by piece, so that they stay in the processor's cache."""
+    matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
+    result = np.empty(matrices.shape[2])
+    for start in range(0, len(result), PIECE):
+        piece = slice(start, min(start + PIECE, len(result)))
+        scaled = np.array(matrices[:, :, piece], order="C")
+        scaled[:3] *= 1.0 / length
+        result[piece] = function(scaled, piece) if with_slice else function(scaled)
+    return result
+
+
+def _rate(matrices: Array, rates: Array) -> Array:
+    """The derivative (6, 6, n) of Jacobians along joint rates (6, n).
+
+    d J_i / d q_j is (z_j x v_i, z_j x z_i) for j <= i, and (z_i x v_j, 0) for j > i, with v and z the columns' halves.
+    """
+    velocity, direction = matrices[:3], matrices[3:]
+    turning = np.cumsum(direction * rates, axis=1)
+    carried = velocity * rates
+    carried = carried.sum(axis=1, keepdims=True) - np.cumsum(carried, axis=1)
+    return np.concatenate((_cross(turning, velocity) + _cross(direction, carried), _cross(turning, direction)))
+
+
+def _frobenius(matrices: Array) -> Array:
+    """1 / (|J|_F |J^-1|_F) (n,) of (6, 6, n), by blocks: [[A, B], [C, D]] with the inverse of D and of A - B D^-1 C."""
+    upper_right, lower_left = matrices[:3, 3:], matrices[3:, :3]
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        wrist = _inverse3(matrices[3:, 3:])
+        carried = _product(upper_right, wrist)
+        arm = _inverse3(matrices[:3, :3] - _product(carried, lower_left))
+        right = _product(arm, carried)
+        below = _product(wrist, lower_left)
+        left = _product(below, arm)
+        wrist += _product(left, carried)
+        squares = [_squared_norm(block) for block in (arm, right, left, wrist)]
+        bound = 1.0 / np.sqrt(_squared_norm(matrices) * sum(squares))
+    bound[np.isnan(bound) & ~np.isnan(matrices).any(axis=(0, 1))] = 0.0
+    return bound
+
+
+def _squared_norm(matrices: Array) -> Array:
+    """The sums of squares (n,) of the entries of matrices (k, k, n)."""
+    result: Array = np.einsum("ijn,ijn->n", matrices, matrices)
+    return result
+
+
+def _product(left: Array, right: Array) -> Array:
+    """Products (3, 3, n) of matrices (3, 3, n)."""
+    result: Array = np.einsum("ikn,kjn->ijn", left, right)
+    return result
+
+
+def _inverse3(matrices: Array) -> Array:
+    """Inverses of matrices (3, 3, n): the cross products of the rows are the columns of the adjugate."""
+    first, second, third = matrices
+    adjugate = np.stack((_cross(second, third), _cross(third, first), _cross(first, second)), axis=1)
+    adjugate *= 1.0 / np.einsum("in,in->n", first, adjugate[:, 0])
+    return adjugate
+
+
+def _cross(left: Array, right: Array) -> Array:
+    """Cross products (3, ...) of vectors along the first dimension."""
+    result = np.empty(np.broadcast_shapes(left.shape, right.shape))
+    for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(left[following], right[last], out=result[row])
+        result[row] -= left[last] * right[following]
+    return result
