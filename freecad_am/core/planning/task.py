@@ -91,6 +91,13 @@ class Task:
         return ~(np.isfinite(self.cell.limits.lower) & np.isfinite(self.cell.limits.upper))
 
     @cached_property
+    def middle(self) -> Array:
+        """(axes,) the middle of each axis's range, 0 where it has no end; rad."""
+        limits = self.cell.limits
+        with np.errstate(invalid="ignore"):
+            return np.where(self.endless, 0.0, 0.5 * (limits.lower + limits.upper))
+
+    @cached_property
     def weights(self) -> Array:
         """(axes,) weights of eq. 17, one over the stroke in rad."""
         stroke = np.where(self.endless, ENDLESS_STROKE, self.cell.limits.upper - self.cell.limits.lower)
@@ -118,9 +125,7 @@ class Task:
         """The same joints, each limited axis of each bead moved by the whole turns that centre its range."""
         low = np.minimum.reduceat(joints, points.first, axis=-2)
         high = np.maximum.reduceat(joints, points.first, axis=-2)
-        limits = self.cell.limits
-        middle = np.where(self.endless, 0.0, 0.5 * (limits.lower + limits.upper))
-        turns = np.where(self.endless, 0.0, np.round((middle - 0.5 * (low + high)) / TURN)) * TURN
+        turns = np.where(self.endless, 0.0, np.round((self.middle - 0.5 * (low + high)) / TURN)) * TURN
         if not np.nan_to_num(turns).any():
             return joints
         moved: Array = joints + turns[..., points.bead, :]

@@ -30,18 +30,13 @@ USABLE = 0.98
 
 
 def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with whole turns added so that each starts as near to the end of the one before as limits allow."""
-    limits = task.cell.limits
+    """The paths with whole turns added so that each starts as near to the end of the one before as its margin allows."""
     result: list[BeadPath] = []
     back: dict[int, list[int]] = {}
     before: Array | None = None
     for path in paths:
         if before is not None and path.reachable:
-            wanted = np.round((before - path.joints[0]) / TURN)
-            lowest = np.ceil((limits.lower - path.joints.min(axis=0)) / TURN - 1e-12)
-            highest = np.floor((limits.upper - path.joints.max(axis=0)) / TURN + 1e-12)
-            turns = np.where(lowest <= highest, np.clip(wanted, lowest, highest), 0.0)
-            path = replace(path, joints=path.joints + turns * TURN)
+            path = replace(path, joints=path.joints + _turns(task, path, before) * TURN)
             for axis in np.flatnonzero(np.abs(path.joints[0] - before) > TURNS_BACK):
                 back.setdefault(int(axis), []).append(path.layer)
         if path.reachable:
@@ -54,6 +49,17 @@ def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[
         for axis, layers in back.items()
     ]
     return result, notes
+
+
+def _turns(task: Task, path: BeadPath, before: Array) -> Array:
+    """(axes,) whole turns that bring a bead nearest to the joints before without costing it any of its margin."""
+    limits = task.cell.limits
+    half = np.where(task.endless, 0.0, 0.5 * (limits.upper - limits.lower))
+    kept = 0.0 if path.margin < 0.0 else (path.margin - 1e-9) * half
+    lowest = np.ceil((limits.lower + kept - path.joints.min(axis=0)) / TURN - 1e-12)
+    highest = np.floor((limits.upper - kept - path.joints.max(axis=0)) / TURN + 1e-12)
+    wanted = np.round((before - path.joints[0]) / TURN)
+    return np.where(lowest <= highest, np.clip(wanted, lowest, highest), 0.0)
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:

@@ -17,7 +17,9 @@ from .task import Task
 
 Array = NDArray[np.float64]
 
-COARSE, FINE = 72, 21
+COARSE, FINE = 72, 15
+# two peaks of the margin are different ones when they lie this far apart, in coarse steps (30 deg)
+APART = 6
 # two objectives count as equal within this share, two margins within this distance (1 is the middle of a range)
 FLAT = 1e-6
 CLOSE = 0.01
@@ -35,14 +37,22 @@ def settle(task: Task, points: Points, thresholds: Array, coefficients: Array) -
     margin = np.where(flat, rough.margin, -np.inf)
     if not flat[1:].any():
         return coefficients
-    peak = margin.argmax(axis=0) * (TURN / COARSE)
-    around = peak + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)
-    near = search.judge(task, points, thresholds, _moved(coefficients, around))
+    around = _peaks(margin) * (TURN / COARSE)
+    offsets = (around[:, None] + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)).reshape(-1, points.beads)
+    near = search.judge(task, points, thresholds, _moved(coefficients, offsets))
     flat = near.objective <= here.objective * (1.0 + FLAT) + task.parameters.tolerance
     margin = np.where(flat, near.margin, -np.inf)
     chosen = _least_motion(task, points, near.coefficients, margin)
     improved = margin[chosen, np.arange(points.beads)] > here.margin[0]
     return np.where(improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients)
+
+
+def _peaks(margin: Array) -> Array:
+    """(2, B) coarse steps of the two highest peaks of the margin (C, B) around the turn that are different ones."""
+    first = margin.argmax(axis=0)
+    apart = np.abs((np.arange(COARSE)[:, None] - first + COARSE // 2) % COARSE - COARSE // 2)
+    second = np.where(apart >= APART, margin, -np.inf).argmax(axis=0)
+    return np.stack([first, second]).astype(float)
 
 
 def _moved(coefficients: Array, offsets: Array) -> Array:
@@ -52,7 +62,7 @@ def _moved(coefficients: Array, offsets: Array) -> Array:
 
 
 def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) -> NDArray[np.int64]:
-    """(B,) index of the candidate of each bead: of those close to its largest margin, the nearest to the bead before."""
+    """(B,) index of each bead's candidate: of those close to its largest margin, the nearest to the bead before."""
     start = _joints_at(task, points, candidates, points.first)
     end = _joints_at(task, points, candidates, np.append(points.first[1:], len(points)) - 1)
     chosen = np.empty(points.beads, dtype=np.int64)
