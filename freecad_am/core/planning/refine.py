@@ -46,11 +46,15 @@ class _State:
     constraint_rates: Array
 
 
-def refine(task: Task, points: Points, thresholds: Array, start: Array) -> Refined:
-    """Improve the coefficients (B, degree + 1) of every bead; points must be all points of the beads."""
+def refine(
+    task: Task, points: Points, thresholds: Array, start: Array, wanted: NDArray[np.bool_] | None = None
+) -> Refined:
+    """Improve the coefficients (B, degree + 1) of every bead, or of the wanted (B,); points are all points of the beads."""
     first = _state(task, points, thresholds, start)
     tolerance = task.parameters.tolerance
     done = np.isfinite(first.objective) & (first.predicted <= tolerance) & (first.constraints >= 0.0).all(axis=1)
+    if wanted is not None:
+        done |= ~wanted
     coefficients, objective = start.copy(), first.objective.copy()
     reasons = [STATIONARY] * points.beads
     iterations = [0] * points.beads

@@ -15,14 +15,16 @@ from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
 from . import criteria
-from .points import Points
+from .points import Points, steps
 from .task import UNREACHABLE, Task, condition_margin
 
 Array = NDArray[np.float64]
 
-POINTS_PER_BEAD = 13
-OFFSETS = 36
+POINTS_PER_BEAD = 11
+OFFSETS = 30
 SLOPES = np.linspace(-2.0, 2.0, 17)
+# of candidates with the same objective the one that moves the joints less is taken
+TIE = 1e-6
 # poses handled at once, so that a long job does not fill the memory
 CHUNK = 200_000
 # sigma_min / sigma_max lies between the bound 1 / kappa_F and its 6-fold: kappa_2 <= kappa_F <= 6 kappa_2
@@ -107,7 +109,8 @@ def _range_margin(task: Task, points: Points, phi: Array) -> Array | float:
 def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
     name = task.parameters.objective
     if name in criteria.JOINT_ONLY:
-        return criteria.JOINT_ONLY[name](task, points, joints)
+        value = criteria.JOINT_ONLY[name](task, points, joints)
+        return value if name == "displacement" else value + TIE * _turned(points, joints)
     flat = joints.reshape(-1, joints.shape[-1])
     flange = points.frames.at(phi).reshape(-1, 4, 4)
     good = np.isfinite(flat).all(axis=1)
@@ -117,7 +120,13 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
     measure = jac.manipulability if name == "manipulability" else jac.condition
     worth[good] = 1.0 / np.maximum(measure(matrix, length), 1e-300)
     mean: Array = points.total(worth.reshape(phi.shape)) / np.bincount(points.bead)
-    return mean
+    return mean + TIE * _turned(points, joints)
+
+
+def _turned(points: Points, joints: Array) -> Array:
+    """(..., B) sum of the squared steps of all axes alike, rad^2."""
+    step = steps(joints, points.starts)
+    return points.total((step * step).sum(axis=-1))
 
 
 def _screened_condition_margin(

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
 ENDLESS_STROKE = 1e6 * TURN
+# kept free beside every limit: the program's last digit must not take an axis past it, rad
+RESERVE = np.radians(0.05)
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
 UNREACHABLE = -np.inf
@@ -60,14 +62,14 @@ class LimitRows:
         return np.where(np.isnan(worst), UNREACHABLE, 1.0 - worst)
 
 
-def limit_rows(limits: Limits) -> LimitRows:
-    """The rows of a limit set, single axes first, then what couples several."""
+def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
+    """The rows of a limit set, single axes first, then what couples several; `reserve` (rad) narrower on both sides."""
     axes = len(limits.lower)
     finite = np.isfinite(limits.lower) & np.isfinite(limits.upper)
     return LimitRows(
         matrix=np.vstack([np.eye(axes)[finite], limits.coefficients.reshape(-1, axes)]),
-        lower=np.concatenate([limits.lower[finite], limits.coupled_lower]),
-        upper=np.concatenate([limits.upper[finite], limits.coupled_upper]),
+        lower=np.concatenate([limits.lower[finite], limits.coupled_lower]) + reserve,
+        upper=np.concatenate([limits.upper[finite], limits.coupled_upper]) - reserve,
         labels=tuple(np.array(limits.labels)[np.concatenate([finite, np.ones(len(limits.coupled_lower), bool)])]),
     )
 
@@ -82,8 +84,8 @@ class Task:
 
     @cached_property
     def rows(self) -> LimitRows:
-        """The limits as rows."""
-        return limit_rows(self.cell.limits)
+        """The limits as rows, with the reserve taken off."""
+        return limit_rows(self.cell.limits, RESERVE)
 
     @cached_property
     def endless(self) -> NDArray[np.bool_]:

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Finds room for the turns of limited axes: another seam, or as the last resort a split bead."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import ERROR, Issue
+from ..kinematics.limits import Limits
+from ..toolpath import Bead
+from . import refine, search, turns, valley
+from .joint_path import BeadPath
+from .judged import judged
+from .points import gather
+from .task import Task
+
+Array = NDArray[np.float64]
+Place = tuple[int, int]
+
+# slopes that close a full turn in joint space: only with these can a seam be moved after the planning
+CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
+OFFSETS = 72
+MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
+
+
+def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> list[list[BeadPath] | None]:
+    """For each bead the path from another seam, or of its pieces; None where neither keeps all limits.
+
+    The rotations are looked for as if the last axis had no end; then a start, or cuts, are found that suit its limits.
+    """
+    usable = [k for k, bead in enumerate(beads) if not turns.is_spiral(bead)]
+    result: list[list[BeadPath] | None] = [None] * len(beads)
+    if task.endless.all() or not usable:
+        return result
+    free = dataclasses.replace(task, cell=dataclasses.replace(task.cell, limits=_last_endless(task.cell.limits)))
+    coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
+    threshold = task.thresholds(coarse)
+    found = search.everywhere(free, coarse, threshold, CLOSING_SLOPES, OFFSETS)
+    best, each = found.best(), np.arange(len(usable))
+    settled = valley.settle(free, coarse, threshold, found.coefficients[best, each])
+    for number, k in enumerate(usable):
+        if found.margin[best[number], number] >= 0.0:
+            result[k] = _fitted(task, free, beads[k], places[k], settled[number : number + 1])
+    return result
+
+
+def put_in(
+    task: Task, paths: Sequence[BeadPath], helped: Mapping[int, list[BeadPath]]
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with those that were helped in their places, beads numbered anew, and what was done said."""
+    result: list[BeadPath] = []
+    issues: list[Issue] = []
+    for k, path in enumerate(paths):
+        result += helped.get(k, [path])
+        if k not in helped and path.margin < 0.0 and turns.is_spiral(path.bead) and not task.endless.all():
+            if turns.turning_axis(task, path.joints) is not None:
+                issues.append(Issue(ERROR, "SPIRAL_LIMITED", "a spiral turns an axis without end, and this set of limits ends "
+                                    "it; use path: layers, or a limit set with an endless axis", layer=path.layer))
+    moved = sorted({found[0].layer for found in helped.values() if len(found) == 1})
+    split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
+    issues += ([turns.seam_note(moved)] if moved else []) + ([turns.split_note(split)] if split else [])
+    return _numbered(result), issues
+
+
+def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Array) -> list[BeadPath] | None:
+    whole = _one(free, bead, place, coefficients, MOVED)
+    started, index = turns.moved_seam(task, bead, whole.joints)
+    if index:
+        moved = _one(task, started, place, coefficients, MOVED)
+        if moved.margin >= 0.0:
+            return [moved]
+    parts = turns.pieces(task, bead, whole.joints)
+    if len(parts) == 1:
+        return None
+    cuts = [_one(task, turns.cut(bead, part), place, coefficients, SPLIT) for part in parts]
+    return cuts if all(piece.margin >= 0.0 for piece in cuts) else None
+
+
+def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str) -> BeadPath:
+    points = gather([bead], task.cell)
+    given = refine.Refined(coefficients, np.zeros(1), (reason,), (0,))
+    return judged(task, [bead], [place], points, task.thresholds(points), coefficients, given)[0]
+
+
+def _last_endless(limits: Limits) -> Limits:
+    last = np.arange(limits.axes) == limits.axes - 1
+    return dataclasses.replace(
+        limits, lower=np.where(last, -np.inf, limits.lower), upper=np.where(last, np.inf, limits.upper)
+    )
+
+
+def _numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
+    count: dict[int, int] = {}
+    result = []
+    for path in paths:
+        index = count.get(path.layer, 0)
+        count[path.layer] = index + 1
+        result.append(dataclasses.replace(path, index=index))
+    return result
