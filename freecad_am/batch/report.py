@@ -50,7 +50,7 @@ def build(
 
 def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float) -> None:
     """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
-    branch = opw.branch_index(tuple(planned.branch.split()))
+    branch = opw.branch_index(planned.branch)
     others = [dict(entry) for entry in planned.comparison]
     report["joints"] = {
         "method": planned.method,
@@ -58,7 +58,7 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
         "feasible": planned.feasible,
         **comparison.figures(Task(cell, branch, joints), planned.beads),
         "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in others),
-        "branch": planned.branch,
+        "branch": list(planned.branch),
         "limits": planned.limits,
         "stopped": _reasons(planned),
     }

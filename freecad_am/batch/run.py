@@ -94,9 +94,7 @@ def check(job: Job) -> Any:
         from freecad_am.posts import catalogue
 
         post = catalogue.load(job.program.post)
-        refuse = getattr(post, "check_name", None)
-        if refuse is not None:
-            refuse(job.name)
+        post.program_name(job.name, "name")
     if job.cell is None:
         return None
     import numpy as np

@@ -1,43 +1,68 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How far layers really are apart: from each deposit point to the nearest point of the layer before.
 
-The curve of a layer is the polyline through its points, straight between them. Distances to it are exact; against
-the true curve, whose chords the segments are, they are off by at most the chord error of the toolpath.
+The points of a bead lie on its curve, the chords between them do not: on a circle they run inside by up to the chord
+error, which would show as spacing. So the curve is a smooth one through the points - in each segment a cubic that is a
+circular arc to sixth order in the angle it turns - and keeps corners as they are.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..toolpath import Array, Layer, Toolpath
+from ..toolpath import Array, Bead, Layer, Toolpath
 
+CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
+_BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Segments start, end (m, 3) with the derivatives (m, 3) of their cubics there; `low` and `high` (m,) bound the
+    cubics' variable, which is 0 at the start and 1 at the end."""
+
+    start: Array
+    end: Array
+    start_slope: Array
+    end_slope: Array
+    low: Array
+    high: Array
 
 
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit."""
     return tuple(
-        to_curve(_points(layer), *_segments(below)) for below, layer in zip(toolpath.layers, toolpath.layers[1:])
+        distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
+        for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False)
     )
 
 
-def to_curve(points: Array, start: Array, end: Array) -> Array:
-    """(n,) distance from points (n, 3) to the nearest of the segments start, end (m, 3), m >= 1; in their unit.
+def curve_of(layer: Layer) -> Curve:
+    """The smooth curve through the points of a layer's beads."""
+    pieces = [_bead_curve(bead) for bead in layer.beads]
+    return Curve(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
 
-    The nearest vertex bounds the distance from above, so only segments whose middle is nearer than this bound plus
-    half the longest segment can be nearer still; all of those are tried.
+
+def distance(points: Array, curve: Curve) -> Array:
+    """(n,) distance from points (n, 3) to the curve, in their unit.
+
+    The nearest vertex bounds the distance from above, so only segments whose middle is nearer than this bound plus half
+    the longest segment can hold the nearest point of the chords; all of those are tried, and the foot found is
+    moved along its cubic.
     """
-    half = np.linalg.norm(end - start, axis=1) * 0.5
-    bound, _ = cKDTree(np.concatenate((start, end[-1:]))).query(points)
-    middles = cKDTree(0.5 * (start + end))
-    radius = (bound + half.max()) * (1.0 + 1e-12)
-    nearest = bound * bound
-    for index in np.array_split(np.arange(len(points)), _parts(middles, points, radius)):
-        _try_segments(nearest, index, _within(middles, points[index], radius[index]), points, start, end)
-    distance: Array = np.sqrt(nearest)
-    return distance
+    half = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max())
+    bound, _ = cKDTree(np.concatenate((curve.start, curve.end[-1:]))).query(points)
+    middles = cKDTree(0.5 * (curve.start + curve.end))
+    radius = (bound + half) * (1.0 + 1e-9)
+    segment = np.empty(len(points), dtype=np.intp)
+    for some in np.array_split(np.arange(len(points)), _parts(middles, points, radius)):
+        segment[some] = _nearest_chord(middles, points[some], radius[some], curve)
+    return _to_cubic(points, segment, curve)
 
 
 def _parts(middles: cKDTree, points: Array, radius: Array) -> int:
@@ -46,33 +71,80 @@ def _parts(middles: cKDTree, points: Array, radius: Array) -> int:
     return min(len(points), 1 + int(per_point * len(points) / _CHUNK))
 
 
-def _within(middles: cKDTree, points: Array, radius: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Which point goes with which candidate segment, as two equally long arrays ordered by point."""
+def _nearest_chord(middles: cKDTree, points: Array, radius: Array, curve: Curve) -> NDArray[np.intp]:
+    """(n,) index of the segment whose chord is nearest to each point."""
     found = middles.query_ball_point(points, radius, return_sorted=False)
     count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
     segment = np.fromiter((i for some in found for i in some), dtype=np.intp, count=int(count.sum()))
-    return np.repeat(np.arange(len(points)), count), segment
+    which = np.repeat(np.arange(len(points)), count)
+    along = curve.end[segment] - curve.start[segment]
+    offset = points[which] - curve.start[segment]
+    offset -= _share(offset, along)[:, None] * along
+    squared = np.einsum("ij,ij->i", offset, offset)
+    least = np.minimum.reduceat(squared, np.cumsum(count) - count)
+    hits = np.flatnonzero(squared == least[which])
+    first = hits[np.unique(which[hits], return_index=True)[1]]
+    return segment[first]
 
 
-def _try_segments(
-    nearest: Array, index: NDArray[np.intp], pairs: tuple[NDArray[np.intp], NDArray[np.intp]],
-    points: Array, start: Array, end: Array,
-) -> None:
-    """Lower the squared distances `nearest[index]` to those of the paired segments."""
-    which, segment = pairs
-    along = end[segment] - start[segment]
-    offset = points[index[which]] - start[segment]
-    length = np.einsum("ij,ij->i", along, along)
-    share = np.einsum("ij,ij->i", offset, along) / np.where(length > 0.0, length, 1.0)
-    offset -= np.clip(share, 0.0, 1.0)[:, None] * along
-    np.minimum.at(nearest, index[which], np.einsum("ij,ij->i", offset, offset))
+def _share(offset: Array, along: Array) -> Array:
+    squared = np.einsum("ij,ij->i", along, along)
+    share: Array = np.clip(np.einsum("ij,ij->i", offset, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
+    return share
 
 
-def _points(layer: Layer) -> Array:
-    points: Array = np.concatenate([bead.points for bead in layer.beads])
-    return points
+def _to_cubic(points: Array, segment: NDArray[np.intp], curve: Curve) -> Array:
+    """(n,) distance to the cubic of the given segments, by Newton's steps from the foot on the chord."""
+    p, q = curve.start[segment], curve.end[segment]
+    a, b = curve.start_slope[segment], curve.end_slope[segment]
+    low, high = curve.low[segment], curve.high[segment]
+    d = q - p
+    square, cube = 3.0 * d - 2.0 * a - b, a + b - 2.0 * d
+    u = _share(points - p, d)
+    for _ in range(3):
+        v = u[:, None]
+        away = p + v * (a + v * (square + v * cube)) - points
+        slope = a + v * (2.0 * square + 3.0 * v * cube)
+        bend = 2.0 * square + 6.0 * v * cube
+        rate = np.einsum("ij,ij->i", slope, slope) + np.einsum("ij,ij->i", away, bend)
+        step = np.einsum("ij,ij->i", away, slope) / np.where(rate > 0.0, rate, np.inf)
+        u = np.clip(u - step, low, high)
+    v = u[:, None]
+    found: Array = np.linalg.norm(p + v * (a + v * (square + v * cube)) - points, axis=1)
+    return found
 
 
-def _segments(layer: Layer) -> tuple[Array, Array]:
-    beads = layer.beads
-    return np.concatenate([b.points[:-1] for b in beads]), np.concatenate([b.points[1:] for b in beads])
+def _bead_curve(bead: Bead) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """The columns of `Curve` for one bead."""
+    points = bead.points
+    step = np.diff(points, axis=0)
+    length = np.linalg.norm(step, axis=1)
+    chord = step / np.where(length > 0.0, length, 1.0)[:, None]
+    before, after = np.roll(chord, 1, axis=0), chord
+    smooth = np.einsum("ij,ij->i", before, after) > np.cos(CORNER)  # at the start of each segment
+    smooth[0] &= bead.closed
+    # the tangent of the parabola through three points: the nearer neighbour counts more
+    tangent = _unit(before * length[:, None] + after * np.roll(length, 1)[:, None])
+    at_start, at_end = tangent, np.roll(tangent, -1, axis=0)
+    smooth_end = np.roll(smooth, -1)
+    # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
+    start = np.where(smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord))
+    end = np.where(smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord))
+    # derivative of a cubic that meets the arc in its middle: chord / cos^2 of a quarter of the angle turned
+    cosine = np.sqrt(0.5 * (1.0 + np.clip(np.einsum("ij,ij->i", start, end), -1.0, 1.0)))
+    size = (length / (0.5 * (1.0 + cosine)))[:, None]
+    return (
+        points[:-1], points[1:], start * size, end * size,
+        np.where(smooth, -_BEYOND, 0.0), np.where(smooth_end, 1.0 + _BEYOND, 1.0),
+    )
+
+
+def _mirrored(tangent: Array, chord: Array) -> Array:
+    """The tangent at the other end of the arc with this chord."""
+    return 2.0 * np.einsum("ij,ij->i", tangent, chord)[:, None] * chord - tangent
+
+
+def _unit(vectors: Array) -> Array:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    unit: Array = vectors / np.where(length > 0.0, length, 1.0)
+    return unit
