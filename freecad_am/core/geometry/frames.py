@@ -110,6 +110,10 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
     bisector = start + end
     length = np.linalg.norm(bisector, axis=-1, keepdims=True)
     bisector = np.where(length > 1e-14, bisector / np.where(length > 1e-14, length, 1.0), _normal_to(start))
+    # of nearly opposite vectors the sum has lost the digits of what it has along them, which is half its length
+    along = (bisector * start).sum(axis=-1, keepdims=True)
+    bisector = bisector + (0.5 * length - along) * start
+    bisector /= np.linalg.norm(bisector, axis=-1, keepdims=True)
     return _reflection(bisector) @ _reflection(start)
 
 

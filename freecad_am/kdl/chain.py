@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A machine as a PyKDL chain: the second opinion on our own kinematics. The only user of PyKDL.
+
+Built from the joint frames of the machine file alone; numbers go in and come out one at a time, so this is for
+checks, not for planning.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.kinematics.machine import Machine
+
+Array = NDArray[np.float64]
+SOLVERS = ("nr", "lma")
+ITERATIONS = 100
+
+
+def available() -> bool:
+    """Whether PyKDL is installed."""
+    try:
+        _kdl()
+    except ImportError:
+        return False
+    return True
+
+
+def _kdl() -> ModuleType:
+    import PyKDL  # only where it is used: most jobs start without it
+
+    module: ModuleType = PyKDL
+    return module
+
+
+class KdlArm:
+    """The chain of a machine in PyKDL. Poses (n, 4, 4) of the flange in base_link, mm; joint angles (n, axes) rad."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.kdl = _kdl()
+        self.axes = len(machine.axes)
+        # a fixed segment to each joint's frame, then the joint about its axis through that frame's origin
+        self.chain = self.kdl.Chain()
+        for index, (origin, direction) in enumerate(zip(machine.chain.origins, machine.chain.directions, strict=True)):
+            self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self._frame(origin)))
+            axis = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), self.kdl.Vector(*direction), self.kdl.Joint.RotAxis)
+            self.chain.addSegment(self.kdl.Segment(axis, self.kdl.Frame()))
+        self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self._frame(machine.chain.flange)))
+        self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)
+        self._jacobian = self.kdl.ChainJntToJacSolver(self.chain)
+
+    def forward(self, q: ArrayLike) -> Array:
+        """Flange poses (n, 4, 4) of joint angles `q` (n, axes)."""
+        result = np.zeros((len(np.asarray(q)), 4, 4))
+        result[:, 3, 3] = 1.0
+        frame = self.kdl.Frame()
+        for row, angles in zip(result, np.asarray(q, float), strict=True):
+            self._forward.JntToCart(self._angles(angles), frame)
+            row[:3, :3] = [[frame.M[i, k] for k in range(3)] for i in range(3)]
+            row[:3, 3] = [frame.p[i] for i in range(3)]
+        return result
+
+    def jacobian(self, q: ArrayLike) -> Array:
+        """Geometric Jacobians (n, 6, axes) at the flange's origin, base_link axes, rows velocity and angular velocity."""
+        result = np.empty((len(np.asarray(q)), 6, self.axes))
+        columns = self.kdl.Jacobian(self.axes)
+        for row, angles in zip(result, np.asarray(q, float), strict=True):
+            self._jacobian.JntToJac(self._angles(angles), columns)
+            row[:] = [[columns[i, k] for k in range(self.axes)] for i in range(6)]
+        return result
+
+    def inverse(self, poses: ArrayLike, seeds: ArrayLike, solver: str = "nr", tolerance: float = 1e-6) -> Array:
+        """Joint angles (n, axes) found numerically from `seeds` (n, axes); NaN where the solver gives up.
+
+        `solver` is 'nr' (Newton-Raphson) or 'lma' (Levenberg-Marquardt); `tolerance` in mm and rad.
+        """
+        solve = self.solver(solver, tolerance)
+        seeds = np.asarray(seeds, float)
+        result = np.full(seeds.shape, np.nan)
+        found = self.kdl.JntArray(self.axes)
+        for row, pose, seed in zip(result, np.asarray(poses, float), seeds, strict=True):
+            if solve.CartToJnt(self._angles(seed), self._frame(pose), found) >= 0:
+                row[:] = [found[i] for i in range(self.axes)]
+        return result
+
+    def solver(self, name: str, tolerance: float = 1e-6) -> Any:
+        """PyKDL's own solver object 'nr' or 'lma'."""
+        if name == "lma":
+            return self.kdl.ChainIkSolverPos_LMA(self.chain, tolerance, ITERATIONS)
+        if name != "nr":
+            raise ValueError(f"{name!r} is none of {', '.join(SOLVERS)}")
+        # the solvers keep no reference of their own to one another
+        self._velocity = self.kdl.ChainIkSolverVel_pinv(self.chain)
+        return self.kdl.ChainIkSolverPos_NR(self.chain, self._forward, self._velocity, ITERATIONS, tolerance)
+
+    def _angles(self, angles: Array) -> Any:
+        array = self.kdl.JntArray(self.axes)
+        for index, angle in enumerate(angles):
+            array[index] = float(angle)
+        return array
+
+    def _frame(self, pose: Array) -> Any:
+        rotation = self.kdl.Rotation(*(float(entry) for entry in pose[:3, :3].ravel()))
+        return self.kdl.Frame(rotation, self.kdl.Vector(*(float(entry) for entry in pose[:3, 3])))

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The closed form of every machine against its joint frames: round trips, branches, singularities."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics import machine, opw
+
+MACHINES = [name for name, _ in machine.known()]
+
+
+@pytest.fixture(params=MACHINES)
+def arm(request):
+    return machine.load(request.param)
+
+
+def turned_apart(first, second):
+    """The difference of angles without whole turns."""
+    return np.abs((first - second + np.pi) % (2 * np.pi) - np.pi)
+
+
+def random_joints(arm, count, seed=11):
+    """Joint vectors over the whole circle, a third within the maker's limits."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (count, 6))
+    limits = arm.limits("maker")
+    q[::3] = rng.uniform(limits.lower, limits.upper, q[::3].shape)
+    return q
+
+
+def test_forward_agrees_with_the_joint_frames(arm):
+    q = random_joints(arm, 500)
+    assert np.abs(arm.opw.forward(q) - arm.chain.forward(q)).max() < 1e-9
+    assert arm.opw.forward(q[0]).shape == (4, 4)
+    assert np.abs(arm.opw.forward(q.reshape(5, 100, 6)) - arm.chain.forward(q.reshape(5, 100, 6))).max() < 1e-9
+
+
+def test_inverse_finds_the_joints_and_every_branch_gives_the_pose(arm):
+    q = random_joints(arm, 5000)
+    poses = arm.chain.forward(q)
+    solutions = arm.opw.inverse(poses)
+    assert solutions.shape == (8, len(q), 6)
+    assert np.nanmax(np.abs(solutions)) <= np.pi
+    missing = np.isnan(solutions)
+    assert np.array_equal(missing.any(axis=-1), missing.all(axis=-1))
+    reached = ~missing[..., 0]
+    back = arm.chain.forward(solutions)
+    off = np.abs(back - poses)[reached]
+    assert off[:, :3, 3].max() < 1e-8
+    assert off[:, :3, :3].max() < 1e-10
+    # the joints it was made of are the solution of their own branch
+    found = solutions[arm.opw.branch_of(q), np.arange(len(q))]
+    clear = np.abs(np.sin(q[:, 4])) > 1e-3
+    assert turned_apart(found, q)[clear].max() < 1e-7
+    # and the branches are eight different ones
+    branches = np.broadcast_to(np.arange(8)[:, None], reached.shape)
+    assert np.array_equal(arm.opw.branch_of(solutions)[reached], branches[reached])
+
+
+def test_one_branch_is_the_same_as_in_all(arm):
+    poses = arm.chain.forward(random_joints(arm, 300))
+    solutions = arm.opw.inverse(poses)
+    for branch in range(8):
+        assert np.array_equal(arm.opw.inverse_branch(poses, branch), solutions[branch], equal_nan=True)
+
+
+def test_pieces_do_not_show(arm):
+    q = random_joints(arm, opw.CHUNK + 3)
+    poses = arm.chain.forward(q)
+    parts = np.concatenate([arm.opw.inverse(poses[:100]), arm.opw.inverse(poses[100:])], axis=1)
+    assert np.array_equal(arm.opw.inverse(poses), parts, equal_nan=True)
+    assert arm.opw.inverse(poses[:0]).shape == (8, 0, 6)
+
+
+@pytest.mark.parametrize("bend", [0.0, 1e-300, 1e-16, 1e-12, 1e-9, 1e-6, 1e-4])
+def test_a_straight_wrist_keeps_its_pose(arm, bend):
+    q = random_joints(arm, 400)
+    q[:, 4] = bend * np.sign(q[:, 4])
+    poses = arm.chain.forward(q)
+    solutions = arm.opw.inverse(poses)
+    # through the pose's own branch and its flip alike
+    for flip in (0, 1):
+        found = solutions[(arm.opw.branch_of(q) & 6) + flip, np.arange(len(q))]
+        assert np.isfinite(found).all()
+        off = np.abs(arm.chain.forward(found) - poses)
+        assert off[:, :3, 3].max() < 1e-8
+        assert off[:, :3, :3].max() < 1e-10
+
+
+def test_a_straight_wrist_turns_axis_6_alone(arm):
+    q = random_joints(arm, 50)
+    q[:, 3:5] = 0.0
+    poses = arm.opw.forward(q)
+    # exactly straight: the tool along the forearm
+    found = arm.opw.inverse(poses)[arm.opw.branch_of(q), np.arange(len(q))]
+    sign = arm.opw.signs[3] * arm.opw.signs[5]
+    assert turned_apart(found[:, 3] + sign * found[:, 5], q[:, 3] + sign * q[:, 5]).max() < 1e-9
+
+
+def test_wrist_centre_on_axis_1_and_stretched_arm(arm):
+    """The singularities of shoulder and elbow give a pose back too."""
+    rng = np.random.default_rng(5)
+    bent = -np.arctan2(arm.opw.a2, arm.opw.c3)
+    opw_q = rng.uniform(-2, 2, (50, 6))
+    opw_q[:25, 2] = bent
+    # turn axis 2 until the wrist centre lies on the axis, where the arm is long enough
+    reach = np.hypot(arm.opw.c2 + arm.opw.forearm * np.cos(opw_q[25:, 2] - bent), arm.opw.forearm * np.sin(opw_q[25:, 2] - bent))
+    lean = np.arctan2(arm.opw.forearm * np.sin(opw_q[25:, 2] - bent), arm.opw.c2 + arm.opw.forearm * np.cos(opw_q[25:, 2] - bent))
+    assert (reach > abs(arm.opw.a1)).all()
+    opw_q[25:, 1] = -np.arcsin(arm.opw.a1 / reach) - lean
+    q = (opw_q + np.array(arm.opw.offsets)) * np.array(arm.opw.signs)
+    poses = arm.chain.forward(q)
+    solutions = arm.opw.inverse(poses)
+    reached = np.isfinite(solutions[..., 0])
+    assert reached.any(axis=0).all()
+    assert np.abs(arm.chain.forward(solutions) - poses)[reached].max() < 1e-6
+
+
+def test_out_of_reach_is_nan_in_all_six_and_leaves_the_others_alone(arm):
+    poses = arm.chain.forward(random_joints(arm, 20))
+    poses[3, :3, 3] = (9000.0, 0.0, 0.0)
+    poses[7] = np.nan
+    solutions = arm.opw.inverse(poses)
+    assert np.isnan(solutions[:, [3, 7]]).all()
+    others = [i for i in range(20) if i not in (3, 7)]
+    assert np.array_equal(solutions[:, others], arm.opw.inverse(poses[others]), equal_nan=True)
+
+
+def test_words_of_a_branch():
+    assert opw.branch_index(("front", "up", "noflip")) == 0
+    assert opw.branch_index(("front", "up", "flip")) == 1
+    assert opw.branch_index(["back", "down", "flip"]) == 7
+    assert [opw.branch_index(opw.branch_name(index)) for index in range(8)] == list(range(8))
+    with pytest.raises(ValueError):
+        opw.branch_index(("front", "left", "flip"))
+
+
+def test_branches_mean_what_the_words_say(arm):
+    """From the joint frames alone: where wrist centre and elbow are, and the sign of q5."""
+    q = random_joints(arm, 3000, seed=3)
+    poses = arm.chain.forward(q)
+    solutions = arm.opw.inverse(poses)
+    for branch in range(8):
+        shoulder, elbow, wrist = opw.branch_name(branch)
+        joints = solutions[branch]
+        joints = joints[np.isfinite(joints[:, 0])]
+        frames = arm.chain.frames(joints)
+        centre = meeting_point(frames, 4, 5)
+        # the way the arm's plane points: at q1 = 0 along base_link's X for every machine here
+        z = np.array([0.0, 0.0, 1.0])
+        angle = joints[:, 0] * arm.chain.directions[0, 2] * np.sign(arm.chain.origins[0, 2, 2])
+        ahead = np.stack((np.cos(angle), np.sin(angle), np.zeros_like(angle)), axis=-1)
+        side = (centre * ahead).sum(axis=-1)
+        clear = np.abs(side) > 1e-3
+        assert ((side > 0) == (shoulder == "front"))[clear].all()
+        # in the plane, seen with the wrist centre's side of axis 1 to the right
+        right = ahead if shoulder == "front" else -ahead
+        start = frames.origins[:, 1]
+        tip = axis_point(frames, 2, start)
+        line, bow = centre - start, tip - start
+        line_right, line_up = (line * right).sum(axis=-1), line @ z
+        bow_right, bow_up = (bow * right).sum(axis=-1), bow @ z
+        left_of_line = line_right * bow_up - line_up * bow_right
+        clear = np.abs(left_of_line) > 1e-3
+        assert ((left_of_line > 0) == (elbow == "up"))[clear].all()
+        # which is plainly above it, wherever the line does not lean backwards
+        leaning = line_right > 1.0
+        height = bow_up - line_up / np.where(leaning, line_right, 1.0) * bow_right
+        clear = leaning & (np.abs(height) > 1e-3)
+        assert clear.sum() > 500
+        assert ((height > 0) == (elbow == "up"))[clear].all()
+        clear = np.abs(joints[:, 4]) > 1e-9
+        assert ((joints[:, 4] < 0) == (wrist == "flip"))[clear].all()
+
+
+def meeting_point(frames, first, second):
+    """Where two axes meet (n, 3), which they must."""
+    d1, d2 = frames.directions[:, first], frames.directions[:, second]
+    o1, o2 = frames.origins[:, first], frames.origins[:, second]
+    normal = np.cross(d1, d2)
+    squared = (normal**2).sum(axis=-1)
+    along = (np.cross(o2 - o1, d2) * normal).sum(axis=-1) / np.where(squared > 1e-12, squared, np.nan)
+    point = o1 + along[:, None] * d1
+    # axes 5 and 6 meet wherever q5 is; their meeting point also lies on axis 6
+    gap = np.cross(point - o2, d2)
+    assert np.abs(gap).max() < 1e-6
+    return point
+
+
+def axis_point(frames, axis, near):
+    """The point (n, 3) of an axis nearest to the points `near`: the elbow, in the plane of the shoulder."""
+    direction, origin = frames.directions[:, axis], frames.origins[:, axis]
+    along = ((near - origin) * direction).sum(axis=-1)
+    return origin + along[:, None] * direction
