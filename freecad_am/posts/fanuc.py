@@ -85,6 +85,7 @@ def write(program: Program) -> dict[str, bytes]:
     groups = list(_groups(program))
     parts = _parts(groups, program.max_points, MOST_LINES - len(head) - len(remarks))
     if len(parts) == 1:
+        _refuse_calls_of_own(program, {name})
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
     digits = max(2, len(str(len(parts))))
     names = [f"{name}{number:0{digits}d}" for number in range(1, len(parts) + 1)]
@@ -95,7 +96,7 @@ def write(program: Program) -> dict[str, bytes]:
     for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
         comment = f"part {number} of {len(parts)}"
         files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
-    _refuse_calls_of_own(program, set(names) | {name})
+    _refuse_calls_of_own(program, {*names, name})
     return files
 
 

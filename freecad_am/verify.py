@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads a written program back and drives it through kinematics that planning did not use.
+
+From the text alone: the moves as the controller would carry them out, their joint values through the joint-frame
+chain (not the closed form that planned them) and through PyKDL, compared with the planned path at the points and
+between them. What text and plan assume alike - how the pendant counts J3, where the frames are - cannot show here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .core.geometry import frames
+from .core.issues import ERROR, NOTE, Issue
+from .core.kinematics.cell import Cell
+from .core.motion import Motion
+from .core.program import Program, ReadMoves
+from .kdl import chain as kdl_chain
+from .posts.catalogue import Post
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# what rounding in the computation itself may amount to: mm, and of unit vectors
+COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
+# of the way between two points, where the path is looked at
+BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
+# s: the step of a time in milliseconds and in tenths of a second, and where the second begins
+MILLISECOND, TENTH, LONGEST_MSEC = 0.001, 0.05, 32.0
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What reading back showed. No error among the issues: the program may be delivered.
+
+    at_points_mm, between_mm: largest distance from the plan at the points, and between those of a bead. bound_mm:
+    largest distance that the digits of the text explain. solvers: who computed the kinematics.
+    """
+
+    issues: tuple[Issue, ...]
+    at_points_mm: float
+    between_mm: float
+    bound_mm: float
+    solvers: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Path:
+    """Where the text takes the tip, in part coordinates, with the error its digits allow. Rows are moves."""
+
+    position: Array
+    tool: Array
+    bound: Array
+    tool_bound: Array
+
+
+def verify(
+    cell: Cell, motion: Motion, program: Program, files: dict[str, bytes], post: Post, chord_error: float
+) -> Verification:
+    """Compare the files with the motion they were written for.
+
+    motion: the rows that `program` was built of. chord_error: mm, how far the path may leave the straight line
+    between two points of a bead. Raises InputError UNREADABLE_PROGRAM when the reader does not understand the files.
+    """
+    read = post.read(files)
+    rows = np.flatnonzero(motion.moves)
+    if len(read.deposit) != len(rows):
+        message = f"the text has {len(read.deposit)} moves, planned are {len(rows)}"
+        return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
+    planned = _Planned(motion, rows)
+    issues = _deposit_issues(planned, read, program) + _time_issues(planned, read)
+    if read.joints is not None:
+        return _verify_joints(cell, planned, program, read, chord_error, issues)
+    return _verify_poses(cell, planned, program, read, issues)
+
+
+class _Planned:
+    """The rows of the motion that a controller moves to, with the finding of a place."""
+
+    def __init__(self, motion: Motion, rows: NDArray[np.intp]) -> None:
+        self.rows, self.motion = rows, motion
+        self.deposit = motion.deposit[rows]
+        self.position, self.tool = motion.position[rows], motion.tool[rows]
+        self.duration, self.speed = motion.duration[rows], motion.speed[rows]
+        self.joints = motion.joints[rows]
+
+    def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
+        """An error at the first wrong move, none when there is none; the message says how many there are."""
+        if not wrong.any():
+            return []
+        count, first = int(wrong.sum()), self.rows[int(np.argmax(wrong))]
+        place = [int(column[first]) for column in (self.motion.layer, self.motion.bead, self.motion.point)]
+        return [Issue(ERROR, code, f"{message}; {count} of {len(wrong)} moves", *place)]
+
+
+def _deposit_issues(planned: _Planned, read: ReadMoves, program: Program) -> list[Issue]:
+    wanted = planned.deposit & (not program.dry_run)
+    return planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
+
+
+def _time_issues(planned: _Planned, read: ReadMoves) -> list[Issue]:
+    """Times against the planned speed: each move to what its digits allow, and each bead as a whole.
+
+    The first move of all starts from a place the program does not know; it has no time.
+    """
+    timed = np.arange(len(read.duration)) > 0
+    step = np.zeros(len(timed))
+    step[1:] = np.linalg.norm(np.diff(planned.position, axis=0), axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        wanted = np.where(planned.deposit, step / planned.speed, planned.duration)
+    if read.joints is None:
+        given = np.full(len(timed), np.nan) if read.speed is None else read.speed
+        wrong = timed & ~(np.abs(given - planned.speed) <= 0.05 + 1e-9)
+        return planned.issue("VERIFY_SPEED", wrong, "the speed in the text is not the planned one")
+    allowed = np.where(wanted < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
+    short = timed & ~planned.deposit & (wanted < MILLISECOND)  # written as 1 ms, the shortest there is
+    wrong = timed & ~short & ~(np.abs(read.duration - wanted) <= allowed)
+    issues = planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")
+    beads = np.flatnonzero(np.diff(planned.deposit, prepend=False) & planned.deposit)
+    if len(beads) and not issues:
+        off = np.where(planned.deposit, read.duration - wanted, 0.0)
+        coarse = np.where(planned.deposit & (allowed > TENTH), TENTH, 0.0)
+        excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(coarse, beads)
+        wrong = np.zeros(len(timed), dtype=bool)
+        wrong[beads[excess]] = True
+        issues = planned.issue("VERIFY_TIME", wrong, "the times of a bead do not add up to the planned one")
+    return issues
+
+
+def _verify_joints(
+    cell: Cell, planned: _Planned, program: Program, read: ReadMoves, chord_error: float, issues: list[Issue]
+) -> Verification:
+    assert read.joints is not None
+    shown = read.joints.copy()
+    endless = np.array(program.endless)
+    # the controller takes an endless axis the shorter way
+    shown[:, endless] = np.unwrap(shown[:, endless], axis=0)
+    path, flange = _joint_path(cell, shown, read.digits)
+    issues += _joint_issues(cell, planned, read, endless) + _point_issues(planned, path)
+    between, off = _between(cell, planned, shown, path, chord_error)
+    message = f"the path between two points leaves the straight line by {between:.3g} mm, more than the chord error"
+    issues += planned.issue("VERIFY_BETWEEN", off, message)
+    solver_issues, solvers = _second_opinion(cell, planned, shown, flange)
+    at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())
+    return Verification(tuple(issues + solver_issues), at_points, between, float(path.bound.max()), solvers)
+
+
+def _joint_issues(cell: Cell, planned: _Planned, read: ReadMoves, endless: Mask) -> list[Issue]:
+    """Joint values against the planned ones: the tip does not show where the rotation about the tool is."""
+    assert read.joints is not None
+    apart = read.joints - cell.machine.to_controller(planned.joints)
+    apart[:, endless] -= 2.0 * np.pi * np.rint(apart[:, endless] / (2.0 * np.pi))
+    wrong = ~(np.abs(apart).max(axis=1) <= read.digits + COMPUTED_AXIS)
+    message = f"a joint value is {np.degrees(np.abs(apart).max()):.3g} deg from the planned one"
+    return planned.issue("VERIFY_JOINT", wrong, message)
+
+
+def _joint_path(cell: Cell, shown: Array, half_digit: float) -> tuple[_Path, Array]:
+    """The path of controller joint values (n, axes) and the flange poses (n, 4, 4).
+
+    Bounds to first order: every joint value may be off by half a digit, so the tip is within the sum of the lengths
+    of the Jacobian's columns; what the second order adds is at most that times the sum of the angles.
+    """
+    machine = cell.machine
+    at = machine.chain.frames(machine.from_controller(shown))
+    position, tool = cell.tip_in_part(at.flange)
+    point = cell.deposition_point(at.flange)
+    to_serial = np.linalg.inv(machine.controller_matrix)
+    linear = np.cross(at.directions, point[:, None, :] - at.origins)
+    linear, angular = (np.einsum("nki,kj->nji", rows, to_serial) for rows in (linear, at.directions))
+    more = 1.0 + half_digit * np.abs(to_serial).sum()
+    bound = half_digit * more * np.linalg.norm(linear, axis=2).sum(axis=1) + COMPUTED_MM
+    tool_bound = half_digit * more * np.linalg.norm(angular, axis=2).sum(axis=1) + COMPUTED_AXIS
+    return _Path(position, tool, bound, tool_bound), at.flange
+
+
+def _point_issues(planned: _Planned, path: _Path) -> list[Issue]:
+    off = np.linalg.norm(path.position - planned.position, axis=1)
+    tilted = np.linalg.norm(path.tool - planned.tool, axis=1)
+    message = f"the text leads up to {off.max():.3g} mm away from the planned point, more than its digits explain"
+    tilt_message = f"the tool is tilted by up to {np.degrees(tilted.max()):.3g} deg, more than the digits explain"
+    return planned.issue("VERIFY_POINT", ~(off <= path.bound), message) + planned.issue(
+        "VERIFY_TOOL", ~(tilted <= path.tool_bound), tilt_message
+    )
+
+
+def _between(cell: Cell, planned: _Planned, shown: Array, path: _Path, chord_error: float) -> tuple[float, Mask]:
+    """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off."""
+    off = np.zeros(len(shown), dtype=bool)
+    ends = np.flatnonzero(planned.deposit)
+    ends = ends[ends > 0]
+    if not len(ends):
+        return 0.0, off
+    joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
+    flange = cell.machine.chain.forward(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
+    tips = cell.tip_in_part(flange)[0].reshape(len(ends), len(BETWEEN), 3)
+    start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
+    away = tips - start[:, None]
+    squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
+    share = np.clip(np.einsum("nki,ni->nk", away, step) / squared[:, None], 0.0, 1.0)
+    distance = np.linalg.norm(away - share[..., None] * step[:, None], axis=2).max(axis=1)
+    off[ends] = ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
+    return float(distance.max()), off
+
+
+def _second_opinion(cell: Cell, planned: _Planned, shown: Array, flange: Array) -> tuple[list[Issue], tuple[str, ...]]:
+    """The same joint values through PyKDL, where it is installed."""
+    if not kdl_chain.available():
+        message = "PyKDL is not installed; the program was checked by one solver alone"
+        return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
+    other = kdl_chain.KdlArm(cell.machine).forward(cell.machine.from_controller(shown))
+    apart = np.linalg.norm(other[:, :3, 3] - flange[:, :3, 3], axis=1) > COMPUTED_MM
+    turned = np.abs(other[:, :3, :3] - flange[:, :3, :3]).max(axis=(1, 2)) > COMPUTED_AXIS
+    issues = planned.issue("VERIFY_SOLVERS", apart | turned, "PyKDL and the joint-frame chain disagree")
+    return issues, ("chain", "pykdl")
+
+
+def _verify_poses(
+    cell: Cell, planned: _Planned, program: Program, read: ReadMoves, issues: list[Issue]
+) -> Verification:
+    """Cartesian moves run straight between the points, so the points are all there is to compare.
+
+    The user frame is the fixed platform; the planned joint values are checked to lead to the same points.
+    """
+    assert read.position is not None and read.rotation is not None
+    bound = np.full(len(read.deposit), np.sqrt(3.0) * read.position_digits + COMPUTED_MM)
+    # three rotations in a row, each by an angle that is off by half a digit
+    tool_bound = np.full(len(bound), 3.0 * read.rotation_digits + COMPUTED_AXIS)
+    in_part = cell.mount @ frames.pose(read.rotation, read.position)
+    issues += _point_issues(planned, _Path(in_part[:, :3, 3], -in_part[:, :3, 2], bound, tool_bound))
+    joints = np.concatenate([moves.joints for moves in program.moves])
+    path, flange = _joint_path(cell, joints, 0.0)
+    issues += _point_issues(planned, path)
+    turned = frames.inverse(cell.station)[:3, :3] @ flange[:, :3, :3] @ cell.carried[:3, :3] - read.rotation
+    # an angle of a shows as sqrt(2) a in the sum of squares of the nine entries
+    twisted = ~(np.linalg.norm(turned, axis=(1, 2)) <= np.sqrt(2.0) * tool_bound)
+    issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
+    solver_issues, solvers = _second_opinion(cell, planned, joints, flange)
+    at_points = float(np.linalg.norm(in_part[:, :3, 3] - planned.position, axis=1).max())
+    return Verification(tuple(issues + solver_issues), at_points, 0.0, float(bound.max()), solvers)

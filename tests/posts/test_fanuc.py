@@ -1,0 +1,397 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is written for a FANUC controller: texts to the byte, splitting, and what is refused."""
+
+import dataclasses
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
+from freecad_am.posts import catalogue, fanuc
+
+UPRIGHT = ("front", "up", "flip")
+
+
+def moves(kind, degrees, duration=0.1, layer=0, bead=0, **extra):
+    degrees = np.atleast_2d(np.asarray(degrees, float))
+    duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
+    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), 6.0), **extra)
+
+
+def program(*blocks, name="part", endless=(False,) * 6, **options):
+    return Program(name, "a machine", blocks, endless, **options)
+
+
+def beads(count, points, layers=1, **options):
+    """Beads of so many points each, each with two rapid moves before it."""
+    blocks = []
+    for layer in range(layers):
+        blocks.append(LayerStart(layer))
+        for bead in range(count):
+            value = np.arange(points)[:, None] * 0.1 + np.zeros(6)
+            blocks += [moves("rapid", np.zeros((2, 6)), layer=layer, bead=bead), DepositOn()]
+            blocks += [moves("deposit", value, layer=layer, bead=bead), DepositOff()]
+    return program(*blocks, **options)
+
+
+def body(content):
+    text = content.decode("ascii")
+    return [line[5:] for line in text[text.index("/MN") + 5 : text.index("/POS")].split("\r\n")[:-1]]
+
+
+def refusal(of, *, code, where=None):
+    with pytest.raises(InputError) as raised:
+        fanuc.write(of)
+    assert raised.value.code == code and where in (None, raised.value.where)
+    return raised.value.message
+
+
+GOLDEN_JOINT = program(
+    moves("rapid", [[0.0, -30.0, 30.0, 0.0, -60.0, 170.0], [1.25, -29.5, 30.25, 0.1, -60.5, 175.0]], [1.0, 2.5]),
+    DepositOn(0.5),
+    moves(
+        "deposit",
+        [[2.5, -29.0, 30.5, -0.0004, -61.0, 179.9996],
+         [2.5, -29.0, 30.5, -0.0006, -61.0, 190.0],
+         [-170.0, 1.0, 2.0, 3.0, 4.0, 290.25]],
+        [0.3154, 0.3154, 33.04],
+    ),
+    DepositOff(0.25),
+    Wait(700.0), WaitInput(3), Call("clean"),
+    LayerStart(1),
+    moves("rapid", [[0.0, -30.0, 30.0, 0.0, -60.0, 400.0]], 1.0, layer=1),
+    name="Joint", endless=(False,) * 5 + (True,), remarks=("pendant J3 = q3 - q2: a remark of more than one line",),
+)  # fmt: skip
+
+ABOUT_X = np.diag([1.0, -1.0, -1.0])
+GOLDEN_TABLE = program(
+    moves("rapid", [[0.0, 0.0, 0.0, 0.0, -90.0, 0.0]], position=np.array([[0.0, 0.0, 50.0]]), rotation=ABOUT_X[None],
+          configuration=(UPRIGHT,)),
+    DepositOn(),
+    moves("deposit", [[0.0, 0.0, 0.0, 0.0, -90.0, 180.0], [0.0, 0.0, 0.0, 0.0, 45.0, -200.0]],
+          position=np.array([[10.0, 0.25, 5.0], [20.5, -0.5, 5.0]]),
+          # Rz(90) Rx(180), and Ry(90) where only R - W counts
+          rotation=np.array([[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
+                             [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]]),
+          configuration=(UPRIGHT, ("front", "down", "noflip"))),
+    DepositOff(),
+    name="TABLE", motion="cartesian", setup="tool-on-robot", user_frame=2, tool_frame=3, deposit_output=7, blend=50,
+)  # fmt: skip
+
+GOLDENS = {"joint": GOLDEN_JOINT, "table": GOLDEN_TABLE, "parts": beads(1, 12, layers=2, name="parts", max_points=10)}
+
+
+@pytest.mark.parametrize("name", GOLDENS)
+def test_golden_programs_to_the_byte(root, name, assert_listings):
+    files = fanuc.write(GOLDENS[name])
+    golden = {path.name: path.read_bytes() for path in (root / "tests/golden").glob(f"{name.upper()}*.LS")}
+    assert files == golden
+    assert_listings(files)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("motion", ["joint", "cartesian"])
+def test_random_programs_are_as_controllers_write_them(random_program, assert_listings, seed, motion):
+    assert_listings(fanuc.write(random_program(seed, motion)))
+
+
+def test_same_program_same_bytes_and_no_clock(random_program):
+    assert fanuc.write(random_program(3)) == fanuc.write(random_program(3))
+    assert b"DATE 00-01-01  TIME 00:00:00" in fanuc.write(random_program(3))["RANDOM.LS"]
+
+
+def test_a_locale_with_decimal_commas_changes_nothing(tmp_path, root):
+    source = tmp_path / "comma"
+    source.write_text(
+        'comment_char %\nescape_char /\nLC_NUMERIC\ndecimal_point "<U002C>"\n'
+        'thousands_sep "<U002E>"\ngrouping 3;3\nEND LC_NUMERIC\n'
+    )
+    made = subprocess.run(
+        ["localedef", "-c", "-i", source, "-f", "UTF-8", tmp_path / "comma.utf8"], capture_output=True
+    )
+    if not (tmp_path / "comma.utf8/LC_NUMERIC").exists():
+        pytest.skip(f"no locale with decimal commas can be made here: {made.stderr[-200:]!r}")
+    code = (
+        "import locale, importlib.util as u, sys; locale.setlocale(locale.LC_NUMERIC, 'comma.utf8');"
+        "assert locale.str(0.5) == '0,5', locale.str(0.5);"
+        "sys.path.insert(0, sys.argv[1]); s = u.spec_from_file_location('t', sys.argv[2]); t = u.module_from_spec(s);"
+        "s.loader.exec_module(t); f = t.fanuc.write(t.GOLDEN_JOINT); r = t.fanuc.read(f);"
+        "sys.stdout.buffer.write(f['JOINT.LS'])"
+    )
+    command = [sys.executable, "-c", code, str(root), __file__]
+    environment = {"LOCPATH": str(tmp_path), "PATH": "/usr/bin:/bin", "PYTHONPATH": ":".join(sys.path)}
+    result = subprocess.run(command, capture_output=True, env=environment)
+    assert result.returncode == 0, result.stderr[-500:]
+    assert result.stdout == fanuc.write(GOLDEN_JOINT)["JOINT.LS"]
+
+
+# times
+
+
+def written_times(content):
+    """Every time of the moves in ms, the first one left out."""
+    found = re.findall(r"J P\[\d+\] ([\d.]+)(msec|sec|%)", content.decode("ascii"))
+    return [float(value) * {"msec": 1, "sec": 1000, "%": 0}[unit] for value, unit in found][1:]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_milliseconds_add_up_over_a_bead_and_none_is_zero(seed):
+    rng = np.random.default_rng(seed)
+    duration = rng.exponential(0.003, 500) if seed % 2 else rng.uniform(0.001, 0.4, 500)
+    file = fanuc.write(program(moves("rapid", np.zeros(6)), moves("deposit", np.zeros((500, 6)), duration)))["PART.LS"]
+    times = np.array(written_times(file))
+    assert times.min() >= 1.0 and abs(times.sum() - 1000.0 * duration.sum()) <= 0.5 + 1e-9
+    if not seed % 2:  # no move is too short: every partial sum is right
+        assert np.abs(np.cumsum(times) - 1000.0 * np.cumsum(duration)).max() <= 0.5 + 1e-9
+
+
+def test_long_moves_are_in_tenths_of_a_second_and_leave_the_others_alone():
+    duration = [0.1, 32.0, 32.0004, 32.0006, 0.1, 3200.0]
+    file = fanuc.write(program(moves("rapid", np.zeros(6)), moves("deposit", np.zeros((6, 6)), duration)))["PART.LS"]
+    words = re.findall(r"\] (\S+) (?:CNT|FINE)", "\n".join(body(file)))[1:]
+    assert words == ["100msec", "32000msec", "32000msec", "32.0sec", "100msec", "3200.0sec"]
+
+
+def test_times_that_cannot_be_written_are_refused():
+    start = moves("rapid", np.zeros(6))
+    message = refusal(
+        program(start, moves("deposit", np.zeros((2, 6)), [1.0, 3201.0], 4, 2)),
+        code="MOVE_TIME",
+        where="layer 4 bead 2",
+    )
+    assert "3201 s" in message
+    message = refusal(program(start, moves("deposit", np.zeros((9, 6)), 0.0005)), code="MOVE_TIME")
+    assert "9 moves take 0.0045 s" in message and "chord error" in message
+
+
+def test_a_short_rapid_takes_a_millisecond():
+    file = fanuc.write(program(moves("rapid", np.zeros((3, 6)), 0.0001)))["PART.LS"]
+    assert written_times(file) == [1.0, 1.0]
+
+
+def test_the_first_move_goes_slowly_from_wherever_the_robot_stands():
+    lines = body(fanuc.write(program(moves("rapid", np.zeros((3, 6)), 0.0)))["PART.LS"])
+    assert lines[2] == "J P[1] 10% FINE    ;"
+
+
+# events
+
+
+def test_the_order_of_a_layer():
+    lines = body(fanuc.write(program(
+        LayerStart(12), moves("rapid", np.zeros((2, 6))), DepositOn(0.5), moves("deposit", np.zeros((2, 6))),
+        DepositOff(0.125), Wait(0.001), WaitInput(4), Call("Clean_1"), deposit_output=9, blend=70,
+    ))["PART.LS"])  # fmt: skip
+    assert lines == [
+        "  UFRAME_NUM=1 ;", "  UTOOL_NUM=1 ;", "  !layer 12 ;", "J P[1] 10% FINE    ;", "J P[2] 100msec FINE    ;",
+        "  DO[9]=ON ;", "  WAIT    .50(sec) ;", "J P[3] 100msec CNT70    ;", "J P[4] 100msec FINE    ;",
+        "  WAIT    .12(sec) ;", "  DO[9]=OFF ;", "  WAIT    .01(sec) ;", "  WAIT DI[4]=ON    ;", "  CALL CLEAN_1    ;",
+    ]  # fmt: skip
+
+
+def test_a_dry_run_moves_the_same_and_switches_nothing():
+    wet = dataclasses.replace(GOLDEN_JOINT)
+    dry = fanuc.write(dataclasses.replace(wet, dry_run=True))["JOINT.LS"]
+    assert b"DO[" not in dry and b"!dry run: no deposit" in dry
+    assert [line for line in body(dry) if line[0] == "J"] == [
+        line for line in body(fanuc.write(wet)["JOINT.LS"]) if line[0] == "J"
+    ]
+
+
+def test_an_endless_axis_says_what_it_needs_and_a_limited_one_keeps_its_turns():
+    turning = moves("rapid", np.outer(np.arange(9), [0, 0, 0, 0, 0, 100.0]))
+    text = fanuc.write(program(turning, endless=(False,) * 5 + (True,)))["PART.LS"].decode()
+    assert "!axis 6 turns without end: set it" in text and "Continuous Turn" in text
+    shown = [float(value) for value in re.findall(r"J6= *(\S+)", text)]
+    assert shown == [0.0, 100.0, -160.0, -60.0, 40.0, 140.0, -120.0, -20.0, 80.0]
+    text = fanuc.write(program(turning))["PART.LS"].decode()
+    assert "Continuous" not in text
+    assert [float(value) for value in re.findall(r"J6= *(\S+)", text)] == [100.0 * n for n in range(9)]
+
+
+@pytest.mark.parametrize(("degrees", "written"), [
+    (180.0, "180.000"), (-180.0, "180.000"), (540.0, "180.000"), (180.0004, "180.000"), (180.0006, "-179.999"),
+    (-180.0004, "180.000"), (-0.0004, "0.000"), (359.9996, "0.000"), (-179.9996, "180.000"), (0.25, ".250"),
+    (-360.25, "-.250"),
+])  # fmt: skip
+def test_angles_of_an_endless_axis_lie_within_half_a_turn(degrees, written):
+    text = fanuc.write(program(moves("rapid", [0, 0, 0, 0, 0, degrees]), endless=(False,) * 5 + (True,)))[
+        "PART.LS"
+    ].decode()
+    assert re.search(r"J6=(.{10}) deg", text)[1] == written.rjust(10)
+
+
+def test_a_move_of_half_a_turn_on_an_endless_axis_is_refused():
+    values = [[0, 0, 0, 0, 0, 0.0], [0, 0, 0, 0, 0, 179.9], [0, 0, 0, 0, 0, 359.9]]
+    of = program(
+        moves("rapid", values[:2]), moves("deposit", values[2:], layer=3, bead=1), endless=(False,) * 5 + (True,)
+    )
+    assert "axis 6 turns 180.0 deg" in refusal(of, code="ENDLESS_STEP", where="layer 3 bead 1")
+    fanuc.write(dataclasses.replace(of, endless=(False,) * 6))
+
+
+# parts
+
+
+def test_parts_hold_whole_beads(assert_listings):
+    files = fanuc.write(beads(3, 20, layers=4, max_points=50))
+    assert list(files) == ["PART.LS"] + [f"PART{n:02d}.LS" for n in range(1, 7)]
+    assert body(files["PART.LS"])[2:] == [f"  CALL PART{n:02d}    ;" for n in range(1, 7)]
+    for file in list(files)[1:]:
+        lines = body(files[file])
+        assert lines.count("  DO[1]=ON ;") == lines.count("  DO[1]=OFF ;") == 2
+        assert lines[-1] == "  DO[1]=OFF ;" and not any("goes on" in line for line in lines)
+        assert sum(line[0] == "J" for line in lines) == 44
+    assert_listings(files)
+
+
+def test_a_bead_longer_than_a_part_is_cut_and_says_so(assert_listings):
+    files = fanuc.write(beads(2, 25, max_points=10, layers=1))
+    parts = [body(files[name]) for name in list(files)[1:]]
+    points = [sum(line[0] == "J" for line in part) for part in parts]
+    assert points == [10, 10, 7, 10, 10, 7]
+    assert [any("bead goes on in the next part" in line for line in part) for part in parts] == [True, True, False] * 2
+    assert [any("bead goes on here" in line for line in part) for part in parts] == [False, True, True] * 2
+    # the cut is passed without a stop, the bead's end is a stop
+    assert parts[0][-2].endswith("CNT100    ;") and [line for line in parts[2] if line[0] == "J"][-1].endswith(
+        "FINE    ;"
+    )
+    assert_listings(files)
+
+
+def test_no_file_has_more_lines_than_a_controller_takes(assert_listings):
+    files = fanuc.write(beads(3, 4000, max_points=10**6))
+    assert len(files) == 3
+    assert_listings(files)
+
+
+def test_the_parts_of_a_program_are_the_program(random_program):
+    """Whatever the limit of points, the moves and events in the order of execution are the same."""
+
+    def executed(files, name="RANDOM"):
+        for line in body(files[f"{name}.LS"]):
+            call = re.fullmatch(r"  CALL (RANDOM\d+)    ;", line)
+            if call:
+                yield from executed(files, call[1])
+            elif "_NUM=" not in line and "goes on" not in line and "!the next part" not in line:
+                yield re.sub(r"P\[\d+\]", "P[]", line)
+
+    def records(files):
+        return [re.sub(r"P\[\d+\]", "P[]", record) for name in sorted(files) for record in
+                re.findall(r"P\[\d+\]\{.*?\};", files[name].decode(), re.DOTALL)]  # fmt: skip
+
+    for seed in range(8):
+        whole = fanuc.write(random_program(seed, max_points=10**5))
+        for most in (1, 7, 40):
+            parts = fanuc.write(random_program(seed, max_points=most))
+            assert list(executed(parts)) == list(executed(whole)) and records(parts) == records(whole)
+
+
+# names
+
+
+@pytest.mark.parametrize(("name", "why", "proposal"), [
+    ("", "empty", "AM"),
+    ("my part", "letters", "MY_PART"),
+    ("Größe", "letters", "GROSSE"),
+    ("teil-1", "letters", "TEIL_1"),
+    ("tube.v2", "letters", "TUBE_V2"),
+    ("2nd", "start with a letter", "AM_2ND"),
+    ("_x", "start with a letter", "X"),
+    ("Ω", "letters", "AM"),
+    ("x" * 37, "36 characters", "X" * 32),
+    ("con", "reserved", "AM_CON"),
+    ("Lpt3", "reserved", "AM_LPT3"),
+    ("call", "reserved", "AM_CALL"),
+])  # fmt: skip
+def test_names_the_controller_refuses(name, why, proposal):
+    message = refusal(program(moves("rapid", np.zeros(6)), name=name), code="PROGRAM_NAME", where="name")
+    assert why in message and message.endswith(f"use {proposal!r}") and repr(name) in message
+    fanuc.write(program(moves("rapid", np.zeros(6)), name=proposal))
+
+
+@pytest.mark.parametrize("name", ["a", "part_7", "x" * 36, "Hemisphere"])
+def test_names_the_controller_takes_are_in_upper_case(name):
+    assert list(fanuc.write(program(moves("rapid", np.zeros(6)), name=name))) == [f"{name.upper()}.LS"]
+
+
+def test_a_name_without_room_for_the_digits_of_its_parts_is_refused():
+    fanuc.write(beads(3, 20, name="x" * 34, max_points=25))
+    message = refusal(beads(3, 20, name="x" * 35, max_points=25), code="PROGRAM_NAME", where="name")
+    assert "2 digits" in message and fanuc.write(beads(3, 20, name="X" * 32, max_points=25))
+
+
+def test_called_programs_are_judged_by_the_same_rules():
+    where = "process.between_layers.call"
+    of = program(moves("rapid", np.zeros(6)), Call("nozzle clean"))
+    assert "'NOZZLE_CLEAN'" in refusal(of, code="PROGRAM_NAME", where=where)
+    assert "this very job" in refusal(
+        program(moves("rapid", np.zeros(6)), Call("Part")), code="PROGRAM_NAME", where=where
+    )
+    split = beads(3, 20, max_points=25)
+    own = dataclasses.replace(split, blocks=(*split.blocks, Call("PART02")))
+    assert "this very job" in refusal(own, code="PROGRAM_NAME", where=where)
+
+
+# further refusals
+
+
+def test_remote_tcp_is_refused_with_its_reason():
+    message = refusal(
+        dataclasses.replace(GOLDEN_TABLE, setup="part-on-robot"), code="REMOTE_TCP", where="program.motion"
+    )
+    assert "remote TCP" in message and "not understood" in message and "`motion: joint`" in message
+
+
+def test_other_setups_and_axes_are_refused():
+    refusal(
+        dataclasses.replace(GOLDEN_JOINT, setup="tool-on-robot+positioner"),
+        code="UNSUPPORTED_SETUP",
+        where="cell.setup",
+    )
+    refusal(program(moves("rapid", np.zeros(5)), endless=(False,) * 5), code="UNSUPPORTED_AXES", where="program.post")
+    refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
+    refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")
+
+
+@pytest.mark.parametrize(("axis", "degrees"), [(0, 181.0), (3, -190.0), (4, 180.0), (3, 179.9996)])
+def test_turns_of_other_axes_than_the_last_are_refused_in_cartesian_positions(axis, degrees):
+    run = GOLDEN_TABLE.blocks[2]
+    joints = run.joints.copy()
+    joints[1, axis] = np.radians(degrees)
+    blocks = (*GOLDEN_TABLE.blocks[:2], dataclasses.replace(run, joints=joints), *GOLDEN_TABLE.blocks[3:])
+    assert f"axis {axis + 1} stands" in refusal(dataclasses.replace(GOLDEN_TABLE, blocks=blocks), code="TURN_NUMBER")
+
+
+@pytest.mark.parametrize(("degrees", "turn"), [
+    (0.0, 0), (179.999, 0), (-179.999, 0), (180.0, 1), (-180.0, -1), (179.9996, 1), (359.9, 1), (-450.0, -1),
+    (540.0, 2),
+])  # fmt: skip
+def test_the_turn_number_of_axis_6(degrees, turn):
+    run = GOLDEN_TABLE.blocks[0]
+    joints = run.joints.copy()
+    joints[0, 5] = np.radians(degrees)
+    of = dataclasses.replace(GOLDEN_TABLE, blocks=(dataclasses.replace(run, joints=joints),))
+    assert f"CONFIG : 'N U T, 0, 0, {turn}'".encode() in fanuc.write(of)["TABLE.LS"]
+
+
+def test_cartesian_positions_of_an_arm_bent_backwards_are_refused():
+    run = dataclasses.replace(GOLDEN_TABLE.blocks[0], configuration=(("back", "up", "flip"),))
+    refusal(dataclasses.replace(GOLDEN_TABLE, blocks=(run,)), code="ARM_BACKWARDS")
+
+
+@pytest.mark.parametrize("speed", [0.04, 2000.1, np.nan])
+def test_speeds_that_cannot_be_written_are_refused(speed):
+    run = dataclasses.replace(GOLDEN_TABLE.blocks[2], speed=np.array([6.0, speed]))
+    refusal(dataclasses.replace(GOLDEN_TABLE, blocks=(run,)), code="MOVE_SPEED", where="layer 0 bead 0")
+
+
+def test_the_catalogue():
+    assert catalogue.load("fanuc") is fanuc and catalogue.NAMES == ("fanuc",)
+    with pytest.raises(InputError) as raised:
+        catalogue.load("fanuk")
+    assert raised.value.code == "UNKNOWN_POST" and "'fanuk'" in raised.value.message and "fanuc" in raised.value.message

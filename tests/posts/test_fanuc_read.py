@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Listings read back: everything written comes back to half a digit, and what is not understood is refused."""
+
+import re
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.program import DepositOff, DepositOn, Moves
+from freecad_am.posts import fanuc
+
+HALF_DIGIT = 0.0005
+
+# an independent hand-written listing, as the pendant would list it
+BY_HAND = """\
+/PROG  HAND
+/ATTR
+OWNER		= MNEDITOR;
+COMMENT		= "by hand";
+DEFAULT_GROUP	= 1,*,*,*,*;
+/APPL
+/MN
+   1:  !a remark; with a semicolon ;
+   2:  UFRAME_NUM=3 ;
+   3:  UTOOL_NUM=4 ;
+   4:J P[2:"home"] 20% FINE    ;
+   5:   ;
+   6:  DO[5:wire]=ON ;
+   7:  WAIT    .50(sec) ;
+   8:J P[1] 250msec CNT100 ACC80    ;
+   9:J P[2] 2.5sec CNT0    ;
+  10:  CALL SUB    ;
+  11:J P[1] .5sec FINE    ;
+  12:  CALL ELSEWHERE    ;
+  13:  END ;
+/POS
+P[1]{
+   GP1:
+	UF : 3, UT : 4,\t
+	J1=      .500 deg,	J2=     -.250 deg,	J3=     0.000 deg,
+	J4=  -190.125 deg,	J5=    45.000 deg,	J6=   180.000 deg
+};
+P[2:"home"]{
+   GP1:
+	UF : F, UT : F,\t
+	J1=     0.000 deg,	J2=     0.000 deg,	J3=     0.000 deg,
+	J4=     0.000 deg,	J5=   -90.000 deg,	J6=     0.000 deg
+};
+/END
+"""
+SUB = """\
+/PROG SUB
+/ATTR
+/MN
+    :  DO[5]=OFF ;
+    :  WAIT DI[3]=ON    ;
+    :J P[7] 1msec FINE ;
+/POS
+P[7]{
+   GP1:
+	UF : 3, UT : 4,\t
+	J1= 1.00 deg,	J2= 2.00 deg,	J3= 3.00 deg,
+	J4= 4.00 deg,	J5= 5.00 deg,	J6= 6.00 deg
+};
+/END
+"""
+
+
+def by_hand(pattern="", replacement="", sub=SUB):
+    text = re.sub(pattern, replacement, BY_HAND, count=1) if pattern else BY_HAND
+    assert not pattern or text != BY_HAND
+    return {"HAND.LS": text.replace("\n", "\r\n").encode(), "SUB.LS": sub.encode()}
+
+
+def test_a_listing_by_hand():
+    read = fanuc.read(by_hand())
+    first, home, other = [0.5, -0.25, 0.0, -190.125, 45.0, 180.0], [0, 0, 0, 0, -90.0, 0], [1, 2, 3, 4, 5, 6]
+    assert np.degrees(read.joints) == pytest.approx(np.array([home, first, home, other, first], float), abs=1e-12)
+    assert read.duration == pytest.approx([np.nan, 0.25, 2.5, 0.001, 0.5], nan_ok=True)
+    assert read.deposit.tolist() == [False, True, True, False, False]
+    assert np.degrees(read.digits) == pytest.approx(0.005)  # two decimals in one of the files
+    assert np.isnan(read.speed).all() and read.position is None
+
+
+@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("motion", ["joint", "cartesian"])
+def test_random_programs_come_back(random_program, seed, motion):
+    program = random_program(seed, motion, endless=bool(seed % 3))
+    read = fanuc.read(fanuc.write(program))
+    deposit, on = [], False
+    for block in program.blocks:
+        on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
+        deposit += [on] * len(block) if isinstance(block, Moves) else []
+    assert read.deposit.tolist() == deposit
+    runs = program.moves
+    if motion == "joint":
+        apart = np.degrees(read.joints - np.concatenate([run.joints for run in runs]))
+        apart[:, np.array(program.endless)] -= 360.0 * np.rint(apart[:, np.array(program.endless)] / 360.0)
+        assert np.abs(apart).max() <= HALF_DIGIT + 1e-9 and np.degrees(read.digits) == pytest.approx(HALF_DIGIT)
+        assert np.isnan(read.duration[0]) and np.isfinite(read.duration[1:]).all()
+        starts = np.cumsum([0] + [len(run) for run in runs])
+        for run, start in list(zip(runs, starts, strict=False))[1:]:
+            written = read.duration[start : start + len(run)]
+            long = run.duration > 32.0005
+            assert np.abs(written - run.duration)[long].max(initial=0.0) <= 0.05 + 1e-9
+            assert abs((written - run.duration)[~long].sum()) <= 0.001 * (1 + long.sum()) and written.min() > 0.0009
+    else:
+        position, rotation = (np.concatenate([getattr(run, name) for run in runs]) for name in ("position", "rotation"))
+        assert np.abs(read.position - position).max() <= HALF_DIGIT + 1e-9 and read.joints is None
+        between = np.swapaxes(read.rotation, 1, 2) @ rotation
+        angle = np.linalg.norm(between - np.eye(3), axis=(1, 2)) / np.sqrt(2.0)
+        assert np.degrees(angle).max() <= 3.0 * HALF_DIGIT + 1e-9
+        assert read.position_digits == pytest.approx(HALF_DIGIT)
+        assert np.degrees(read.rotation_digits) == pytest.approx(HALF_DIGIT)
+        speed = np.concatenate([run.speed for run in runs])
+        assert np.abs(read.speed - speed)[1:].max() <= 0.05 + 1e-9 and np.isnan(read.duration).all()
+
+
+@pytest.mark.parametrize(("pattern", "replacement", "where", "why"), [
+    (r"  WAIT    .50\(sec\)", "  OVERRIDE=20%", "HAND.LS line 14", "'OVERRIDE=20%'"),
+    (r"CNT100 ACC80", "CNT100 Offset,PR[1]", "HAND.LS line 15", "Offset"),
+    (r"CNT0 ", "CNT0 RTCP", "HAND.LS line 16", "RTCP"),
+    (r"J P\[1\] 250msec", "C P[1]", "HAND.LS line 15", "'C P[1]"),
+    (r"J P\[1\] 250msec", "J PR[1] 250msec", "HAND.LS line 15", "PR[1]"),
+    (r"J P\[1\] 250msec", "L P[1] 6mm/sec", "HAND.LS line 15", "another way than it is recorded"),
+    (r"250msec", "6mm/sec", "HAND.LS line 15", "mm/sec"),
+    (r"250msec", "100cm/min", "HAND.LS line 15", "cm/min"),
+    (r"J P\[1\] 250", "J P[3] 250", "HAND.LS line 15", "P[3] is not recorded"),
+    (r"  CALL ELSEWHERE    ;", "  CALL HAND    ;", "program", "0 programs are called by none"),
+    (r"  CALL SUB    ;", "  END ;", "program", "2 programs are called by none"),
+    (r"  12:.*\n", "  12:  DO[6]=ON ;\n", "HAND.LS line 19", "second output"),
+    (r"  12:.*\n", "  12:  JMP LBL[1] ;\n", "HAND.LS line 19", "JMP"),
+    (r"  12:.*\n", "  12:  END ;\n", "HAND.LS line 19", "'END'"),
+    (r"  12:.*\n", "  12:  CALL ELSEWHERE\n", "HAND.LS line 19", "no instruction"),
+    (r"UTOOL_NUM=4", "UTOOL_NUM=5", "HAND.LS line 15", "another UTOOL"),
+    (r"UFRAME_NUM=3", "UFRAME_NUM=0", "HAND.LS line 15", "another UFRAME"),
+    (r"J5=    45.000 deg", "J5=    45,000 deg", "HAND.LS line 22", "P[1]"),
+    (r"J5=    45.000 deg", "J5=  ******** deg", "HAND.LS line 22", "P[1]"),
+    (r",\tJ6=     0.000 deg", "", "HAND.LS line 28", "P[2]"),
+    (r"P\[1\]\{", "P[2]{", "HAND.LS", "twice"),
+    (r"/POS\n", "", "HAND.LS", "/POS"),
+    (r"/PROG  HAND", "PROG HAND", "HAND.LS", "/PROG"),
+    (r"/PROG  HAND", "/PROG  SUB", "program", "same name"),
+])  # fmt: skip
+def test_what_is_not_understood_is_refused(pattern, replacement, where, why):
+    with pytest.raises(InputError) as raised:
+        fanuc.read(by_hand(pattern, replacement))
+    assert (raised.value.code, raised.value.where) == ("UNREADABLE_PROGRAM", where)
+    assert why in raised.value.message
+
+
+def test_programs_that_call_each_other_in_a_ring_are_refused():
+    ring = SUB.replace("WAIT DI[3]=ON", "CALL SUB")
+    with pytest.raises(InputError, match="calls itself"):
+        fanuc.read(by_hand(sub=ring))
+
+
+def test_programs_without_moves_are_refused():
+    with pytest.raises(InputError, match="no moves"):
+        fanuc.read({"A.LS": b"/PROG  A\r\n/ATTR\r\n/MN\r\n/POS\r\n/END\r\n"})
+
+
+def test_joint_and_cartesian_positions_in_one_program_are_refused():
+    record = BY_HAND[BY_HAND.index("P[1]{") : BY_HAND.index('P[2:"home"]{')]
+    pose = (
+        "P[7]{\n   GP1:\n\tUF : 3, UT : 4,\t\tCONFIG : 'N U T, 0, 0, 0',\n"
+        "\tX = 1.0 mm,\tY = 2.0 mm,\tZ = 3.0 mm,\n\tW = 1.0 deg,\tP = 2.0 deg,\tR = 3.0 deg\n};\n"
+    )
+    with pytest.raises(InputError, match="mixed"):
+        fanuc.read(by_hand(sub=SUB[: SUB.index("P[7]{")].replace("J P[7] 1msec", "L P[7] 5.0mm/sec") + pose + "/END\n"))
+    with pytest.raises(InputError, match=r"P\[7\] is not understood"):
+        fanuc.read(by_hand(sub=SUB[: SUB.index("P[7]{")] + pose + record + "/END\n"))

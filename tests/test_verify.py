@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The read-back: correct programs pass, and every single thing gone wrong is caught."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+
+from freecad_am import verify as verification
+from freecad_am.core.issues import ERROR, InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.opw import branch_name
+from freecad_am.core.motion import Motion
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.program import DepositOff, DepositOn, LayerStart, Moves, Program
+from freecad_am.posts import fanuc
+
+RADIUS, CHORD_ERROR, SPEED, RAPID_SPEED = 45.0, 0.01, 6.0, 100.0
+ON_ROBOT = CellParameters()
+ON_TABLE = CellParameters(
+    setup="tool-on-robot",
+    deposition_point=(1000.0, 100.0, 0.0, 0.0, 0.0, 0.3),
+    branch=("front", "up", "flip"),
+    nozzle=NozzleParameters(tool=(20.0, -10.0, 250.0, 0.1, 0.2, 0.3)),
+)
+
+
+def hemisphere(cell, layers=4, step=6.0, offset=0.6):
+    """The motion of a few layers of a hemisphere: local build directions, axis 6 going round and round."""
+    columns = {field.name: [] for field in dataclasses.fields(Motion)}
+    for layer in range(layers):
+        latitude = layer * step / RADIUS
+        radius, height = RADIUS * np.cos(latitude), RADIUS * np.sin(latitude)
+        count = int(np.ceil(np.pi / np.arccos(1.0 - CHORD_ERROR / radius))) + 1
+        theta = np.linspace(0.0, 2.0 * np.pi, count) + 2.0 * np.pi * layer
+        around = np.stack((np.cos(theta), np.sin(theta), np.zeros(count)), axis=1)
+        place = radius * around + [0.0, 0.0, height]
+        tool = -np.sin(latitude) * around + [0.0, 0.0, np.cos(latitude)]
+        lifted = place[:1] + 20.0 * tool[:1]
+        rows = np.r_[0, 0, np.arange(count)]
+        columns["position"].append(np.vstack((lifted, place[:1], place)))
+        columns["tool"].append(tool[rows])
+        columns["joints"].append(theta[rows])
+        columns["deposit"].append(np.r_[False, False, np.ones(count, bool)])
+        columns["point"].append(np.r_[0, 0, np.arange(count)])
+        columns["layer"].append(np.full(count + 2, layer))
+    columns = {name: np.concatenate(parts) for name, parts in columns.items() if parts}
+    flange = cell.flange_poses(columns["position"], columns["tool"], offset - columns.pop("joints"))
+    joints = np.unwrap(cell.machine.opw.inverse_branch(flange, cell.branch), axis=0)
+    assert np.isfinite(joints).all()
+    deposit = columns["deposit"]
+    speed = np.where(deposit, SPEED, RAPID_SPEED)
+    length = np.r_[0.0, np.linalg.norm(np.diff(columns["position"], axis=0), axis=1)]
+    return Motion(
+        **columns,
+        bead=np.zeros_like(columns["layer"]),
+        build=columns["tool"].copy(),
+        speed=speed,
+        width=np.full(len(deposit), np.nan),
+        joints=joints,
+        duration=length / speed,
+    )
+
+
+def program_of(path, cell, **options):
+    """The program of a motion: a run of rapids, then a bead, layer by layer."""
+    blocks, endless = [], np.array([False] * 5 + [True])
+    cartesian = options.get("motion") == "cartesian"
+    for layer in np.unique(path.layer):
+        blocks.append(LayerStart(int(layer)))
+        for kind in ("rapid", "deposit"):
+            rows = (path.layer == layer) & (path.deposit == (kind == "deposit")) & path.moves
+            extra = {}
+            if cartesian:
+                flange = cell.machine.chain.forward(path.joints[rows])
+                in_frame = np.linalg.inv(cell.station) @ flange @ cell.carried
+                extra = {
+                    "position": in_frame[:, :3, 3],
+                    "rotation": in_frame[:, :3, :3],
+                    "configuration": (branch_name(cell.branch),) * int(rows.sum()),
+                }
+            shown = cell.machine.to_controller(path.joints[rows])
+            moves = Moves(kind, int(layer), 0, shown, path.duration[rows], path.speed[rows], **extra)
+            blocks += [DepositOn(0.5), moves, DepositOff(0.2)] if kind == "deposit" else [moves]
+    return Program("hemisphere", cell.machine.title, tuple(blocks), tuple(endless.tolist()), **options)
+
+
+@pytest.fixture(scope="module")
+def cell():
+    return cells.resolve(ON_ROBOT, np.eye(4))
+
+
+@pytest.fixture(scope="module")
+def motion(cell):
+    return hemisphere(cell)
+
+
+@pytest.fixture(scope="module")
+def program(cell, motion):
+    return program_of(motion, cell)
+
+
+@pytest.fixture(scope="module")
+def files(program):
+    return fanuc.write(program)
+
+
+def codes(result):
+    return {issue.code for issue in result.issues if issue.level == ERROR}
+
+
+def verify(cell, motion, program, files):
+    return verification.verify(cell, motion, program, files, fanuc, CHORD_ERROR)
+
+
+def edited(files, pattern, replacement, count=1):
+    """The files with the first match(es) of a pattern replaced; it must be there."""
+    (name,) = files
+    text, found = re.subn(pattern, replacement, files[name].decode("ascii"), count=count)
+    assert found
+    return {name: text.encode("ascii")}
+
+
+def test_a_correct_program_passes_with_both_solvers(cell, motion, program, files):
+    result = verify(cell, motion, program, files)
+    assert result.issues == () and result.solvers == ("chain", "pykdl")
+    # half a thousandth of a degree in six joints moves the tip by some hundredths of a millimetre
+    assert 1e-4 < result.at_points_mm < result.bound_mm < 0.06
+    assert 0.5 * CHORD_ERROR < result.between_mm < CHORD_ERROR + result.bound_mm
+
+
+def test_a_program_in_parts_passes(cell, motion, program):
+    parts = fanuc.write(dataclasses.replace(program, max_points=150))
+    assert len(parts) > 2 and verify(cell, motion, program, parts).issues == ()
+
+
+def test_a_dry_run_passes_and_differs_in_the_deposit_alone(cell, motion, program, files):
+    dry = dataclasses.replace(program, dry_run=True)
+    assert verify(cell, motion, dry, fanuc.write(dry)).issues == ()
+    assert codes(verify(cell, motion, dry, files)) == {"VERIFY_DEPOSIT"}
+    assert codes(verify(cell, motion, program, fanuc.write(dry))) == {"VERIFY_DEPOSIT"}
+
+
+@pytest.mark.parametrize("axis", range(6))
+@pytest.mark.parametrize("change", [0.02, -0.02])
+def test_one_joint_moved_is_caught_at_its_point(cell, motion, program, axis, change):
+    moves = program.blocks[3]
+    joints = moves.joints.copy()
+    joints[70, axis] += np.radians(change)
+    blocks = (*program.blocks[:3], dataclasses.replace(moves, joints=joints), *program.blocks[4:])
+    result = verify(cell, motion, program, fanuc.write(dataclasses.replace(program, blocks=blocks)))
+    for code in {"VERIFY_JOINT", *(["VERIFY_POINT"] if axis < 5 else [])}:  # axis 6 may move within what digits explain
+        first = next(issue for issue in result.issues if issue.code == code)
+        assert (first.layer, first.bead, first.point) == (0, 0, 71)
+
+
+def test_a_point_left_out_is_caught(cell, motion, program, files):
+    assert codes(verify(cell, motion, program, edited(files, r" *\d+:J P\[80\][^\n]*\n", ""))) == {"VERIFY_COUNT"}
+
+
+def test_a_point_left_out_with_another_one_repeated_is_caught(cell, motion, program, files):
+    assert "VERIFY_POINT" in codes(verify(cell, motion, program, edited(files, r"J P\[80\]", "J P[81]")))
+
+
+def test_the_deposit_switched_at_the_wrong_place_is_caught(cell, motion, program, files):
+    swapped = edited(files, r"DO\[1\]=ON", "DO[1]=OFF")
+    result = verify(cell, motion, program, swapped)
+    assert codes(result) == {"VERIFY_DEPOSIT"}
+    assert [(i.layer, i.bead, i.point) for i in result.issues] == [(0, 0, 1)]
+
+
+def test_the_deposit_switched_one_move_late_is_caught(cell, motion, program, files):
+    late = edited(files, r"(  DO\[1\]=ON ;\r\n)( *\d+:  WAIT[^\n]*\n)( *\d+:)(J [^\n]*\n)", r"\4\2\3\1")
+    result = verify(cell, motion, program, late)
+    assert [(i.code, i.layer, i.bead, i.point) for i in result.issues] == [("VERIFY_DEPOSIT", 0, 0, 1)]
+
+
+def test_a_time_halved_is_caught(cell, motion, program, files):
+    milliseconds = int(re.search(r"J P\[90\] (\d+)msec", files["HEMISPHERE.LS"].decode())[1])
+    halved = edited(files, r"J P\[90\] \d+msec", f"J P[90] {milliseconds // 2}msec")
+    assert codes(verify(cell, motion, program, halved)) == {"VERIFY_TIME"}
+    percent = edited(files, r"J P\[90\] \d+msec", "J P[90] 50%")
+    assert codes(verify(cell, motion, program, percent)) == {"VERIFY_TIME"}
+
+
+def test_times_that_are_off_by_a_millisecond_each_are_caught_in_the_bead(cell, motion, program, files):
+    text = files["HEMISPHERE.LS"].decode()
+    slowed = re.sub(r"(\d+)msec CNT", lambda m: f"{int(m[1]) + 1}msec CNT", text)
+    assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": slowed.encode()})) == {"VERIFY_TIME"}
+
+
+def test_layers_in_the_wrong_order_are_caught(cell, motion, program):
+    parts = fanuc.write(dataclasses.replace(program, max_points=150))
+    swaps = {b"CALL HEMISPHERE01": b"CALL HEMISPHERE02", b"CALL HEMISPHERE02": b"CALL HEMISPHERE01"}
+    parts["HEMISPHERE.LS"] = re.sub(rb"CALL HEMISPHERE0[12]", lambda m: swaps[m[0]], parts["HEMISPHERE.LS"])
+    assert "VERIFY_POINT" in codes(verify(cell, motion, program, parts))
+
+
+def test_a_path_that_bulges_between_its_points_is_caught(cell, motion, program):
+    """Every third point of a bead alone is on the circle; the way between is not within the chord error."""
+    kept = ~motion.deposit | (motion.point % 3 == 0)
+    thin = Motion(**{f.name: np.array(getattr(motion, f.name)[kept]) for f in dataclasses.fields(Motion)})
+    length = np.r_[0.0, np.linalg.norm(np.diff(thin.position, axis=0), axis=1)]
+    thin = dataclasses.replace(thin, duration=length / thin.speed)
+    coarse = program_of(thin, cell)
+    result = verify(cell, thin, coarse, fanuc.write(coarse))
+    assert codes(result) == {"VERIFY_BETWEEN"} and result.between_mm > 5.0 * CHORD_ERROR
+
+
+def test_another_cell_than_the_planned_one_is_caught(cell, motion, program, files):
+    moved = dataclasses.replace(cell, carried=cell.carried + np.eye(4, k=3) * 0.1)
+    assert "VERIFY_POINT" in codes(verify(moved, motion, program, files))
+
+
+def test_the_pendant_angle_of_axis_3_counts(cell, motion, program):
+    """A post fed with serial angles instead of the controller's gives a program that fails."""
+    blocks = tuple(
+        dataclasses.replace(block, joints=cell.machine.from_controller(block.joints))
+        if isinstance(block, Moves)
+        else block
+        for block in program.blocks
+    )
+    wrong = fanuc.write(dataclasses.replace(program, blocks=blocks))
+    assert "VERIFY_POINT" in codes(verify(cell, motion, program, wrong))
+
+
+def test_text_that_is_not_understood_is_refused(cell, motion, program, files):
+    with pytest.raises(InputError) as raised:
+        verify(cell, motion, program, edited(files, r"UTOOL_NUM=1", "OVERRIDE=100%"))
+    assert raised.value.code == "UNREADABLE_PROGRAM" and raised.value.where == "HEMISPHERE.LS line 23"
+
+
+def test_one_solver_alone_is_said(cell, motion, program, files, monkeypatch):
+    monkeypatch.setattr(verification.kdl_chain, "available", lambda: False)
+    result = verify(cell, motion, program, files)
+    assert [(i.level, i.code) for i in result.issues] == [("note", "VERIFY_ONE_SOLVER")]
+    assert result.solvers == ("chain",)
+
+
+def test_solvers_that_disagree_are_caught(cell, motion, program, files, monkeypatch):
+    class Off(verification.kdl_chain.KdlArm):
+        def forward(self, q):
+            poses = super().forward(q)
+            poses[17, 0, 3] += 1e-4
+            return poses
+
+    monkeypatch.setattr(verification.kdl_chain, "KdlArm", Off)
+    result = verify(cell, motion, program, files)
+    assert codes(result) == {"VERIFY_SOLVERS"}
+
+
+def test_the_bound_holds_and_is_tight_for_random_machines():
+    """Rounding joint values never leads further than the bound, and in the worst case nearly that far."""
+    rng = np.random.default_rng(11)
+    cell = cells.resolve(ON_TABLE, np.eye(4))
+    half = np.radians(0.0005)
+    corners = np.array(np.meshgrid(*[[-1.0, 1.0]] * 6)).reshape(6, -1).T * half
+    for shown in rng.uniform(-2.0, 2.0, (20, 6)):
+        path, _ = verification._joint_path(cell, shown[None], half)
+        turned = cell.machine.chain.forward(cell.machine.from_controller(shown + corners))
+        tips, tools = cell.tip_in_part(turned)
+        off = np.linalg.norm(tips - path.position, axis=1).max()
+        tilt = np.linalg.norm(tools - path.tool, axis=1).max()
+        assert 0.3 * path.bound[0] < off <= path.bound[0]
+        assert 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
+
+
+@pytest.fixture(scope="module")
+def table():
+    cell = cells.resolve(ON_TABLE, np.eye(4))
+    motion = hemisphere(cell, layers=2, offset=1.0)
+    return cell, motion, program_of(motion, cell, motion="cartesian", setup="tool-on-robot")
+
+
+def test_cartesian_programs_pass(table):
+    cell, motion, program = table
+    result = verify(cell, motion, program, fanuc.write(program))
+    assert result.issues == () and 0.0 < result.at_points_mm <= result.bound_mm < 0.001
+
+
+@pytest.mark.parametrize(
+    ("word", "code"),
+    [("X", "VERIFY_POINT"), ("Z", "VERIFY_POINT"), ("W", "VERIFY_TOOL"), ("P", "VERIFY_TOOL"), ("R", "VERIFY_TOOL")],
+)
+def test_cartesian_positions_that_are_off_are_caught(table, word, code):
+    cell, motion, program = table
+    text = fanuc.write(program)["HEMISPHERE.LS"].decode()
+    moved = re.sub(rf"(?<=\t){word} = *(-?\d*\.\d+)", lambda m: f"{word} ={float(m[1]) + 0.02:10.3f}", text)
+    found = codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()}))
+    assert found == ({code, "VERIFY_ROTATION"} if word in "WPR" else {code})
+
+
+def test_a_tool_turned_about_its_own_axis_is_caught(table):
+    cell, motion, program = table
+    text = fanuc.write(program)["HEMISPHERE.LS"].decode()
+    upright = re.search(r"\tR = *(-?\d*\.\d+) deg", text)  # the first layer stands upright: R turns about the tool
+    moved = text[: upright.start(1)] + f"{float(upright[1]) + 1.0:.3f}" + text[upright.end(1) :]
+    assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) == {"VERIFY_ROTATION"}
+
+
+def test_cartesian_speeds_that_are_off_are_caught(table):
+    cell, motion, program = table
+    files = edited(fanuc.write(program), r"6\.0mm/sec", "6.6mm/sec")
+    assert codes(verify(cell, motion, program, files)) == {"VERIFY_SPEED"}
+
+
+def test_joint_programs_with_the_tool_on_the_robot_pass(table):
+    cell, motion, program = table
+    joint = dataclasses.replace(program, motion="joint")
+    result = verify(cell, motion, joint, fanuc.write(joint))
+    assert codes(result) <= {"VERIFY_BETWEEN"}  # joint moves do not run straight; points would be added
+    assert result.at_points_mm <= result.bound_mm
