@@ -24,7 +24,7 @@ def sampled(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
 
     curve: parameters (n,) -> points (n, 2), tangents (n, 2) of any length. breaks: rising parameters between
     which the curve is smooth. Intervals are halved until the middle of the Hermite arc over the
-    whole interval meets the curve, so that the halves kept are better still (by 8 in the tangent, 16 in the point).
+    whole interval meets the curve, so that the halves kept are better still (by 8 in the tangent, 16 in the point). Raises ValueError where the curve stands still.
     """
     t = _initial(np.asarray(breaks, dtype=np.float64))
     points, tangents = _evaluate(curve, t)
@@ -52,7 +52,10 @@ def _initial(breaks: Array) -> Array:
 
 def _evaluate(curve: Curve, t: Array) -> tuple[Array, Array]:
     points, tangents = curve(t)
-    return points, tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
+    size = np.linalg.norm(tangents, axis=1, keepdims=True)
+    if not size.min() > 0.0:
+        raise ValueError("the curve has no direction at one of its points")
+    return points, tangents / size
 
 
 def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Array) -> NDArray[np.bool_]:

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes from files, without a document."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import Part
+
+from ..core.issues import InputError
+
+READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+MESHES = (".stl", ".obj", ".3mf")
+
+
+def read_shape(path: str | os.PathLike[str]) -> Any:
+    """The Part.Shape of a STEP, IGES or BREP file, in the file's coordinates, mm.
+
+    Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
+    """
+    file = Path(path)
+    where = file.name or str(path)
+    suffix = file.suffix.lower()
+    if not file.exists():
+        raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
+    if not file.is_file():
+        raise InputError("NO_FILE", where, "it is a folder; name the file of the part")
+    if suffix in MESHES:
+        raise InputError(
+            "UNSUPPORTED_FILE", where,
+            "a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP",
+        )
+    if suffix not in READABLE:
+        raise InputError("UNSUPPORTED_FILE", where, f"{suffix or 'no ending'} is not read; use {', '.join(READABLE)}")
+    try:
+        size = file.stat().st_size
+        with file.open("rb") as stream:
+            stream.read(1)
+    except OSError as error:
+        raise InputError("BAD_FILE", where, f"it cannot be read: {error.strerror}") from error
+    if size == 0:
+        raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+    return _shape(file, where)
+
+
+def _shape(file: Path, where: str) -> Any:
+    bad = InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again")
+    shape = Part.Shape()
+    try:
+        with _quiet():
+            shape.read(str(file))
+    except (RuntimeError, OSError, ValueError, Part.OCCError) as error:
+        raise bad from error
+    if shape.isNull():
+        raise bad
+    if not (shape.Faces or shape.Edges):
+        raise InputError("EMPTY_FILE", where, "it holds no shape; export the part again")
+    return shape
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Sends what the geometry kernel prints on the process's standard output to standard error."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    try:
+        os.dup2(2, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pieces of meridian put together: chains in order, the walls of a closed contour, and the wall halfway between two.
+
+Everything is in the half plane (radius, height) of the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from .profile import Array, Meridian, arc_lengths
+
+JOIN = 1e-4  # mm; ends closer than this are one point
+BRIDGE = 0.2  # mm; wider gaps are not bridged
+LEVEL = 1e-4  # mm; heights closer than this are the same
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A smooth stretch of meridian: samples points (n, 2) mm and unit tangents (n, 2). flat: all at one height."""
+
+    name: str
+    points: Array
+    tangents: Array
+    turn: tuple[float, float] | None = None
+
+    @property
+    def flat(self) -> bool:
+        """True where the piece is straight across the axis."""
+        return bool(np.ptp(self.points[:, 1]) < LEVEL)
+
+    def reversed(self) -> Piece:
+        """The same stretch run the other way."""
+        return replace(self, points=self.points[::-1], tangents=-self.tangents[::-1])
+
+
+Chain = list[Piece]
+
+
+def ends(chain: Chain) -> tuple[Array, Array]:
+    """First and last point (2,) of a chain."""
+    return chain[0].points[0], chain[-1].points[-1]
+
+
+def chains(pieces: Sequence[Piece]) -> tuple[list[Chain], float]:
+    """The pieces joined end to end, nearest ends first, and the widest gap (mm) bridged.
+
+    A closed contour is one chain whose last end meets its first.
+    """
+    parts: list[Chain] = [[piece] for piece in pieces]
+    widest = 0.0
+    while len(parts) > 1:
+        gap, i, j, turn_i, turn_j = min(
+            (float(np.hypot(*(end - start))), i, j, turn_i, turn_j)
+            for i, one in enumerate(parts) for j, other in enumerate(parts) if i < j
+            for turn_i, end in enumerate(reversed(ends(one))) for turn_j, start in enumerate(ends(other))
+        )
+        if gap > BRIDGE:
+            break
+        one = _turned(parts[i]) if turn_i else parts[i]
+        other = _turned(parts[j]) if turn_j else parts[j]
+        parts[i] = one + other
+        del parts[j]
+        widest = max(widest, gap)
+    return parts, widest
+
+
+def _turned(chain: Chain) -> Chain:
+    return [piece.reversed() for piece in reversed(chain)]
+
+
+def is_closed(chain: Chain) -> bool:
+    """True when the chain bounds a section: it meets itself, or starts and ends on the axis."""
+    first, last = ends(chain)
+    meets = len(chain) > 1 or len(chain[0].points) > 2
+    return (meets and float(np.hypot(*(last - first))) < JOIN) or (first[0] < JOIN and last[0] < JOIN)
+
+
+def upright(chain: Chain) -> Chain:
+    """The chain run from its lower end up; of two ends at one height, from the one with the larger radius."""
+    first, last = ends(chain)
+    if abs(first[1] - last[1]) < LEVEL:
+        return chain if first[0] >= last[0] else _turned(chain)
+    return chain if first[1] < last[1] else _turned(chain)
+
+
+def walls(chain: Chain) -> list[Chain]:
+    """The walls of a closed contour, the one at the larger radius first.
+
+    The contour is cut at its lowest and highest points; flat pieces there, and flat pieces at the ends of what is
+    left, are end faces and no wall. A contour of a full part has one wall, of a hollow part two.
+    """
+    level = np.vstack([piece.points for piece in chain])[:, 1]
+    low, high = float(level.min()), float(level.max())
+    meets = float(np.hypot(*(ends(chain)[1] - ends(chain)[0]))) < JOIN
+    runs: list[Chain] = [[]]
+    for piece in chain:
+        if piece.flat and min(abs(piece.points[0, 1] - low), abs(piece.points[0, 1] - high)) < LEVEL:
+            runs.append([])
+            continue
+        for part in _cut_at(piece, low, high):
+            if runs[-1] and _at_extreme(part.points[0], low, high):
+                runs.append([])
+            runs[-1].append(part)
+    if meets and len(runs) > 1 and runs[0] and runs[-1] and not _at_extreme(runs[0][0].points[0], low, high):
+        runs[0] = runs.pop() + runs[0]
+    found = [stripped for run in runs if (stripped := _without_flat_ends(run))]
+    return [upright(run) for run in sorted(found, key=_mean_radius, reverse=True)]
+
+
+def _at_extreme(point: Array, low: float, high: float) -> bool:
+    return min(abs(point[1] - low), abs(point[1] - high)) < LEVEL
+
+
+def _cut_at(piece: Piece, low: float, high: float) -> list[Piece]:
+    """The piece cut at inner samples where it touches the lowest or highest level."""
+    rise = piece.tangents[:, 1]
+    turning = np.flatnonzero(rise[1:] * rise[:-1] <= 0.0)
+    if piece.flat or len(turning) == 0:
+        return [piece]
+    curve = Meridian(np.r_[0.0, np.cumsum(arc_lengths(piece.points, piece.tangents))], piece.points, piece.tangents)
+    cuts = [0.0, curve.length]
+    for i in turning:
+        a, b = float(curve.s[i]), float(curve.s[i + 1])
+        for _ in range(60):
+            middle = 0.5 * (a + b)
+            a, b = (middle, b) if float(curve.at([middle])[2][0, 1]) * rise[i] > 0.0 else (a, middle)
+        inside = 10.0 * JOIN < b < curve.length - 10.0 * JOIN
+        if inside and _at_extreme(np.array([0.0, curve.at([b])[1][0]]), low, high):
+            cuts.append(b)
+    cuts = sorted(cuts)
+    return [_stretch(piece, curve, a, b) for a, b in pairwise(cuts)] if len(cuts) > 2 else [piece]
+
+
+def _stretch(piece: Piece, curve: Meridian, a: float, b: float) -> Piece:
+    """The piece from arc length a to b of its own curve."""
+    inner = (curve.s > a + 1e-6) & (curve.s < b - 1e-6)
+    r, h, t = curve.at([a, b])
+    points = np.vstack([[r[0], h[0]], curve.points[inner], [r[1], h[1]]])
+    return replace(piece, points=points, tangents=np.vstack([t[:1], curve.tangents[inner], t[1:]]))
+
+
+def _without_flat_ends(chain: Chain) -> Chain:
+    first, last = 0, len(chain)
+    while first < last and chain[first].flat:
+        first += 1
+    while last > first and chain[last - 1].flat:
+        last -= 1
+    return chain[first:last]
+
+
+def _mean_radius(chain: Chain) -> float:
+    meridian = meridian_of(chain)
+    return float(meridian.at(np.linspace(0.0, meridian.length, 101))[0].mean())
+
+
+def meridian_of(chain: Chain) -> Meridian:
+    """The chain as one curve."""
+    return Meridian.chained([(piece.points, piece.tangents) for piece in chain])
+
+
+def halfway(outer: Meridian, inner: Meridian) -> list[tuple[Array, Array]]:
+    """The wall in the middle: halfway between the points of the two that lie at the same share of their lengths.
+
+    Where both have as many kinks, shares count from kink to kink. Between parallel walls this is the parallel curve in
+    the middle. Returns pieces (points, tangents).
+    """
+    bounds = [np.r_[0.0, curve.kinks, curve.length] for curve in (outer, inner)]
+    if len(bounds[0]) != len(bounds[1]):
+        shares = np.union1d(bounds[0] / outer.length, bounds[1] / inner.length)
+        shares = shares[np.r_[True, np.diff(shares) > 1e-9]]
+        bounds = [shares * outer.length, shares * inner.length]
+    return [
+        _between((outer, inner), (bounds[0][i], bounds[1][i]), (bounds[0][i + 1], bounds[1][i + 1]))
+        for i in range(len(bounds[0]) - 1)
+    ]
+
+
+def _between(
+    curves: tuple[Meridian, Meridian], start: tuple[float, float], end: tuple[float, float]
+) -> tuple[Array, Array]:
+    nodes = [
+        (curve.s[(curve.s > a + 1e-6) & (curve.s < b - 1e-6)] - a) / (b - a)
+        for curve, a, b in zip(curves, start, end, strict=True)
+    ]
+    share = np.union1d(np.concatenate(nodes), [0.0, 1.0])
+    share = share[np.r_[True, np.diff(share) > 1e-6]]
+    share[-1] = 1.0
+    points, tangents = np.zeros((len(share), 2)), np.zeros((len(share), 2))
+    for curve, a, b in zip(curves, start, end, strict=True):
+        # just inside, so that a kink at the start gives the tangent above it
+        r, h, t = curve.at(np.clip(a + share * (b - a), a + 2e-9, b))
+        points += 0.5 * np.stack([r, h], axis=1)
+        tangents += 0.5 * (b - a) * t
+    size = np.linalg.norm(tangents, axis=1)
+    # where the two walls run against each other, as at the crest of a torus, the points alone tell the way
+    along = np.gradient(points, axis=0)
+    tangents = np.where((size > 1e-4 * size.max())[:, None], tangents, along)
+    return points, tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
