@@ -30,6 +30,8 @@ COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 # s: the step of a time in milliseconds and in tenths of a second, and where the second begins
 MILLISECOND, TENTH, LONGEST_MSEC = 0.001, 0.05, 32.0
+# mm/s, half of the last digit of a path speed
+SPEED_DIGIT = 0.05
 
 
 @dataclass(frozen=True)
@@ -111,22 +113,23 @@ def _time_issues(planned: _Planned, read: ReadMoves) -> list[Issue]:
     step[1:] = np.linalg.norm(np.diff(planned.position, axis=0), axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         wanted = np.where(planned.deposit, step / planned.speed, planned.duration)
-    if read.joints is None:
-        given = np.full(len(timed), np.nan) if read.speed is None else read.speed
-        wrong = timed & ~(np.abs(given - planned.speed) <= 0.05 + 1e-9)
-        return planned.issue("VERIFY_SPEED", wrong, "the speed in the text is not the planned one")
+    given = np.full(len(timed), np.nan) if read.speed is None else read.speed
+    by_speed = np.isfinite(given)
+    wrong = by_speed & ~(np.abs(given - planned.speed) <= SPEED_DIGIT + 1e-9)
+    issues = planned.issue("VERIFY_SPEED", wrong, "the speed in the text is not the planned one")
+    timed &= ~by_speed
     allowed = np.where(wanted < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
     short = timed & ~planned.deposit & (wanted < MILLISECOND)  # written as 1 ms, the shortest there is
     wrong = timed & ~short & ~(np.abs(read.duration - wanted) <= allowed)
-    issues = planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")
+    issues += planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")
     beads = np.flatnonzero(np.diff(planned.deposit, prepend=False) & planned.deposit)
     if len(beads) and not issues:
-        off = np.where(planned.deposit, read.duration - wanted, 0.0)
+        off = np.where(planned.deposit & timed, read.duration - wanted, 0.0)
         coarse = np.where(planned.deposit & (allowed > TENTH), TENTH, 0.0)
         excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(coarse, beads)
         wrong = np.zeros(len(timed), dtype=bool)
         wrong[beads[excess]] = True
-        issues = planned.issue("VERIFY_TIME", wrong, "the times of a bead do not add up to the planned one")
+        issues += planned.issue("VERIFY_TIME", wrong, "the times of a bead do not add up to the planned one")
     return issues
 
 

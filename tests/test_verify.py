@@ -305,6 +305,12 @@ def test_cartesian_speeds_that_are_off_are_caught(table):
     assert codes(verify(cell, motion, program, files)) == {"VERIFY_SPEED"}
 
 
+def test_cartesian_rapids_that_are_faster_are_caught(table):
+    cell, motion, program = table
+    files = edited(fanuc.write(program), r"L P\[2\] \d+msec", "L P[2] 20msec")
+    assert codes(verify(cell, motion, program, files)) == {"VERIFY_TIME"}
+
+
 def test_joint_programs_with_the_tool_on_the_robot_pass(table):
     cell, motion, program = table
     joint = dataclasses.replace(program, motion="joint")

@@ -190,7 +190,9 @@ def _groups(program: Program) -> Iterator[list[_Piece]]:
         if isinstance(block, Moves):
             if not len(block):
                 continue
-            speeds = numbers.time_words(block) if program.motion == "joint" else numbers.speed_words(block)
+            # a linear move that only turns the tool has no path speed, so rapids go by time in either case
+            timed = program.motion == "joint" or block.kind == RAPID
+            speeds = numbers.time_words(block) if timed else numbers.speed_words(block)
             if first:
                 speeds[0], first = _FIRST_MOVE, False
             piece: _Piece = _Run(block, speeds, 0, len(block))

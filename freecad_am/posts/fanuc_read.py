@@ -190,7 +190,7 @@ def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> N
         raise _unreadable(where, "joint and Cartesian positions are mixed")
     if (letter == "L") != listing.cartesian and (letter == "L" or run.rows):
         raise _unreadable(where, "a position is moved to in another way than it is recorded")
-    if (unit == "mm/sec") != (letter == "L"):
+    if (unit == "mm/sec" and letter == "J") or (unit == "%" and letter == "L"):
         raise _unreadable(where, f"{unit} is not understood here")
     for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row], strict=True):
         if recorded not in ("F", run.frame.get(word)):
