@@ -46,8 +46,9 @@ class KdlArm:
         self.chain = self.kdl.Chain()
         for index, (origin, direction) in enumerate(zip(machine.chain.origins, machine.chain.directions, strict=True)):
             self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self._frame(origin)))
-            axis = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), self.kdl.Vector(*direction), self.kdl.Joint.RotAxis)
-            self.chain.addSegment(self.kdl.Segment(axis, self.kdl.Frame()))
+            axis = self.kdl.Vector(*direction)
+            joint = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), axis, self.kdl.Joint.RotAxis)
+            self.chain.addSegment(self.kdl.Segment(joint, self.kdl.Frame()))
         self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self._frame(machine.chain.flange)))
         self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)
         self._jacobian = self.kdl.ChainJntToJacSolver(self.chain)
@@ -64,7 +65,7 @@ class KdlArm:
         return result
 
     def jacobian(self, q: ArrayLike) -> Array:
-        """Geometric Jacobians (n, 6, axes) at the flange's origin, base_link axes, rows velocity and angular velocity."""
+        """Geometric Jacobians (n, 6, axes) at the flange's origin in base_link, rows velocity, then angular velocity."""
         result = np.empty((len(np.asarray(q)), 6, self.axes))
         columns = self.kdl.Jacobian(self.axes)
         for row, angles in zip(result, np.asarray(q, float), strict=True):

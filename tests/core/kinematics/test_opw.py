@@ -100,14 +100,14 @@ def test_a_straight_wrist_turns_axis_6_alone(arm):
 def test_wrist_centre_on_axis_1_and_stretched_arm(arm):
     """The singularities of shoulder and elbow give a pose back too."""
     rng = np.random.default_rng(5)
-    bent = -np.arctan2(arm.opw.a2, arm.opw.c3)
+    straight = -np.arctan2(arm.opw.a2, arm.opw.c3)
     opw_q = rng.uniform(-2, 2, (50, 6))
-    opw_q[:25, 2] = bent
-    # turn axis 2 until the wrist centre lies on the axis, where the arm is long enough
-    reach = np.hypot(arm.opw.c2 + arm.opw.forearm * np.cos(opw_q[25:, 2] - bent), arm.opw.forearm * np.sin(opw_q[25:, 2] - bent))
-    lean = np.arctan2(arm.opw.forearm * np.sin(opw_q[25:, 2] - bent), arm.opw.c2 + arm.opw.forearm * np.cos(opw_q[25:, 2] - bent))
-    assert (reach > abs(arm.opw.a1)).all()
-    opw_q[25:, 1] = -np.arcsin(arm.opw.a1 / reach) - lean
+    opw_q[:25, 2] = straight
+    # turn axis 2 until the wrist centre lies on the axis
+    bend = opw_q[25:, 2] - straight
+    up, out = arm.opw.c2 + arm.opw.forearm * np.cos(bend), arm.opw.forearm * np.sin(bend)
+    assert (np.hypot(up, out) > abs(arm.opw.a1)).all()
+    opw_q[25:, 1] = -np.arcsin(arm.opw.a1 / np.hypot(up, out)) - np.arctan2(out, up)
     q = (opw_q + np.array(arm.opw.offsets)) * np.array(arm.opw.signs)
     poses = arm.chain.forward(q)
     solutions = arm.opw.inverse(poses)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine files: what they hold, and every way they can be wrong."""
+
+import copy
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import machine
+
+GOOD = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
+
+
+def test_all_built_in_machines_load():
+    known = machine.known()
+    assert len(known) == 25
+    for name, title in known:
+        arm = machine.load(name)
+        assert (arm.id, arm.title) == (name, title)
+        assert arm.opw is not None and arm.sources and arm.controller_remark
+        assert np.isfinite(arm.max_speed).all() and (arm.max_speed > 0).all()
+        assert "maker" in arm.limit_sets
+        assert all((limits.stroke > 0).all() for limits in arm.limit_sets.values())
+
+
+def test_the_arc_mate_is_that_of_the_data():
+    arm = machine.load("fanuc-arcmate120ic")
+    assert arm.axes == ("q1", "q2", "q3", "q4", "q5", "q6")
+    assert np.array_equal(arm.base, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 525], [0, 0, 0, 1]])
+    assert np.degrees(arm.limits("maker").lower) == pytest.approx((-170, -100, -90, -200, -140, -270))
+    assert np.degrees(arm.limits("paper").upper) == pytest.approx((185, 160, 273, 200, 135, np.inf))
+    assert np.degrees(arm.max_speed) == pytest.approx((195, 175, 180, 360, 360, 550))
+    zero = arm.chain.forward(np.zeros(6))
+    assert zero[:3, 3] == pytest.approx((1085.0, 0.0, 1565.0))
+    # the flange looks ahead, its X up
+    assert zero[:3, :3] == pytest.approx(np.array([[0, 0, 1], [0, -1, 0], [1, 0, 0]]), abs=1e-12)
+
+
+def test_the_pendant_s_third_axis_is_against_the_horizontal():
+    arm = machine.load("fanuc-arcmate120ic")
+    q = np.random.default_rng(3).uniform(-3, 3, (5, 7, 6))
+    shown = arm.to_controller(q)
+    assert shown[..., 2] == pytest.approx(q[..., 2] - q[..., 1])
+    assert np.array_equal(np.delete(shown, 2, axis=-1), np.delete(q, 2, axis=-1))
+    assert np.abs(arm.from_controller(shown) - q).max() < 1e-14
+
+
+def test_other_machines_show_serial_angles_and_say_it_is_unverified():
+    for name in ("kuka-kr16-2", "staubli-rx60bl", "motoman-ar2010"):
+        arm = machine.load(name)
+        assert np.array_equal(arm.to_controller(np.arange(6.0)), np.arange(6.0))
+        assert "unverified" in arm.controller_remark
+
+
+def test_unknown_machine_names_its_neighbours(tmp_path):
+    with pytest.raises(InputError) as info:
+        machine.load("fanuc_arcmate120ic")
+    assert info.value.code == "UNKNOWN_MACHINE"
+    assert "fanuc-arcmate120ic" in info.value.message
+    with pytest.raises(InputError) as info:
+        machine.load("zzz")
+    assert "kuka-kr16-2" in info.value.message
+    for path in (tmp_path / "none.json", tmp_path / "arm.urdf"):
+        with pytest.raises(InputError) as info:
+            machine.load(path)
+        assert info.value.code == "UNKNOWN_MACHINE"
+
+
+def test_unknown_limits_names_the_known():
+    with pytest.raises(InputError) as info:
+        machine.load("fanuc-arcmate120ic").limits("papper")
+    assert info.value.code == "UNKNOWN_LIMITS"
+    assert "maker, paper" in info.value.message
+
+
+def test_the_user_s_folder_goes_first(tmp_path):
+    content = copy.deepcopy(GOOD)
+    content["title"] = "Mine"
+    (tmp_path / "fanuc-arcmate120ic.json").write_text(json.dumps(content), encoding="utf-8")
+    assert dict(machine.known([tmp_path]))["fanuc-arcmate120ic"] == "Mine"
+    assert machine.load("fanuc-arcmate120ic", [tmp_path]).title == "Mine"
+    assert machine.load(tmp_path / "fanuc-arcmate120ic.json").title == "Mine"
+    assert machine.load("fanuc-arcmate120ic").title != "Mine"
+    content["id"] = "other"
+    (tmp_path / "fanuc-arcmate120ic.json").write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(InputError, match="not the name of the file"):
+        machine.load("fanuc-arcmate120ic", [tmp_path])
+
+
+def changed(*path, value=None, remove=False):
+    content = copy.deepcopy(GOOD)
+    node = content
+    for key in path[:-1]:
+        node = node[key]
+    if remove:
+        del node[path[-1]]
+    else:
+        node[path[-1]] = value
+    return content
+
+
+BAD = {
+    "geometry": (
+        changed("joints", 2, "origin", value=[0, 0, 791]),
+        "check_poses[0]", "the joint frames give a flange 1 mm",
+    ),
+    "closed form": (changed("opw", "c4", value=101), "check_poses[0]", "opw gives a flange 1 mm"),
+    "pose": (changed("check_poses", 2, "origin", 1, value=0), "check_poses[2]", "mm"),
+    "turned pose": (
+        changed("check_poses", 0, "rotation", value=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+        "check_poses[0]", "rotation",
+    ),
+    "two poses": (changed("check_poses", value=GOOD["check_poses"][:2]), "check_poses", "at least 3"),
+    "no zero pose": (changed("check_poses", value=GOOD["check_poses"][1:]), "check_poses", "all zeros"),
+    "no poses": (changed("check_poses", remove=True), "", "'check_poses' is missing"),
+    "unknown key": (changed("colour", value="yellow"), "", "'colour' is not known"),
+    "unknown joint key": (changed("joints", 1, "speed", value=3), "joints[1]", "'speed' is not known"),
+    "missing axis": (changed("joints", 1, "axis", remove=True), "joints[1]", "'axis' is missing"),
+    "axis not unit": (changed("joints", 1, "axis", value=[0, 2, 0]), "joints[1].axis", "unit vector"),
+    "text for a number": (
+        changed("joints", 0, "origin", value=[0, "0", 525]),
+        "joints[0].origin[1]", '"0" is not a number',
+    ),
+    "two numbers for three": (changed("flange", "rpy", value=[0, 90]), "flange.rpy", "list of 3"),
+    "speed of nought": (changed("joints", 5, "max_speed", value=0), "joints[5].max_speed", "more than 0"),
+    "five joints": (changed("joints", value=GOOD["joints"][:5]), "opw", "six joints"),
+    "no joints": (changed("joints", value=[]), "joints", "no joint"),
+    "sign of two": (changed("opw", "signs", value=[1, 1, -1, -1, -2, -1]), "opw.signs", "1 or -1"),
+    "offset of axis 5": (changed("opw", "offsets", value=[0, 0, -90, 0, 90, 180]), "opw.offsets", "axis 5"),
+    "no upper arm": (changed("opw", "c2", value=0), "opw.c2", "more than 0 mm"),
+    "limits upside down": (
+        changed("limits", "maker", "axes", 1, value=[160, -100]),
+        "limits.maker.axes[1]", "smaller angle first",
+    ),
+    "no maker limits": (changed("limits", "maker", remove=True), "limits", "'maker' is missing"),
+    "coupled without a label": (
+        changed("limits", "maker", "coupled", 0, "label", remove=True),
+        "limits.maker.coupled[0]", "'label'",
+    ),
+    "matrix without inverse": (
+        changed("controller", "matrix", 2, value=[0, 1, 0, 0, 0, 0]),
+        "controller.matrix", "no inverse",
+    ),
+    "no title": (changed("title", value=""), "title", "not a text"),
+    "not an object": ([1, 2], "", "not an object"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_bad_file_is_named_with_key_and_reason(case, tmp_path):
+    content, key, reason = BAD[case]
+    path = tmp_path / "arm.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(InputError) as info:
+        machine.load(path)
+    assert info.value.code == "BAD_MACHINE"
+    assert info.value.where == (f"{path}: {key}" if key else str(path))
+    assert reason in info.value.message
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"\xff\xfe", b"NaN"])
+def test_a_file_that_is_no_json_is_refused(content, tmp_path):
+    path = tmp_path / "arm.json"
+    path.write_bytes(content)
+    with pytest.raises(InputError) as info:
+        machine.load(path)
+    assert (info.value.code, info.value.exit_status) == ("BAD_MACHINE", 2)
+    assert str(path) in info.value.where
+    with pytest.raises(InputError):
+        machine.known([tmp_path])
+
+
+def test_numbers_that_are_none_are_refused(tmp_path):
+    path = tmp_path / "arm.json"
+    path.write_text(json.dumps(GOOD).replace("525", "Infinity", 1), encoding="utf-8")
+    with pytest.raises(InputError, match="not a number"):
+        machine.load(path)
+
+
+READS_A_MACHINE = """
+import locale
+locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+assert locale.localeconv()["decimal_point"] == ","
+from freecad_am.core.kinematics import machine
+print(repr(machine.load("staubli-tx2-60l").limits("maker").upper[1]))
+"""
+
+
+@pytest.mark.skipif(shutil.which("localedef") is None, reason="localedef is not installed")
+def test_decimal_commas_of_a_locale_change_nothing(tmp_path, root):
+    made = subprocess.run(
+        ["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")], capture_output=True, check=False
+    )
+    if not (tmp_path / "de_DE.UTF-8").is_dir():
+        pytest.skip(f"the sources of de_DE are not installed: {made.stderr.decode(errors='replace')}")
+    environment = {**os.environ, "LOCPATH": str(tmp_path), "PYTHONPATH": str(root)}
+    run = subprocess.run(
+        [sys.executable, "-c", READS_A_MACHINE], env=environment, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    assert float(run.stdout.strip()) == np.radians(127.5)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""PyKDL's opinion on the kinematics of every machine."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics import machine
+from freecad_am.core.kinematics.jacobian import jacobian
+from freecad_am.kdl.chain import SOLVERS, KdlArm, available
+
+pytestmark = pytest.mark.skipif(not available(), reason="PyKDL is not installed")
+
+
+@pytest.fixture(params=[name for name, _ in machine.known()])
+def arm(request):
+    return machine.load(request.param)
+
+
+def joints(count, seed):
+    return np.random.default_rng(seed).uniform(-np.pi, np.pi, (count, 6))
+
+
+def test_flange_poses_agree(arm):
+    q = joints(100, 1)
+    wanted = KdlArm(arm).forward(q)
+    assert np.abs(arm.chain.forward(q) - wanted).max() < 1e-9
+    assert np.abs(arm.opw.forward(q) - wanted).max() < 1e-9
+
+
+def test_jacobians_agree(arm):
+    q = joints(100, 2)
+    flange = arm.chain.forward(q)[:, :3, 3]
+    assert np.abs(jacobian(arm.chain, q, flange) - KdlArm(arm).jacobian(q)).max() < 1e-9
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_numeric_inverse_ends_in_the_closed_form(solver):
+    """From a seed nearby, PyKDL's solvers find the branch that the closed form calls by that name."""
+    arm = machine.load("fanuc-arcmate120ic")
+    rng = np.random.default_rng(3)
+    q = rng.uniform((-1, -0.5, -0.5, -1, 0.5, -1), (1, 0.5, 0.5, 1, 1.5, 1), (20, 6))
+    poses = arm.chain.forward(q)
+    found = KdlArm(arm).inverse(poses, q + rng.uniform(-0.03, 0.03, q.shape), solver, 1e-10)
+    closed = arm.opw.inverse(poses)[arm.opw.branch_of(q), np.arange(len(q))]
+    # PyKDL takes a rotation that small for none, and LMA stops by its own weighting of mm and rad
+    assert np.abs(found - closed).max() < (1e-6 if solver == "nr" else 1e-4)
+
+
+def test_unknown_solver_is_refused():
+    with pytest.raises(ValueError, match="nr, lma"):
+        KdlArm(machine.load("fanuc-arcmate120ic")).solver("newton")
