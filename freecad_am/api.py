@@ -39,12 +39,13 @@ from .objects.cell import Cell
 from .objects.feature import RevolutionFeature
 from .objects.joint_path import JointPath
 from .objects.program import Program, files_of
+from .objects.progress import told_to
 from .objects.settings import given
 from .objects.toolpath import Toolpath
 
 __all__ = (
     "change", "export", "issues", "make_all", "make_cell", "make_feature", "make_joint_path", "make_program",
-    "make_toolpath", "open_part", "recompute", "result", "stages_of",
+    "make_toolpath", "open_part", "recompute", "result", "stages_of", "told_to",
 )
 
 
@@ -62,7 +63,7 @@ def make_feature(
 
     `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
     """
-    links = {"Source": (source, list(faces)), "Axis": axis}
+    links = {"Source": None if source is None else (source, list(faces)), "Axis": axis}
     return _make(doc, RevolutionFeature, "Feature", label, links, [strategy, build_direction], values)
 
 

@@ -15,6 +15,7 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
+from . import progress
 from .stage import Link, Outcome, Section, Stage
 
 
@@ -46,8 +47,9 @@ class JointPath(Stage):
         toolpath = toolpath_object.Proxy.value(toolpath_object)
         cell = cells.resolve(cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family)
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
-        joint_path = plan_joints(toolpath, cell, self.parameters(obj, JointParameters))
-        motion = assemble(toolpath, cell, joint_path, process)
-        condition = min(float(np.nanmin(bead.condition)) for bead in joint_path.beads)
-        figures = (("Duration", motion.total_time), ("SmallestCondition", condition))
-        return Outcome(Planned(joint_path, motion), joint_path.issues, figures)
+        joint_path = plan_joints(toolpath, cell, self.parameters(obj, JointParameters), progress.report)
+        motion, rapid_issues = assemble(joint_path, cell, process)
+        condition = np.concatenate([bead.condition for bead in joint_path.beads])
+        smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
+        figures = (("Duration", float(np.nansum(motion.duration))), ("SmallestCondition", smallest))
+        return Outcome(Planned(joint_path, motion), (*joint_path.issues, *rapid_issues), figures)

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 from .. import verify as verification
 from ..core.issues import InfeasibleError, InputError, has_errors
 from ..core.kinematics import cell as cells
+from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.planning import program as programs
@@ -53,7 +54,7 @@ class Program(Stage):
         post = catalogue.load(parameters.post)
         program = programs.build(motion, cell, process, parameters, obj.ProgramName)
         files = post.write(program)
-        checked = verification.verify(cell, motion, program, files, post)
+        checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)
         if has_errors(checked.issues):
             raise InfeasibleError(
                 "NOT_VERIFIED", obj.Label, "reading the program back does not give the planned path",
@@ -65,9 +66,17 @@ class Program(Stage):
         return [obj.ProgramName]
 
 
+def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
+    """The rows of the motion that the program runs; all but where it resumes."""
+    rows = programs.rows_from(motion, parameters.start_at)
+    if rows.all():
+        return motion
+    return Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
+
+
 def files_of(obj: Any) -> dict[str, bytes]:
     """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, saying why."""
     files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.ResultLayout else {}
     if obj.Status != "up to date" or not files:
-        raise InputError("NO_PROGRAM", obj.Label, f"no program fits its inputs; first cure: {obj.Message or obj.Status}")
+        raise InputError("NO_PROGRAM", obj.Label, f"no program fits its inputs ({obj.Message or obj.Status})")
     return files

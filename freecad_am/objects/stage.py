@@ -138,7 +138,7 @@ class Stage:
             _say(obj, INFEASIBLE, str(error))
             raise
         except BaseException as error:
-            _say(obj, FAILED, error.message if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
+            _say(obj, FAILED, str(error) if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
             raise
         finally:
             self._busy = False

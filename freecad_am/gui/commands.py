@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The tools of the toolbar and the menu: each opens a panel, whose OK is one call of the macro interface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from . import icons
+
+_PREFIX = "RoboticAM_"
+
+
+class Tool:
+    """One command. `icon` is also the object it makes; `action` opens what the tool opens."""
+
+    def __init__(self, icon: str, text: str, help: str, action: Callable[[], None]) -> None:
+        self.icon, self.text, self.help, self.action = icon, text, help, action
+
+    def GetResources(self) -> dict[str, str]:
+        """Texts and icon; the macro interface makes the step of undo, not the command."""
+        return {
+            "Pixmap": icons.path(self.icon), "MenuText": self.text, "ToolTip": self.help, "StatusTip": self.help,
+            "CmdType": "AlterDoc NoTransaction",
+        }
+
+    def IsActive(self) -> bool:
+        """There is a document, and no task panel is open."""
+        return App.ActiveDocument is not None and not Gui.Control.activeDialog()
+
+    def Activated(self, index: int = 0) -> None:
+        """The tool was clicked."""
+        self.action()
+
+
+def register() -> list[str]:
+    """Add all commands to FreeCAD; their names in the order of the toolbar."""
+    tools = {
+        "NewJob": Tool("new_job", "New Job", "Makes all stages for the selected shape, from cell to program", _new_job),
+        "Cell": Tool("cell", "Cell…", "Adds a cell: machine, set-up, platform and nozzle", _cell),
+        "Feature": Tool("feature", "Feature…", "Takes the selected shape of revolution to be deposited", _feature),
+        "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath),
+        "JointPath": Tool("joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path),
+        "Program": Tool("program", "Program…", "Writes the controller's program of a joint path", _program),
+    }
+    for name, tool in tools.items():
+        Gui.addCommand(_PREFIX + name, tool)
+    return [_PREFIX + name for name in tools]
+
+
+def _new_job() -> None:
+    from . import job_panel, stage_panel
+
+    stage_panel.show(job_panel.JobPanel())
+
+
+def _open(proxy: type, title: str, maker: str, choices: list[Any]) -> None:
+    from . import stage_panel
+
+    stage_panel.show(stage_panel.StagePanel(proxy, title, maker, choices))
+
+
+def _cell() -> None:
+    from ..objects.cell import Cell
+
+    _open(Cell, "Cell", "make_cell", [])
+
+
+def _feature() -> None:
+    from ..objects.feature import RevolutionFeature
+    from . import inputs
+
+    _open(RevolutionFeature, "Feature", "make_feature", [inputs.SourceChoice()])
+
+
+def _toolpath() -> None:
+    from ..objects.toolpath import Toolpath
+    from . import inputs
+
+    choices = [inputs.StageChoice("feature", "Feature"), inputs.StageChoice("cell", "Cell", required=False)]
+    _open(Toolpath, "Toolpath", "make_toolpath", choices)
+
+
+def _joint_path() -> None:
+    from ..objects.joint_path import JointPath
+    from . import inputs
+
+    choices = [inputs.StageChoice("toolpath", "Toolpath"), inputs.StageChoice("cell", "Cell")]
+    _open(JointPath, "Joint path", "make_joint_path", choices)
+
+
+def _program() -> None:
+    from ..objects.program import Program
+    from . import inputs
+
+    choices = [inputs.StageChoice("joint path", "Joint path"), inputs.NameChoice(_part_name())]
+    _open(Program, "Program", "make_program", choices)
+
+
+def _part_name() -> str:
+    """The label of the part that is deposited, as a first proposal for the program's name."""
+    for obj in App.ActiveDocument.Objects:
+        if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
+            return str(obj.Source[0].Label)
+    return str(App.ActiveDocument.Label)

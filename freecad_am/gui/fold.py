@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A part of a panel that can be folded away."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+
+class Fold:
+    """A heading with an arrow, and under it a form that it folds and unfolds."""
+
+    def __init__(self, title: str, unfolded: bool) -> None:
+        self.widget = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(self.widget)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.setSpacing(2)
+        self.heading = QtGui.QToolButton()
+        self.heading.setObjectName(f"Fold{title.replace(' ', '')}")
+        self.heading.setText(title)
+        self.heading.setCheckable(True)
+        self.heading.setAutoRaise(True)
+        self.heading.setToolButtonStyle(QtCore.Qt.ToolButtonTextBesideIcon)
+        self.heading.setStyleSheet("QToolButton { font-weight: bold; border: none; }")
+        self.body = QtGui.QWidget()
+        self.form = QtGui.QFormLayout(self.body)
+        self.form.setContentsMargins(12, 0, 0, 4)
+        self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        column.addWidget(self.heading)
+        column.addWidget(self.body)
+        self.heading.toggled.connect(self._show)
+        self.heading.setChecked(unfolded)
+        self._show(unfolded)
+
+    def add(self, label: str, widget: Any) -> None:
+        """A row of the form."""
+        name = QtGui.QLabel(label)
+        name.setToolTip(widget.toolTip())
+        self.form.addRow(name, widget)
+
+    def _show(self, unfolded: bool) -> None:
+        self.body.setVisible(unfolded)
+        self.heading.setArrowType(QtCore.Qt.DownArrow if unfolded else QtCore.Qt.RightArrow)

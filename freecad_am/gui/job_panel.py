@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a new job: the shape and the name, everything else at its default."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ..core.issues import AmError
+from . import icons, inputs, recorded
+from .fold import Fold
+
+
+class JobPanel:
+    """OK makes all stages in one step."""
+
+    def __init__(self) -> None:
+        self.form = QtGui.QWidget()
+        self.form.setObjectName("RoboticAM_NewJob")
+        self.form.setWindowTitle("New job")
+        self.form.setWindowIcon(QtGui.QIcon(icons.path("new_job")))
+        column = QtGui.QVBoxLayout(self.form)
+        self.error = QtGui.QLabel()
+        self.error.setObjectName("error")
+        self.error.setWordWrap(True)
+        self.error.setStyleSheet("QLabel { color: #c0182b; }")
+        self.source = inputs.SourceChoice()
+        name = "" if self.source.object is None else self.source.object.Label
+        self.name = inputs.NameChoice(name)
+        fold = Fold("Inputs", True)
+        for choice in (self.source, self.name):
+            fold.add(choice.label, choice.widget)
+        hint = QtGui.QLabel("Cell, feature, toolpath, joint path and program are made with their defaults; "
+                            "double-click one in the tree to change it.")
+        hint.setWordWrap(True)
+        for widget in (self.error, fold.widget, hint):
+            column.addWidget(widget)
+        column.addStretch(1)
+        self.say(self.source.missing)
+
+    def say(self, text: str) -> None:
+        """Show what is wrong."""
+        self.error.setText(text)
+        self.error.setVisible(bool(text))
+
+    def getStandardButtons(self) -> int:
+        """OK and Cancel."""
+        return int(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
+
+    def accept(self) -> bool:
+        """Make all stages; True closes the panel, an error is shown in it."""
+        QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))
+        try:
+            recorded.make("make_all", [self.source.argument(), self.name.argument()], {})
+        except AmError as error:
+            self.say(str(error))
+            return False
+        finally:
+            QtGui.QApplication.restoreOverrideCursor()
+        return True
+
+    def reject(self) -> Any:
+        """Nothing was done."""
+        return True

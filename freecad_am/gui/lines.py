@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Coin nodes filled from arrays: polylines, points and surfaces between two circles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from pivy import coin
+
+DASHED = 0xF0F0
+
+
+class Lines:
+    """Polylines in one node, coloured by vertex or all alike, not shaded."""
+
+    def __init__(self, width: float = 2.0, colour: Sequence[float] = (0.2, 0.2, 0.2), pattern: int = 0xFFFF) -> None:
+        self.style = coin.SoDrawStyle()
+        self.style.lineWidth = width
+        self.style.linePattern = pattern
+        self.colour = coin.SoMaterial()
+        self.colour.diffuseColor.setValue(*colour)
+        self.binding = coin.SoMaterialBinding()
+        self.coordinates = coin.SoCoordinate3()
+        self.lines = coin.SoLineSet()
+        self.switch = coin.SoSwitch()
+        node = coin.SoSeparator()
+        for child in (unshaded(), self.style, self.colour, self.binding, self.coordinates, self.lines):
+            node.addChild(child)
+        self.switch.addChild(node)
+        self.show(True)
+
+    @property
+    def node(self) -> Any:
+        """The node to add to a scene."""
+        return self.switch
+
+    def show(self, visible: bool) -> None:
+        """Show or hide the lines."""
+        self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
+
+    def set(self, points: Any, counts: Any, colours: Any = None) -> None:
+        """points (n, 3), counts (m,) points of each polyline, colours (n, 3) 0..1 or None."""
+        fill(self.coordinates.point, np.asarray(points, dtype=np.float32).reshape(-1, 3))
+        fill(self.lines.numVertices, np.asarray(counts, dtype=np.int32))
+        if colours is not None:
+            self.binding.value = coin.SoMaterialBinding.PER_VERTEX
+            fill(self.colour.diffuseColor, np.asarray(colours, dtype=np.float32))
+
+
+class Points:
+    """Points of one colour, not shaded."""
+
+    def __init__(self, size: float, colour: Sequence[float]) -> None:
+        style, material = coin.SoDrawStyle(), coin.SoMaterial()
+        style.pointSize = size
+        material.diffuseColor.setValue(*colour)
+        self.coordinates = coin.SoCoordinate3()
+        self.set_node = coin.SoPointSet()
+        self.node = coin.SoSeparator()
+        for child in (unshaded(), style, material, self.coordinates, self.set_node):
+            self.node.addChild(child)
+
+    def set(self, points: Any) -> None:
+        """points (n, 3)."""
+        values = np.asarray(points, dtype=np.float32).reshape(-1, 3)
+        fill(self.coordinates.point, values)
+        self.set_node.numPoints = len(values)
+
+
+def fill(field: Any, values: Any) -> None:
+    """Put an array into a multiple-value field, which keeps no more than it."""
+    field.setNum(len(values))
+    if len(values):
+        field.setValues(0, len(values), np.ascontiguousarray(values))
+
+
+def unshaded() -> Any:
+    """The node that makes colours show as they are."""
+    model = coin.SoLightModel()
+    model.model = coin.SoLightModel.BASE_COLOR
+    return model
+
+
+def turned(outline: Any, sides: int = 48) -> Any:
+    """A surface turned about Z from its outline (n, 2) of (radius, height)."""
+    outline = np.asarray(outline, dtype=np.float64)
+    angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    points = np.concatenate([outline[:, :1, None] * ring[None], np.broadcast_to(
+        outline[:, 1:, None], (len(outline), sides + 1, 1))], axis=-1)
+    node = coin.SoSeparator()
+    hints, coordinates, mesh = coin.SoShapeHints(), coin.SoCoordinate3(), coin.SoQuadMesh()
+    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
+    hints.shapeType = coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
+    hints.creaseAngle = 0.5
+    fill(coordinates.point, points.reshape(-1, 3).astype(np.float32))
+    mesh.verticesPerRow = sides + 1
+    mesh.verticesPerColumn = len(outline)
+    for child in (hints, coordinates, mesh):
+        node.addChild(child)
+    return node
+
+
+def placed(pose: Any) -> Any:
+    """A transformation node for a (4, 4) pose."""
+    node = coin.SoMatrixTransform()
+    node.matrix = coin.SbMatrix(*np.asarray(pose, dtype=np.float64).T.ravel().tolist())
+    return node

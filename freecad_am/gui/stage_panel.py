@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The task panel of a stage, made from its parameters: OK is one call of the macro interface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ..core.issues import AmError
+from ..objects.rows import rows
+from ..objects.stage import Stage, issues_of
+from . import fields, icons, inputs, recorded, suggestions
+from .fold import Fold
+
+MOST_ISSUES = 6
+
+
+class StagePanel:
+    """Parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK.
+
+    maker: name of the macro function that makes the stage. choices: the inputs to choose.
+    """
+
+    def __init__(
+        self, proxy: type[Stage], title: str, maker: str, choices: Sequence[inputs.Input], obj: Any = None
+    ) -> None:
+        self.proxy, self.maker, self.choices, self.obj = proxy, maker, choices, obj
+        self.form = QtGui.QWidget()
+        self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
+        self.form.setWindowTitle(title)
+        self.form.setWindowIcon(QtGui.QIcon(icons.path(proxy.kind.replace(" ", "_"))))
+        self.column = QtGui.QVBoxLayout(self.form)
+        self.error = self._note("error", "#c0182b")
+        if obj is None:
+            heading = Fold("Inputs", True)
+            for choice in choices:
+                heading.add(choice.label, choice.widget)
+            if choices:
+                self.column.addWidget(heading.widget)
+        self.fields: list[fields.Field] = []
+        for section in proxy.sections:
+            self._add_section(section)
+        self.findings = self._note("findings", "palette(text)")
+        self.column.addStretch(1)
+        self._show_findings()
+        missing = [choice.missing for choice in choices if choice.missing]
+        if obj is None and missing:
+            self.say(missing[0])
+
+    # ---- what is shown
+
+    def _note(self, name: str, colour: str) -> Any:
+        label = QtGui.QLabel()
+        label.setObjectName(name)
+        label.setWordWrap(True)
+        label.setStyleSheet(f"QLabel {{ color: {colour}; }}")
+        label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        label.hide()
+        self.column.addWidget(label)
+        return label
+
+    def _add_section(self, section: Any) -> None:
+        current = None if self.obj is None else self._current(section)
+        folds: dict[str, Fold] = {}
+        for row in rows(section.cls):
+            nested = isinstance(row.path[-1], str) and len(row.path) > 1
+            title = str(row.path[0]).replace("_", " ").capitalize() if nested else section.group
+            title = f"{section.group}: advanced" if row.spec.advanced else title
+            if title not in folds:
+                folds[title] = Fold(title, title == section.group)
+            value = row.default if current is None else current[row.key]
+            field = fields.make(row, value, suggestions.of(section.prefix, row.key))
+            self._mark_driven(field)
+            folds[title].add(field.label, field.widget)
+            self.fields.append(field)
+        for fold in folds.values():
+            self.column.addWidget(fold.widget)
+
+    def _current(self, section: Any) -> dict[str, Any]:
+        found = {}
+        for row in rows(section.cls):
+            try:
+                found[row.key] = row.inner(getattr(self.obj, row.name), row.name)
+            except AmError:  # what cannot be read is replaced by its default
+                found[row.key] = row.default
+        return found
+
+    def _mark_driven(self, field: fields.Field) -> None:
+        driven = dict(self.obj.ExpressionEngine) if self.obj is not None else {}
+        expression = driven.get(field.row.name)
+        if expression:
+            field.widget.setEnabled(False)
+            field.widget.setToolTip(f"Driven by the expression {expression}")
+
+    def _show_findings(self) -> None:
+        if self.obj is None:
+            return
+        found = issues_of(self.obj)
+        lines = [self.obj.Message] if self.obj.Message and not found else []
+        lines += [f"{issue.level} {issue.where}: {issue.message}" for issue in found[:MOST_ISSUES]]
+        if len(found) > MOST_ISSUES:
+            lines.append(f"and {len(found) - MOST_ISSUES} more")
+        self.findings.setText("\n".join([f"Status: {self.obj.Status}", *lines]))
+        self.findings.show()
+
+    def say(self, text: str) -> None:
+        """Show what is wrong."""
+        self.error.setText(text)
+        self.error.setVisible(bool(text))
+
+    # ---- called by FreeCAD
+
+    def getStandardButtons(self) -> int:
+        """OK and Cancel."""
+        return int(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
+
+    def accept(self) -> bool:
+        """Make or change the stage; True closes the panel, an error is shown in it."""
+        self.say("")
+        QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))
+        try:
+            changed = {field.row.key: field.value for field in self.fields if field.changed}
+            if self.obj is None:
+                recorded.make(self.maker, [choice.argument() for choice in self.choices], changed)
+            elif changed:
+                recorded.change(self.obj, changed)
+        except AmError as error:
+            self.say(str(error))
+            return False
+        finally:
+            QtGui.QApplication.restoreOverrideCursor()
+        return True
+
+    def reject(self) -> bool:
+        """Nothing was done, so nothing is taken back."""
+        return True
+
+
+def show(panel: Any) -> None:
+    """Open a task panel, unless another one is open."""
+    if Gui.Control.activeDialog():
+        App.Console.PrintWarning("Another task panel is open; close it first.\n")
+        return
+    Gui.Control.showDialog(panel)
+
+
+def edit(obj: Any) -> None:
+    """Open the panel of an existing stage."""
+    show(StagePanel(type(obj.Proxy), f"{obj.Label}", "", (), obj))

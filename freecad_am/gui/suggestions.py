@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts to choose from for parameters whose words are known only at run time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..core.kinematics import machine
+from ..posts import catalogue
+
+
+def of(section: str, key: str) -> Callable[[], list[str]] | None:
+    """A function that lists the texts for a parameter, None where anything goes."""
+    return {
+        ("cell", "machine"): lambda: [name for name, _ in machine.known()],
+        ("cell", "limits"): lambda: ["maker", "paper"],
+        ("cell", "branch"): _branches,
+        ("program", "post"): lambda: [*catalogue.NAMES, "none"],
+        ("process", "bead_model"): lambda: ["none"],
+    }.get((section, key))
+
+
+def _branches() -> list[str]:
+    sides = [(a, b, c) for a in ("front", "back") for b in ("up", "down") for c in ("flip", "noflip")]
+    return ["auto", *(" ".join(words) for words in sides)]

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the view providers of all stages share. Their class paths are a file format."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import FreeCAD as App
+from pivy import coin
+
+from ..core.issues import InputError
+from . import icons
+
+MODE = "Drawing"
+
+
+class StageView:
+    """Draws the stored result of a stage, and tells its status by its icon."""
+
+    icon: ClassVar[str] = ""
+    # view property: FreeCAD type, default, help
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {}
+    obj: Any = None
+    root: Any = None
+
+    def __init__(self, vobj: Any) -> None:
+        vobj.Proxy = self
+        self.complete(vobj)
+
+    def complete(self, vobj: Any) -> None:
+        """Add the view properties the object lacks."""
+        have = set(vobj.PropertiesList)
+        for name, (type_name, default, help) in self.options.items():
+            if name not in have:
+                vobj.addProperty(type_name, name, "Drawing", help)
+                setattr(vobj, name, default)
+
+    # ---- what a view defines
+
+    def scene(self, root: Any) -> None:
+        """Add the nodes to the root, once."""
+
+    def draw(self, obj: Any, value: Any) -> None:
+        """Fill the nodes from the stored result."""
+
+    def style(self, vobj: Any) -> None:
+        """Apply the view properties."""
+
+    def edit(self, obj: Any) -> None:
+        """Open what a double click opens."""
+        from .stage_panel import edit
+
+        edit(obj)
+
+    # ---- called by FreeCAD
+
+    def attach(self, vobj: Any) -> None:
+        """Make the scene; called when the view provider is set, and when a document opens."""
+        self.obj = vobj.Object
+        self.root = coin.SoSeparator()
+        self.scene(self.root)
+        vobj.addDisplayMode(self.root, MODE)
+
+    def refresh(self) -> None:
+        """Draw what is stored now."""
+        obj = self.obj
+        if obj is None or self.root is None or not getattr(obj, "ResultLayout", ""):
+            return
+        try:
+            self.draw(obj, obj.Proxy.value(obj))
+        except InputError as error:  # a damaged result is told, not shown
+            App.Console.PrintError(error.line() + "\n")
+        self.style(obj.ViewObject)
+
+    def updateData(self, obj: Any, name: str) -> None:
+        """A property of the object has changed."""
+        if self.obj is None or obj.Document.Restoring:
+            return
+        if name == "Key":
+            self.refresh()
+        elif name == "Status":
+            obj.ViewObject.signalChangeIcon()
+
+    def onChanged(self, vobj: Any, name: str) -> None:
+        """A view property has changed."""
+        if name in self.options and all(hasattr(vobj, option) for option in self.options) and self.root is not None:
+            self.style(vobj)
+
+    def getDisplayModes(self, vobj: Any) -> list[str]:
+        """There is one."""
+        return [MODE]
+
+    def getDefaultDisplayMode(self) -> str:
+        """There is one."""
+        return MODE
+
+    def setDisplayMode(self, mode: str) -> str:
+        """There is one."""
+        return mode
+
+    def getIcon(self) -> str:
+        """The icon, with a badge unless all is well."""
+        return icons.with_badge(self.icon, getattr(self.obj, "Status", ""))
+
+    def doubleClicked(self, vobj: Any) -> bool:
+        """Open the panel."""
+        self.edit(vobj.Object)
+        return True
+
+    def dumps(self) -> None:
+        """Nothing is kept."""
+
+    def loads(self, state: Any) -> None:
+        """Nothing to restore."""
+
+    __getstate__ = dumps
+    __setstate__ = loads

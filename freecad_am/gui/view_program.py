@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The program in the tree; a double click opens its text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .view_base import StageView
+
+
+class ProgramView(StageView):
+    """Nothing to draw. A double click reads the text; the context menu has the parameters and the export."""
+
+    icon = "program"
+
+    def edit(self, obj: Any) -> None:
+        from .program_panel import show
+
+        show(obj)
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """Entries of the context menu in the tree."""
+        from . import program_panel, stage_panel
+
+        for text, name, act in (
+            ("Edit parameters…", "RoboticAM_EditProgram", stage_panel.edit),
+            ("Export files…", "RoboticAM_ExportProgram", program_panel.export),
+        ):
+            action = menu.addAction(text)
+            action.setObjectName(name)
+            action.triggered.connect(lambda *_, act=act: act(vobj.Object))
