@@ -52,7 +52,11 @@ def _run(argv: list[str], session: Any) -> int:
         near = difflib.get_close_matches(command, (*COMMANDS, "demo", "test", "bench"), n=1)
         hint = f"did you mean {near[0]}?" if near else f"use one of {', '.join(COMMANDS)}"
         raise InputError("USAGE", "command line", f"there is no command {command!r}; {hint}")
-    options = _parser(command).parse_args(words)
+    parser = _parser(command)
+    if "-h" in words or "--help" in words:
+        session.out(parser.format_help())
+        return DONE
+    options = parser.parse_args(words)
     status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
     return status
 
@@ -82,7 +86,7 @@ def _parser(command: str) -> Any:
         def error(self, message: str) -> Any:
             raise InputError("USAGE", f"freecad-am {command}", f"{message}; try freecad-am {command} --help")
 
-    parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False)
+    parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False, add_help=False)
     if command == "machines":
         return parser
     parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")

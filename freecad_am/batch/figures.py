@@ -48,7 +48,8 @@ def speed_plot(motion: Motion, speed_ratio: Array, names: tuple[str, ...]) -> st
     time, label, span = time_axis(motion)
     shown = np.where(motion.deposit[:, None] & (motion.point > 0)[:, None], speed_ratio * 100.0, np.nan)
     largest = float(np.nanmax(shown, initial=0.0))
-    plot = svg.Plot("Joint speeds while depositing", span, (0.0, _nice(largest)), label, "% of the limit", width=940)
+    top = max(_nice(largest), 125.0) if largest > 40.0 else _nice(largest)  # the limit is shown where it is near
+    plot = svg.Plot("Joint speeds while depositing", span, (0.0, top), label, "% of the limit", width=940)
     order = np.argsort(-np.nan_to_num(np.nanmax(np.nan_to_num(shown), axis=0)))
     for axis in order:
         plot.curve(time, shown[:, axis], AXIS_COLOURS[axis % len(AXIS_COLOURS)], names[axis], 1.2)

@@ -14,6 +14,15 @@ from freecad_am.core.toolpath import Array, Toolpath
 from . import figures, view
 
 _MOST_ISSUES = 200
+_WHOLE = (
+    ("feasible", "feasible"), ("objective_value", "objective"), ("condition_min", "smallest condition"),
+    ("planning_time_s", "planning time, s"),
+)
+_PER_AXIS = (
+    ("range_per_layer_max_deg", "largest range within a layer, deg"), ("limit_margin_deg", "margin to the limit, deg"),
+    ("speed_max_deg_s", "largest speed, deg/s"), ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"),
+    ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"), ("speed_ratio_max", "largest share of the speed limit"),
+)
 _STYLE = """
 :root{--ink:#1d2430;--soft:#667085;--line:#dfe3ea;--paper:#fff;--ground:#f3f5f8;--good:#1a7f4b;--bad:#b8322a;--warn:#9a6700}
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ef;--soft:#98a2b3;--line:#323a47;--paper:#1a202b;--ground:#11151c;
@@ -23,9 +32,9 @@ main{max-width:1040px;margin:0 auto;padding:28px 20px 60px}h1{font-size:28px;mar
 header{display:flex;align-items:center;gap:14px;flex-wrap:wrap}.sub{color:var(--soft);margin:4px 0 18px}
 .status{font-weight:600;padding:2px 12px;border-radius:99px;color:#fff;background:var(--good)}
 .status.infeasible,.status.failed{background:var(--bad)}@media(prefers-color-scheme:dark){.status{color:#11151c}}
-.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(145px,1fr));gap:10px;margin:0 0 16px}
+.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(125px,1fr));gap:10px;margin:0 0 16px}
 .card,figure,.table{background:var(--paper);border:1px solid var(--line);border-radius:10px}
-.card{padding:10px 14px}.card b{display:block;font-size:20px;font-weight:600}.card span{color:var(--soft);font-size:13px}
+.card{padding:10px 12px}.card b{display:block;font-size:18px;white-space:nowrap;font-weight:600}.card span{color:var(--soft);font-size:13px}
 figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(400px,1fr));gap:10px}
 figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}.table{overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
@@ -36,7 +45,7 @@ svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px sys
 svg .title{fill:var(--ink);font-size:13px;font-weight:600}svg .grid{stroke:var(--line)}svg .frame{fill:none;stroke:var(--soft);opacity:.5}
 svg .curve{fill:none;stroke-linejoin:round}svg .forbidden{fill:var(--bad);opacity:.13}svg .limit{stroke:var(--bad);stroke-dasharray:5 4}
 svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
-svg .far{stroke-width:1.3;opacity:.75}svg .direction{stroke:var(--ink);stroke-width:1;opacity:.45}
+svg .far{stroke-width:1.2;opacity:.6}svg .direction{stroke:var(--ink);stroke-width:1.1;opacity:.6}
 svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-side{fill:var(--soft);opacity:.55}
 """
 
@@ -122,10 +131,8 @@ def _joints(content: Content) -> list[str]:
 def _joint_table(content: Content) -> str:
     joints, axes = content.report["joints"], content.report["machine"]["axes"]
     rows = [("", axes)] + [
-        (word, [_figure(value) for value in joints[key]]) for key, word in (
-            ("min_deg", "smallest, deg"), ("max_deg", "largest, deg"),
-            ("range_per_layer_max_deg", "largest range within a layer, deg"), ("limit_margin_deg", "margin to the limit, deg"),
-            ("speed_ratio_max", "largest share of the speed limit"),
+        (word, [_figure(value) for value in joints[key] or ()]) for key, word in (
+            ("min_deg", "smallest, deg"), ("max_deg", "largest, deg"), _PER_AXIS[0], _PER_AXIS[1], _PER_AXIS[-1],
         )
     ]
     return _table(rows)
@@ -139,12 +146,18 @@ def _process(content: Content) -> str:
 
 
 def _comparison(report: dict[str, Any]) -> str:
-    entries = report["comparison"]
-    if not entries:
+    """The method of the job beside those it was compared with: figures of the whole, then those of each axis."""
+    if not report["comparison"]:
         return ""
-    keys = list(dict.fromkeys(key for entry in entries for key in entry))
-    rows = [(key.replace("_", " "), [_figure(entry.get(key)) for entry in entries]) for key in keys]
-    return f"<h2>Comparison of the methods</h2>{_table(rows)}"
+    methods = [report["joints"], *report["comparison"]]
+    whole = [("", [entry["method"] for entry in methods])] + [
+        (word, [_figure(entry.get(key)) for entry in methods]) for key, word in _WHOLE
+    ]
+    axes = [("", ["", *report["machine"]["axes"]])] + [
+        (word if number == 0 else "", [entry["method"], *(_figure(value) for value in entry.get(key) or ())])
+        for key, word in _PER_AXIS for number, entry in enumerate(methods)
+    ]
+    return f"<h2>Comparison of the methods</h2>{_table(whole)}{_table(axes)}"
 
 
 def _issues(issues: list[dict[str, Any]]) -> str:
@@ -183,7 +196,9 @@ def _figure(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:.4g}" if abs(value) >= 1e-3 or value == 0.0 else f"{value:.1e}"
-    if isinstance(value, (list, tuple)):
-        return "  ".join(_figure(entry) for entry in value)
+        if abs(value) >= 1e4:
+            return f"{value:,.0f}"
+        if abs(value) < 1e-8:
+            return "0"  # what rounding leaves says nothing
+        return f"{value:.4g}" if abs(value) >= 1e-3 else f"{value:.1e}"
     return str(value)

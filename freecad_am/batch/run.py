@@ -38,9 +38,13 @@ class Stages:
     @contextlib.contextmanager
     def timed(self, stage: str, session: Any) -> Iterator[None]:
         """Tell of a stage and take its time."""
-        session.progress(stage.replace("_", " ") + " ...")
+        from freecad_am.objects.progress import told_to
+
+        name = stage.replace("_", " ")
+        session.progress(f"{name} ...")
         started = time.perf_counter()
-        yield
+        with told_to(lambda fraction, text: session.progress(f"{name}: {text} {fraction:.0%}")):
+            yield
         session.check()
         self.timing[stage] = time.perf_counter() - started
 

@@ -66,7 +66,20 @@ def read(path: str) -> Tree:
     return tree
 
 
-def _text(path: str, label: str) -> str:
+def scalar(text: str, where: str) -> Any:
+    """The value of one cell of a table, written as in a job file; a list may be given too. Raises InputError."""
+    import yaml
+
+    tree = Tree(where, {})
+    try:
+        node = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except yaml.YAMLError as error:
+        raise InputError("BAD_VALUE", where, f"{text!r} is not understood: {_one_line(error)}") from None
+    return None if node is None else _Reader(yaml, tree).value(node, "")
+
+
+def text_of(path: str, label: str) -> str:
+    """The text of a file in UTF-8. Raises InputError NO_FILE or BAD_FILE, named `label`."""
     try:
         if os.path.getsize(path) > _LARGEST:
             raise InputError("BAD_FILE", label, "the file is too large; is it the right one?")
