@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
 import Part
 
 from ..core.issues import InputError

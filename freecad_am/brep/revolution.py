@@ -177,5 +177,6 @@ def _step_notes(chain: Chain, label: str) -> list[Issue]:
 def _pose(frame: AxisFrame, base: float) -> Array:
     pose = np.eye(4)
     pose[:3, :3] = frame.rotation
-    pose[:3, 3] = frame.origin + base * frame.rotation[:, 2] + 0.0
+    origin = frame.origin + base * frame.rotation[:, 2]
+    pose[:3, 3] = np.where(np.abs(origin) < 1e-11, 0.0, origin)
     return pose

@@ -113,7 +113,7 @@ def walls(chain: Chain) -> list[Chain]:
 
 
 def _at_extreme(point: Array, low: float, high: float) -> bool:
-    return min(abs(point[1] - low), abs(point[1] - high)) < LEVEL
+    return bool(min(abs(point[1] - low), abs(point[1] - high)) < LEVEL)
 
 
 def _cut_at(piece: Piece, low: float, high: float) -> list[Piece]:

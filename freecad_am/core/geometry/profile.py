@@ -19,7 +19,9 @@ from ..issues import Issue
 Array = NDArray[np.float64]
 
 KINK = 1e-5  # rad; smaller turns between two pieces are a smooth join
-SAME_PLACE = 1e-7  # mm; the end of one piece and the start of the next closer than this are one point
+SAME_PLACE = 1e-9  # mm; the end of one piece and the start of the next closer than this are one point
+STEP = 1e-4  # mm; a gap up to this is the rounding of a file and has no length of its own
+ON_AXIS = 1e-6  # mm; a smaller radius is a point on the axis
 
 
 def arc_lengths(points: Array, tangents: Array) -> Array:
@@ -38,7 +40,8 @@ def arc_lengths(points: Array, tangents: Array) -> Array:
 
 def _angle(one: Array, other: Array) -> Array:
     cross = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
-    return np.arctan2(cross, (one * other).sum(axis=-1))
+    angle: Array = np.arctan2(cross, (one * other).sum(axis=-1))
+    return angle
 
 
 @dataclass(frozen=True)
@@ -68,9 +71,12 @@ class Meridian:
     def chained(cls, pieces: Sequence[tuple[Array, Array]]) -> Meridian:
         """The pieces (points (n, 2), unit tangents (n, 2)) one after the other.
 
-        A gap between the end of a piece and the start of the next is bridged by a straight step.
+        A gap between the end of a piece and the start of the next is bridged by a straight step, which counts in the
+        arc length; one of no more than STEP is jumped.
         """
-        points, tangents, lengths = [], [], [0.0]
+        points: list[Array] = []
+        tangents: list[Array] = []
+        lengths = [0.0]
         for piece_points, piece_tangents in pieces:
             if points:
                 _bridge(points, tangents, lengths, piece_points[0], piece_tangents[0])
@@ -82,7 +88,7 @@ class Meridian:
             points.append(piece_points)
             tangents.append(piece_tangents)
         stacked = np.vstack(points)
-        stacked[:, 0] = np.where(np.abs(stacked[:, 0]) < SAME_PLACE, 0.0, stacked[:, 0])
+        stacked[:, 0] = np.where(np.abs(stacked[:, 0]) < ON_AXIS, 0.0, stacked[:, 0])
         return cls(np.cumsum(lengths), stacked, np.vstack(tangents))
 
     @property
@@ -93,7 +99,9 @@ class Meridian:
     @property
     def kinks(self) -> Array:
         """Arc lengths (k,) at which the tangent jumps, mm."""
-        return self.s[1:][np.diff(self.s) == 0.0]
+        at = np.flatnonzero(np.diff(self.s) == 0.0)
+        kinks: Array = self.s[at[np.abs(_angle(self.tangents[at], self.tangents[at + 1])) > KINK]]
+        return kinks
 
     @property
     def closed_top(self) -> bool:
@@ -147,13 +155,13 @@ def _bridge(points: list[Array], tangents: list[Array], lengths: list[float], to
     end = points[-1][-1]
     gap = to - end
     distance = float(np.hypot(*gap))
-    if distance > SAME_PLACE:
+    if distance > STEP:
         along = gap / distance
         points.append(np.array([end, to]))
         tangents.append(np.array([along, along]))
         lengths.extend([0.0, distance])
-    if abs(_angle(tangents[-1][-1], tangent)) > KINK:
-        points.append(np.array([points[-1][-1]]))
+    if SAME_PLACE < distance <= STEP or abs(_angle(tangents[-1][-1], tangent)) > KINK:
+        points.append(np.array([to]))
         tangents.append(np.array([tangent]))
         lengths.append(0.0)
 

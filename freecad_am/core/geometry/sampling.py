@@ -23,8 +23,9 @@ def sampled(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
     """Points (n, 2) and unit tangents (n, 2) along the curve from the first break to the last.
 
     curve: parameters (n,) -> points (n, 2), tangents (n, 2) of any length. breaks: rising parameters between
-    which the curve is smooth. Intervals are halved until the middle of the Hermite arc over the
-    whole interval meets the curve, so that the halves kept are better still (by 8 in the tangent, 16 in the point). Raises ValueError where the curve stands still.
+    which the curve is smooth. Intervals are halved until the middle of the Hermite arc over the whole interval
+    meets the curve, so that the halves kept are better still (by 8 in the tangent, 16 in the point). Raises
+    ValueError where the curve stands still.
     """
     t = _initial(np.asarray(breaks, dtype=np.float64))
     points, tangents = _evaluate(curve, t)
@@ -47,7 +48,8 @@ def sampled(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
 
 def _initial(breaks: Array) -> Array:
     inner = [np.linspace(a, b, 5)[:-1] for a, b in pairwise(breaks)]
-    return np.r_[np.concatenate(inner), breaks[-1]]
+    start: Array = np.concatenate([*inner, breaks[-1:]])
+    return start
 
 
 def _evaluate(curve: Curve, t: Array) -> tuple[Array, Array]:
@@ -66,7 +68,8 @@ def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Arra
     point = p + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)))
     off = np.linalg.norm(point - middle, axis=1)
     # the error of a cubic's slope is largest off the middle, 3.1 times its largest position error over its length
-    return (off < POINT_TOLERANCE) & (3.1 * off < TANGENT_TOLERANCE * length + 1e-12)
+    good: NDArray[np.bool_] = (off < POINT_TOLERANCE) & (3.1 * off < TANGENT_TOLERANCE * length + 1e-12)
+    return good
 
 
 def _lengths(p: Array, a: Array, q: Array, b: Array) -> Array:

@@ -135,7 +135,7 @@ class Tilting:
         over = directions.from_vertical(tool) > self.parameters.max_tilt + 1e-9
         if over.any():
             issues.append(Issue(
-                ERROR, "MAX_TILT", f"lead and tilt alone lean the tool by more than max_tilt ({cap}) from the vertical; "
+                ERROR, "MAX_TILT", f"lead and tilt alone lean the tool by more than max_tilt ({cap}); "
                 "make them smaller or the cap larger", int(at[over][0]),
             ))
         elif (capped > 1e-9).any():
