@@ -36,7 +36,7 @@ __all__ = ["read", "write"]
 Array = NDArray[np.float64]
 
 AXES = 6
-LONGEST_NAME = 36  # 8 on controllers before the R-30iA
+LONGEST_NAME = 36  # 8 on older controllers
 ROOMY_NAME = LONGEST_NAME - 4  # what is proposed leaves room for the digits of the parts
 MOST_LINES = 9999
 
@@ -201,7 +201,7 @@ def _groups(program: Program) -> Iterator[list[_Piece]]:
         else:
             on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
             piece = _instructions(program, block)
-            starts = isinstance(block, LayerStart) and bead is not None and bead[0] != block.layer
+            starts = isinstance(block, LayerStart) and not on and bead is not None and bead[0] != block.layer
             bead = None if starts else bead
         if starts and group:
             yield group

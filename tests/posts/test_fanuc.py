@@ -263,6 +263,16 @@ def test_a_bead_longer_than_a_part_is_cut_and_says_so(assert_listings):
     assert_listings(files)
 
 
+def test_a_bead_that_goes_on_through_layers_is_no_place_to_cut():
+    through = program(
+        LayerStart(0), moves("rapid", np.zeros(6)), DepositOn(), moves("deposit", np.zeros((20, 6))),
+        LayerStart(1), moves("deposit", np.zeros((20, 6)), layer=1), DepositOff(),
+    )  # fmt: skip
+    first, second = (body(fanuc.write(dataclasses.replace(through, max_points=30))[f"PART0{n}.LS"]) for n in (1, 2))
+    assert "  !layer 1 ;" in first and first[-1] == "  !bead goes on in the next part ;"
+    assert second[2] == "  !bead goes on here ;" and second[-1] == "  DO[1]=OFF ;"
+
+
 def test_no_file_has_more_lines_than_a_controller_takes(assert_listings):
     files = fanuc.write(beads(3, 4000, max_points=10**6))
     assert len(files) == 3
