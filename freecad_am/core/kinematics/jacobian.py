@@ -98,6 +98,19 @@ def manipulability(jacobians: ArrayLike, length: float) -> Array:
     return result
 
 
+def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
+    """The derivative (n,) of `manipulability` when the joints move with `rates` (n, 6), rad per unit of the parameter.
+
+    Jacobi's formula, d det J = det J tr(J^-1 dJ). NaN where J is singular.
+    """
+    matrices = np.asarray(jacobians, float)
+    change = _rate(np.moveaxis(matrices, 0, -1), np.asarray(rates, float).T).transpose(2, 0, 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        relative = np.einsum("nij,nji->n", np.linalg.inv(matrices), change)
+    result: Array = manipulability(matrices, length) * relative
+    return result
+
+
 def _in_pieces(function: Callable[..., Array], jacobians: ArrayLike, length: float, with_slice: bool = False) -> Array:
     """`function` of scaled Jacobians (6, axes, m), piece by piece, so that they stay in the processor's cache."""
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)

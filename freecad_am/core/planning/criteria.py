@@ -99,7 +99,7 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
     length = task.parameters.characteristic_length
     if name == "manipulability":
         w = np.maximum(jac.manipulability(matrix, length), 1e-300)
-        return -jac.manipulability_rate(task.cell.machine.chain, joints, matrix, rates, length) / w**2 / _count(points)
+        return -jac.manipulability_rate(matrix, rates, length) / w**2 / _count(points)
     ratio = np.maximum(jac.condition(matrix, length), 1e-300)
     return -condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points)
 

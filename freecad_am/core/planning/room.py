@@ -76,8 +76,20 @@ def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Arra
     parts = turns.pieces(task, bead, whole.joints)
     if len(parts) == 1:
         return None
-    cuts = [_one(task, turns.cut(bead, part), place, coefficients, SPLIT) for part in parts]
+    cuts = [_piece(task, turns.cut(bead, part), place, coefficients) for part in parts]
     return cuts if all(piece.margin >= 0.0 for piece in cuts) else None
+
+
+def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPath:
+    """A piece with the rotation of the whole bead, or where that does not serve with one of its own."""
+    path = _one(task, bead, place, coefficients, SPLIT)
+    if path.margin >= 0.0:
+        return path
+    coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
+    found = search.everywhere(task, coarse, task.thresholds(coarse))
+    threshold = task.thresholds(full)
+    refined = refine.refine(task, full, threshold, found.coefficients[found.best()[0]])
+    return judged(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
 
 
 def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str) -> BeadPath:

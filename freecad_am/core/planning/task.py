@@ -92,6 +92,10 @@ class Task:
         """(axes,) bool, axes without limits."""
         return ~(np.isfinite(self.cell.limits.lower) & np.isfinite(self.cell.limits.upper))
 
+    def rows_of_axis(self, axis: int) -> tuple[float, float]:
+        """Lower and upper limit of one axis with the reserve taken off, rad."""
+        return float(self.cell.limits.lower[axis] + RESERVE), float(self.cell.limits.upper[axis] - RESERVE)
+
     @cached_property
     def middle(self) -> Array:
         """(axes,) the middle of each axis's range, 0 where it has no end; rad."""

@@ -88,18 +88,29 @@ def turning_axis(task: Task, joints: Array) -> int | None:
 
 
 def pieces(task: Task, bead: Bead, joints: Array) -> list[slice]:
-    """Where a bead must be split so that every limited axis has the stroke for each piece."""
-    limits = task.cell.limits
-    stroke = np.where(task.endless, np.inf, limits.upper - limits.lower) * USABLE
-    width = joints.max(axis=0) - joints.min(axis=0)
-    count = int(np.ceil((width / stroke).max()))
-    if count <= 1:
-        return [slice(0, len(bead))]
-    axis = int((width / stroke).argmax())
-    progress = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(joints[:, axis])))])
-    cuts = np.searchsorted(progress, progress[-1] * np.arange(1, count) / count)
-    ends = np.concatenate([[0], cuts, [len(bead) - 1]])
-    return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
+    """Where a bead is cut so that the turning axis starts each piece anew within its limits.
+
+    A piece ends where the axis would pass a limit; the next starts with the axis turned back. An axis
+    without the stroke for a full turn gets pieces of equal length, which then need rotations of their own.
+    """
+    axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.endless))
+    low, high = task.rows_of_axis(axis)
+    along = joints[:, axis]
+    if high - low < TURN:
+        count = int(np.ceil(np.ptp(along) / (USABLE * (high - low))))
+        ends = np.round(np.linspace(0, len(bead) - 1, count + 1)).astype(int)
+        return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
+    rising = along[-1] > along[0]
+    cuts = [0]
+    while True:
+        turns = np.ceil((low - along[cuts[-1]]) / TURN) if rising else np.floor((high - along[cuts[-1]]) / TURN)
+        turned = along[cuts[-1] :] + turns * TURN
+        out = np.flatnonzero(turned > high if rising else turned < low)
+        if not len(out):
+            return [slice(start, end + 1) for start, end in zip(cuts, [*cuts[1:], len(bead) - 1])]
+        if out[0] < 2:
+            return [slice(0, len(bead))]
+        cuts.append(cuts[-1] + int(out[0]) - 1)
 
 
 def cut(bead: Bead, part: slice) -> Bead:

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Poses of the flange from points of the part, and back; the rotation about the tool axis and the paper's RZ."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+
+SETUPS = ("part-on-robot", "tool-on-robot")
+
+
+def directions(rng, n):
+    vectors = rng.normal(size=(n, 3))
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def random_cell(rng, setup, mount="feature"):
+    def six(size):
+        return tuple(np.r_[rng.uniform(-size, size, 3), rng.uniform(-3, 3, 3)])
+
+    parameters = CellParameters(
+        setup=setup, deposition_point=six(1500.0), platform=six(50.0), nozzle=NozzleParameters(tool=six(300.0)), mount=mount
+    )
+    return cells.resolve(parameters, frames.bryant(six(400.0)))
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+@pytest.mark.parametrize("mount", ["feature", "part"])
+def test_the_tip_stands_on_the_point_along_the_tool_axis_for_every_rotation(setup, mount):
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        cell = random_cell(rng, setup, mount)
+        position, tool, phi = rng.uniform(-200, 200, (50, 3)), directions(rng, 50), rng.uniform(-9, 9, 50)
+        flange = cell.flange_poses(position, tool, phi)
+        assert np.abs(flange[:, :3, :3] @ np.swapaxes(flange[:, :3, :3], 1, 2) - np.eye(3)).max() < 1e-12
+        tip, axis = cell.tip_in_part(flange)
+        assert np.abs(tip - position).max() < 1e-9
+        assert np.abs(axis - tool).max() < 1e-12
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+def test_the_spin_turns_the_flange_about_the_deposition_point(setup):
+    rng = np.random.default_rng(2)
+    cell = random_cell(rng, setup)
+    position, tool, phi = rng.uniform(-200, 200, (50, 3)), directions(rng, 50), rng.uniform(-3, 3, 50)
+    step = 1e-6
+    here, later = (cell.flange_poses(position, tool, phi + d) for d in (-step, step))
+    middle = cell.flange_poses(position, tool, phi)
+    change = (later[:, :3, :3] - here[:, :3, :3]) / (2 * step) @ np.swapaxes(middle[:, :3, :3], 1, 2)
+    turning = np.stack([change[:, 2, 1], change[:, 0, 2], change[:, 1, 0]], axis=1)
+    spin, point = cell.spin_axis(middle), cell.deposition_point(middle)
+    assert np.abs(turning - spin).max() < 1e-8
+    velocity = (later[:, :3, 3] - here[:, :3, 3]) / (2 * step)
+    assert np.abs(velocity - np.cross(spin, middle[:, :3, 3] - point)).max() < 1e-5
+
+
+def test_rz_is_the_last_bryant_angle_of_the_rotation_that_takes_the_build_direction_to_z():
+    """Chalvin 2020, eqs. 9 to 11, written down again here: b = [0 0 1] Rx Ry Rz in row form."""
+    rng = np.random.default_rng(3)
+    cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
+    tool, rz = directions(rng, 200), rng.uniform(-np.pi, np.pi, 200)
+    phi, _ = cell.phi_of_rz(tool, rz)
+    part_to_robot = frames.about_z(phi) @ frames.smallest_rotation(tool, (0.0, 0.0, 1.0))
+    assert np.abs(np.einsum("nij,nj->ni", part_to_robot, tool) - [0, 0, 1]).max() < 1e-12
+    back = frames.to_bryant(part_to_robot)
+    rebuilt = frames.about_x(back[:, 0]) @ frames.about_y(back[:, 1]) @ frames.about_z(back[:, 2])
+    assert np.abs(rebuilt - part_to_robot).max() < 1e-12
+    up = tool[:, 2] > 0.0
+    assert np.abs(np.exp(1j * back[up, 2]) - np.exp(1j * rz[up])).max() < 1e-9
+    assert np.abs(np.exp(1j * cell.rz_of_phi(tool, phi)) - np.exp(1j * rz)).max() < 1e-9
+
+
+def test_the_rate_of_the_rotation_by_rz():
+    rng = np.random.default_rng(4)
+    cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
+    tool, rz, step = directions(rng, 200), rng.uniform(-3, 3, 200), 1e-6
+    _, rate = cell.phi_of_rz(tool, rz)
+    later, earlier = cell.phi_of_rz(tool, rz + step)[0], cell.phi_of_rz(tool, rz - step)[0]
+    measured = np.angle(np.exp(1j * (later - earlier))) / (2 * step)
+    assert np.abs(measured / rate - 1.0).max() < 1e-5
+
+
+def test_rz_degenerates_where_the_build_direction_is_nearly_horizontal():
+    """ERRATA: at 85 deg of tilt |d phi / d RZ| ranges from 0.09 to 11."""
+    cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
+    tool = np.repeat([[np.sin(np.radians(85.0)), 0.0, np.cos(np.radians(85.0))]], 3600, axis=0)
+    _, rate = cell.phi_of_rz(tool, np.linspace(-np.pi, np.pi, 3600))
+    assert np.abs(rate).min() == pytest.approx(0.0872, abs=1e-3)
+    assert np.abs(rate).max() == pytest.approx(11.47, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "code"),
+    [
+        ({"setup": "rotary-table"}, "NOT_YET"),
+        ({"machine": "fanuc-arcmate120id"}, "UNKNOWN_MACHINE"),
+        ({"limits": "pape"}, "UNKNOWN_LIMITS"),
+    ],
+)
+def test_what_cannot_be_resolved_is_refused(parameters, code):
+    with pytest.raises(InputError) as error:
+        cells.resolve(CellParameters(**parameters), np.eye(4))
+    assert error.value.code == code

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The paper's parts planned layer by layer; optima, gradients and limits checked by other means."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics import opw
+from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
+from freecad_am.core.planning import constant, refine, search
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.points import gather
+from freecad_am.core.planning.task import RESERVE, Task
+from freecad_am.kdl import chain as kdl
+
+FLIP = opw.branch_index(("front", "up", "flip"))
+
+
+def ranges(joint_path):
+    return np.degrees([np.ptp(path.joints, axis=0) for path in joint_path.beads])
+
+
+@pytest.mark.parametrize(("part", "layers"), [("sphere", 71), ("laval nozzle", 137), ("intake funnel", 71)])
+def test_the_papers_parts(sliced, cell_of, part, layers):
+    toolpath = sliced(part, 1.0)
+    assert len(toolpath.layers) == layers
+    cell = cell_of(toolpath)
+    found = plan_joints(toolpath, cell, JointParameters())
+    assert found.feasible
+    moved = ranges(found)
+    assert moved[:, :5].max() < 0.01
+    assert np.abs(moved[:, 5] - 360.0).max() < 0.01
+    # a second solver: the joints put the nozzle on the toolpath
+    joints = found.joints
+    tip, axis = cell.tip_in_part(kdl.KdlArm(cell.machine).forward(joints))
+    assert np.abs(tip - np.concatenate([path.bead.points for path in found.beads])).max() < 1e-6
+    assert np.abs(axis - np.concatenate([path.bead.tool for path in found.beads])).max() < 1e-9
+    assert not cell.limits.exceeded(joints).any()
+
+
+@pytest.mark.parametrize("part", ["sphere", "laval nozzle", "intake funnel"])
+def test_no_constant_rz_is_feasible(sliced, cell_of, part):
+    toolpath = sliced(part, 5.0)
+    task = Task(cell_of(toolpath), FLIP, JointParameters(method="constant"))
+    points = gather([bead for _, _, bead in toolpath], task.cell, 40)
+    every = np.radians(np.arange(-180.0, 180.0, 0.5))
+    assert constant.margins(task, points, task.thresholds(points), every).max() < 0.0
+    found = plan_joints(toolpath, task.cell, task.parameters)
+    assert not found.feasible
+    place = next(issue for issue in found.issues if issue.level == "error")
+    assert place.layer is not None and place.point is not None and "q" in place.message
+
+
+def test_degrees_one_to_three_coincide_on_a_part_of_revolution(sliced, cell_of):
+    toolpath = sliced("sphere", 5.0)
+    cell = cell_of(toolpath)
+    first, *others = [plan_joints(toolpath, cell, JointParameters(degree=degree)) for degree in (1, 2, 3)]
+    for other in others:
+        assert other.feasible
+        assert np.abs(ranges(other) - ranges(first)).max() < 1e-3
+        assert [path.objective for path in other.beads] == pytest.approx([path.objective for path in first.beads], abs=1e-9)
+
+
+def test_no_candidate_of_a_much_finer_grid_is_better(sliced, cell_of):
+    """A brute search, on all points, ten times as fine as the planner's own, finds no lower objective."""
+    toolpath = sliced("sphere", 20.0)
+    cell = cell_of(toolpath, limits="maker")
+    parameters = JointParameters()
+    found = plan_joints(toolpath, cell, parameters)
+    task = Task(cell, FLIP, parameters)
+    for path, (_, _, bead) in zip(found.beads, toolpath):
+        if path.iterations == 0:
+            continue
+        points = gather([bead], cell, 40)
+        grid = search.everywhere(task, points, task.thresholds(points), np.linspace(-2, 2, 161), 90)
+        best = grid.objective[grid.margin[:, 0] >= 0.0].min()
+        here = search.judge(task, points, task.thresholds(points), path.coefficients[None, None]).objective[0, 0]
+        assert here <= best * 1.02
+
+
+def test_the_condition_is_kept_at_all_points_and_between(sliced, cell_of):
+    toolpath = sliced("sphere", 5.0)
+    cell = cell_of(toolpath)
+    found = plan_joints(toolpath, cell, JointParameters(min_condition=0.15))
+    assert found.feasible
+    task = Task(cell, FLIP, JointParameters())
+    for path in found.beads:
+        between = 0.5 * (path.joints[1:] + path.joints[:-1])
+        assert task.condition_at(cell.machine.chain.forward(between), between).min() > 0.149
+        assert path.condition.min() >= 0.15
+
+
+def test_the_valley_is_settled_where_the_margin_is_largest(sliced, cell_of):
+    toolpath = sliced("sphere", 10.0)
+    cell = cell_of(toolpath)
+    task = Task(cell, FLIP, JointParameters())
+    found = plan_joints(toolpath, cell, task.parameters)
+    points = gather([bead for _, _, bead in toolpath], cell)
+    candidates = np.repeat(np.array([path.coefficients for path in found.beads])[None], 720, axis=0)
+    candidates[:, :, 0] += np.radians(np.arange(720) * 0.5)[:, None]
+    every = search.judge(task, points, task.thresholds(points), candidates).margin
+    assert (np.array([path.margin for path in found.beads]) > every.max(axis=0) - 0.02).all()
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("parameter", ["rotation", "rz"])
+def test_gradients_against_differences(sliced, cell_of, objective, parameter):
+    toolpath = sliced("sphere", 20.0)
+    task = Task(cell_of(toolpath), FLIP, JointParameters(objective=objective, degree=2, parameter=parameter))
+    points = gather([bead for _, _, bead in toolpath][1:2], task.cell)
+    threshold = task.thresholds(points)
+    rng = np.random.default_rng(7)
+    checked = smooth = 0
+    for _ in range(40):
+        coefficients = np.array([[rng.uniform(-3, 3), rng.uniform(-1.2, -0.8), rng.uniform(-0.02, 0.02)]])
+        state = refine._state(task, points, threshold, coefficients)
+        if not np.isfinite(state.objective).all() or state.constraints.min() < 0.001:
+            continue
+        for k in range(3):
+            step = np.zeros((1, 3))
+            step[0, k] = 1e-6
+            later, earlier = (refine._state(task, points, threshold, coefficients + s * step) for s in (1, -1))
+            slope = (later.objective - earlier.objective) / 2e-6
+            assert state.gradient[0, k] == pytest.approx(slope[0], rel=2e-4, abs=1e-6 * max(1.0, abs(state.objective[0])))
+            # a maximum over points has a kink where two points tie: any slope between the two sides is right
+            sides = np.stack([later.constraints - state.constraints, state.constraints - earlier.constraints])[:, 0] / 1e-6
+            room = 1e-3 * max(1.0, np.abs(sides).max())
+            assert (state.constraint_rates[0, :, k] > sides.min(axis=0) - room).all()
+            assert (state.constraint_rates[0, :, k] < sides.max(axis=0) + room).all()
+            smooth += int((np.abs(sides[0] - sides[1]) < room).sum())
+        checked += 1
+    assert checked >= 3
+    assert smooth >= 3 * checked * 5
+
+
+def test_an_unreachable_point_is_named(sliced, cell_of):
+    toolpath = sliced("sphere", 10.0)
+    found = plan_joints(toolpath, cell_of(toolpath, deposition_point=(1850.0, 0.0, 300.0, 0, 0, 0)), JointParameters())
+    assert not found.feasible
+    issue = next(issue for issue in found.issues if issue.code == "UNREACHABLE")
+    assert issue.layer is not None and issue.point is not None
+
+
+def test_a_branch_is_found_where_none_is_given(sliced, cell_of):
+    toolpath = sliced("sphere", 10.0)
+    found = plan_joints(toolpath, cell_of(toolpath, branch="auto"), JointParameters())
+    assert found.feasible
+
+
+def test_too_high_a_travel_speed_is_refused_with_the_speed_that_would_do(sliced, cell_of):
+    from freecad_am.core.parameters.process import ProcessParameters
+
+    toolpath = sliced("sphere", 1.0, process=ProcessParameters(travel_speed=12.0))
+    found = plan_joints(toolpath, cell_of(toolpath), JointParameters())
+    issue = next(issue for issue in found.issues if issue.code == "SPEED")
+    assert issue.layer == 70 and "mm/s" in issue.message
+
+
+def test_a_reserve_is_kept_beside_limits_the_optimum_leans_on(sliced, cell_of):
+    toolpath = sliced("sphere", 10.0)
+    cell = cell_of(toolpath, limits="maker")
+    found = plan_joints(toolpath, cell, JointParameters())
+    assert found.feasible
+    margin = np.min([cell.limits.margin(path.joints).min() for path in found.beads])
+    assert margin > 0.9 * RESERVE
+
+
+def test_progress_may_cancel(sliced, cell_of):
+    toolpath = sliced("sphere", 20.0)
+
+    def cancel(fraction, text):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        plan_joints(toolpath, cell_of(toolpath), JointParameters(), cancel)
+
+
+def test_a_narrow_rotation_range_is_kept_or_refused(sliced, cell_of):
+    toolpath = sliced("sphere", 20.0)
+    cell = cell_of(toolpath)
+    parameters = JointParameters(rotation_range=(-2.0, 2.0))
+    found = plan_joints(toolpath, cell, parameters)
+    for path in found.beads:
+        named = any(issue.level == "error" and issue.layer == path.layer for issue in found.issues)
+        assert named or (np.abs(path.phi) <= 2.0 + 1e-9).all()
+    assert dataclasses.asdict(parameters)["rotation_range"] == (-2.0, 2.0)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limited axes: turns counted, seams moved, beads split, spirals refused."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.planning.plan import plan_joints
+
+
+def codes(found):
+    return {issue.code for issue in found.issues}
+
+
+@pytest.mark.parametrize("part", ["sphere", "laval nozzle", "intake funnel"])
+@pytest.mark.parametrize("half", [270.0, 200.0])
+def test_a_limited_axis_6_is_solved(sliced, cell_of, with_axis_6, part, half):
+    toolpath = sliced(part, 5.0)
+    cell = with_axis_6(cell_of(toolpath), half)
+    found = plan_joints(toolpath, cell, JointParameters())
+    assert found.feasible, found.issues
+    assert not cell.limits.exceeded(found.joints).any()
+    # every point of every bead is still deposited, wherever the bead now starts
+    for layer, planned in enumerate(toolpath.layers):
+        points = np.concatenate([path.bead.points for path in found.beads if path.layer == layer])
+        distance = np.linalg.norm(planned.beads[0].points[:, None] - points[None], axis=2).min(axis=1)
+        assert distance.max() < 1e-9
+
+
+def test_beads_are_split_only_where_the_stroke_is_less_than_a_turn(sliced, cell_of, with_axis_6):
+    toolpath = sliced("sphere", 5.0)
+    cell = with_axis_6(cell_of(toolpath), 165.0)
+    found = plan_joints(toolpath, cell, JointParameters(min_condition=0.15))
+    assert found.feasible, found.issues
+    assert "BEAD_SPLIT" in codes(found)
+    for path in found.beads:
+        assert np.degrees(np.ptp(path.joints[:, 5])) <= 330.0
+    for layer, planned in enumerate(toolpath.layers):
+        pieces = [path.bead for path in found.beads if path.layer == layer]
+        assert sum(piece.length for piece in pieces) == pytest.approx(planned.beads[0].length)
+        for before, after in zip(pieces, pieces[1:]):
+            assert np.abs(before.points[-1] - after.points[0]).max() < 1e-9
+
+
+def test_an_endless_axis_accumulates(sliced, cell_of):
+    toolpath = sliced("sphere", 5.0)
+    found = plan_joints(toolpath, cell_of(toolpath), JointParameters())
+    turned = np.abs(found.beads[-1].joints[-1, 5] - found.beads[0].joints[0, 5])
+    assert turned == pytest.approx(2 * np.pi * len(toolpath.layers), abs=2 * np.pi)
+    jumps = [np.abs(after.joints[0] - before.joints[-1])[5] for before, after in zip(found.beads, found.beads[1:])]
+    assert max(jumps) <= np.pi + 1e-9
+
+
+def test_turns_never_cost_margin(sliced, cell_of):
+    toolpath = sliced("sphere", 5.0)
+    cell = cell_of(toolpath, limits="maker")
+    found = plan_joints(toolpath, cell, JointParameters())
+    half = 0.5 * (cell.limits.upper - cell.limits.lower)
+    for path in found.beads:
+        margin = (np.minimum(path.joints - cell.limits.lower, cell.limits.upper - path.joints) / half).min()
+        assert margin >= path.margin - 1e-6
+
+
+def test_a_spiral_runs_on_an_endless_axis_and_is_refused_on_a_limited_one(sliced, cell_of):
+    toolpath = sliced("sphere", 5.0, path="spiral")
+    found = plan_joints(toolpath, cell_of(toolpath), JointParameters())
+    assert found.feasible, found.issues
+    assert np.abs(np.ptp(found.beads[0].joints[:, 5])) > 2 * np.pi * 10
+    refused = plan_joints(toolpath, cell_of(toolpath, limits="maker"), JointParameters())
+    assert not refused.feasible
+    assert "SPIRAL_LIMITED" in codes(refused)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The table of imports of docs/architecture.md, enforced: data flows one way, hosts stay where they belong."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
+
+# folder or module -> what of our own it may import besides itself
+OURS = {
+    "core/issues": set(),
+    "core/program": set(),
+    "core/motion": set(),
+    "core/parameters": {"core/issues"},
+    "core/geometry": {"core/issues"},
+    "core/toolpath": {"core/issues", "core/geometry"},
+    "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
+    "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
+    "core/strategies": {
+        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/slicing", "core/process",
+    },
+    "core/kinematics": {"core/issues", "core/parameters", "core/geometry"},
+    "core/planning": {
+        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/kinematics", "core/motion", "core/program",
+    },
+    "posts": {"core/issues", "core/program"},
+    "kdl": {"core/issues", "core/geometry", "core/kinematics"},
+    "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "kdl"},
+    "brep": {"core/issues", "core/geometry"},
+    "objects": {"core", "brep", "posts", "verify", "kdl"},
+    "api": {"core", "brep", "objects", "posts"},
+    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "verify"},
+    "gui": {"core", "api", "objects", "posts", "brep"},
+}
+# the foreign modules a part of the package may use besides the standard library
+FOREIGN = {
+    "core": {"numpy", "scipy"},
+    "posts": {"numpy"},
+    "verify": {"numpy"},
+    "kdl": {"numpy", "PyKDL"},
+    "brep": {"numpy", "FreeCAD", "Part"},
+    "objects": {"numpy", "FreeCAD", "Part"},
+    "api": {"numpy", "FreeCAD"},
+    "batch": {"numpy", "yaml", "matplotlib", "FreeCAD"},
+    "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy", "matplotlib"},
+}
+
+
+def modules():
+    return sorted(path for path in PACKAGE.rglob("*.py") if path.stat().st_size)
+
+
+def home(path):
+    """The row of OURS a file belongs to, such as core/slicing or posts."""
+    parts = path.relative_to(PACKAGE).with_suffix("").parts
+    return "/".join(parts[:2]) if parts[0] == "core" else parts[0]
+
+
+def imported(path):
+    """(module, names) of every import statement of a file, ours as dotted paths below the package."""
+    package = ["freecad_am", *path.relative_to(PACKAGE).parts[:-1]]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, ()
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            yield ".".join([*base, *(node.module or "").split(".")]).strip("."), tuple(alias.name for alias in node.names)
+
+
+def ours(module, names):
+    """The rows of OURS an import of ours touches."""
+    parts = module.split(".")[1:]
+    if not parts:
+        return set(names)
+    if parts[0] != "core":
+        return {parts[0]}
+    return {"/".join(parts[:2])} if len(parts) > 1 else {f"core/{name}" for name in names}
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_run_one_way(path):
+    row = home(path)
+    if path.name == "__init__.py":
+        assert not list(imported(path)), "__init__.py re-exports nothing"
+        return
+    allowed = OURS[row] | {row}
+    foreign = FOREIGN[row.split("/")[0]]
+    for module, names in imported(path):
+        if module.split(".")[0] == "freecad_am":
+            for used in ours(module, names):
+                assert used in allowed or used.split("/")[0] in allowed, f"{row} imports {used}"
+        else:
+            top = module.split(".")[0]
+            assert top in sys.stdlib_module_names or top in foreign, f"{row} imports {top}"
+
+
+def test_every_row_of_the_table_exists():
+    assert {home(path) for path in modules() if path.parent != PACKAGE or path.name != "__init__.py"} - {"core/__init__"} <= set(OURS)
