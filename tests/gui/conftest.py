@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A person at the window: sees buttons, fields and pictures, clicks and types; whatever pops up unasked is noted."""
+
+import os
+import time
+from pathlib import Path
+
+import FreeCAD as App
+import pytest
+
+PATIENCE = 2.0  # s a dialog may stand there before it counts as stray
+
+
+def pytest_collection_modifyitems(items):
+    here = Path(__file__).parent
+    for item in items:
+        if here in Path(str(item.fspath)).parents:
+            item.add_marker(pytest.mark.gui)
+
+
+class ModalWatch:
+    """Notes and dismisses message boxes that nobody expects: they would hang the run."""
+
+    def __init__(self, qt_core, qt_gui):
+        self.application = qt_gui.QApplication
+        self.label = qt_gui.QLabel
+        self.texts = []
+        self.first_seen = None
+        self.timer = qt_core.QTimer()
+        self.timer.setInterval(200)
+        self.timer.timeout.connect(self.look)
+        self.timer.start()
+
+    def look(self):
+        dialog = self.application.activeModalWidget()
+        if dialog is None:
+            self.first_seen = None
+            return
+        if self.first_seen is None:
+            self.first_seen = time.monotonic()
+        if time.monotonic() - self.first_seen > PATIENCE:
+            words = [label.text() for label in dialog.findChildren(self.label) if label.text()]
+            self.texts.append(" ".join([dialog.windowTitle(), *words]))
+            self.first_seen = None
+            dialog.close()
+
+
+class Person:
+    """What a person does; every step fails when the thing is not there to be seen."""
+
+    def __init__(self, folder):
+        import FreeCADGui
+        from PySide import QtCore, QtGui
+
+        self.gui, self.core, self.widgets = FreeCADGui, QtCore, QtGui
+        self.window = FreeCADGui.getMainWindow()
+        self.folder = folder
+
+    # ---- time
+
+    def idle(self, seconds=0.15):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.widgets.QApplication.processEvents(self.core.QEventLoop.AllEvents, 20)
+            time.sleep(0.002)
+
+    def until(self, condition, what, seconds=20):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            found = condition()
+            if found:
+                return found
+            self.idle(0.05)
+        raise AssertionError(f"waited {seconds} s for {what}")
+
+    # ---- toolbar, panels, tree
+
+    def open_workbench(self):
+        self.gui.activateWorkbench("RoboticAMWorkbench")
+        self.idle()
+
+    def button(self, command):
+        for bar in self.window.findChildren(self.widgets.QToolBar):
+            for action in bar.actions():
+                widget = bar.widgetForAction(action)
+                if command in (action.objectName(), action.data()) and widget is not None and widget.isVisible():
+                    return widget
+        raise AssertionError(f"no button {command} is to be seen")
+
+    def click(self, command):
+        button = self.button(command)
+        self.until(button.isEnabled, f"{command} to be enabled", 5)
+        button.click()
+        self.idle()
+
+    def panel(self, name):
+        found = self.until(lambda: self.window.findChild(self.widgets.QWidget, name), f"the panel {name}", 5)
+        self.until(found.isVisible, f"the panel {name} to show", 5)
+        return found
+
+    def field(self, panel, name):
+        found = [widget for widget in panel.findChildren(self.widgets.QWidget) if widget.objectName() == name]
+        assert len(found) == 1, f"{len(found)} fields are called {name}"
+        return found[0]
+
+    def type(self, panel, name, text):
+        widget = self.field(panel, name)
+        line = widget if isinstance(widget, self.widgets.QLineEdit) else widget.findChild(self.widgets.QLineEdit)
+        line.setText(text)
+        self.idle(0.05)
+
+    def choose(self, panel, name, text):
+        box = self.field(panel, name)
+        index = box.findText(text)
+        assert index >= 0, f"{name} does not offer {text}"
+        box.setCurrentIndex(index)
+        self.idle(0.05)
+
+    def press(self, standard_button):
+        wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
+        for box in self.window.findChildren(self.widgets.QDialogButtonBox):
+            if box.isVisible() and box.button(wanted) is not None:
+                box.button(wanted).click()
+                self.idle()
+                return
+        raise AssertionError(f"no button {standard_button} is to be seen")
+
+    def panel_closed(self):
+        self.until(lambda: not self.gui.Control.activeDialog(), "the panel to close")
+
+    def panel_error(self, panel):
+        label = self.field(panel, "error")
+        return label.text() if label.isVisible() else ""
+
+    def double_click(self, obj):
+        obj.ViewObject.Proxy.doubleClicked(obj.ViewObject)
+        self.idle()
+
+    def select(self, obj, *faces):
+        self.gui.Selection.clearSelection()
+        for face in faces or ("",):
+            self.gui.Selection.addSelection(obj.Document.Name, obj.Name, face)
+        self.idle(0.05)
+
+    # ---- eyes
+
+    def look(self):
+        view = self.gui.activeDocument().activeView()
+        view.viewIsometric()
+        self.gui.SendMsgToActiveView("ViewFit")
+        self.idle(0.4)
+        return view
+
+    def picture(self, width=600, height=450):
+        """The 3D view as (pixels, 3) colours 0..255."""
+        import numpy as np
+
+        path = str(self.folder / "view.png")
+        self.look().saveImage(path, width, height, "White")
+        image = self.widgets.QImage(path).convertToFormat(self.widgets.QImage.Format_RGB32)
+        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+        return rows[:, : image.width(), 2::-1].reshape(-1, 3).astype(int)
+
+    def screenshot(self, name):
+        """The whole screen, kept where ROBOTIC_AM_PICTURES says."""
+        folder = os.environ.get("ROBOTIC_AM_PICTURES")
+        self.idle(0.3)
+        screen = self.widgets.QApplication.primaryScreen()
+        grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
+        assert grabbed.save(os.path.join(folder or str(self.folder), name + ".png"))
+
+    def console(self):
+        """The text of the report view."""
+        views = self.window.findChildren(self.widgets.QTextEdit)
+        return "\n".join(view.toPlainText() for view in views if view.objectName() == "Report view")
+
+
+@pytest.fixture
+def person(tmp_path):
+    someone = Person(tmp_path)
+    watch = ModalWatch(someone.core, someone.widgets)
+    someone.open_workbench()
+    yield someone
+    watch.timer.stop()
+    text = someone.console()
+    if someone.gui.Control.activeDialog():
+        someone.gui.Control.closeDialog()
+    for name in list(App.listDocuments()):
+        App.closeDocument(name)
+    someone.idle()
+    assert not watch.texts, f"dialogs nobody asked for: {watch.texts}"
+    assert "Traceback" not in text, text[-3000:]
