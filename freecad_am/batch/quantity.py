@@ -102,7 +102,7 @@ def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]
         divisor, other = UNITS[under]
         factor /= divisor
         dimension = (dimension[0] - other[0], dimension[1] - other[1], dimension[2] - other[2])
-    return number * factor, dimension
+    return number * factor, None if dimension == NONE else dimension
 
 
 def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimension | None]:

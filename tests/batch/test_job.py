@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Job files: read whole, and refused with the place and the remedy."""
+
+import dataclasses
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from freecad_am.batch import job as jobs
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+
+# every key of the public interface with the value it has when it is left out
+WHOLE = """\
+version: 1
+name: hemisphere
+part:
+  file: part.step
+  faces: [Face1, Face2]
+strategy:
+  kind: revolution
+  layer_height: 1 mm
+  chord_error: 0.01 mm
+  spacing: arc-length
+  wall: outer
+  path: layers
+build_direction: {mode: local, lead: 0 deg, tilt: 0 deg, max_tilt: 90 deg, clearance: nozzle}
+cell:
+  machine: fanuc-arcmate120ic
+  limits: maker
+  setup: part-on-robot
+  deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]
+  platform: 5 mm
+  platform_diameter: 113 mm
+  mount: feature
+  branch: [front, up, flip]
+  nozzle: {half_angle: 20 deg, diameter: 1 mm, length: 60 mm}
+joints:
+  method: layer-by-layer
+  rz: auto
+  degree: 1
+  parameter: rotation
+  rotation_range: [-180 deg, 180 deg]
+  objective: displacement
+  min_condition: auto
+  characteristic_length: 1000 mm
+process:
+  travel_speed: 6 mm/s
+  rapid_speed: 100 mm/s
+  seam: {angle: 0 deg, step: 0 deg}
+  direction: counter-clockwise
+  bead_width: 8 mm
+  wire: {diameter: 1.2 mm, feed: 10 mm/s}
+  lead_on: 0 s
+  lead_off: 0 s
+  overlap: 0 mm
+  between_layers: {lift: 20 mm, wait: 0 s, input: null, call: null}
+  bead_model: none
+program:
+  post: fanuc
+  motion: joint
+  max_points: 2000
+  dry_run: false
+  start_at: null
+"""
+
+
+@pytest.fixture
+def read(tmp_path):
+    (tmp_path / "part.step").write_text("")
+
+    def read_text(text, name="job.yaml"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return jobs.read_job(str(path))
+
+    return read_text
+
+
+def refused(read, text):
+    with pytest.raises(InputError) as caught:
+        read(text)
+    return caught.value
+
+
+def test_the_documented_job_is_all_defaults(read):
+    job = read(WHOLE)
+    assert job.name == "hemisphere"
+    assert job.part.faces == ("Face1", "Face2")
+    assert job.strategy == RevolutionParameters()
+    assert job.build_direction == BuildDirectionParameters()
+    assert job.cell == dataclasses.replace(CellParameters(), mount="feature")
+    assert job.joints == JointParameters()
+    assert job.process == ProcessParameters()
+    assert job.program == ProgramParameters()
+
+
+def test_what_is_left_out(read):
+    job = read("part: {file: part.step}", "some job.yaml")
+    assert job.name == "some job"
+    assert job.cell is None and job.program is None
+    assert job.strategy == RevolutionParameters()
+    assert read("part: {file: part.step}\ncell:\nprogram:\n").cell == CellParameters()
+    assert read("part: {file: part.step}\ncell: null\nprogram: {post: none}\n").program is None
+
+
+def test_values_reach_the_parameters(read):
+    job = read(WHOLE.replace("platform: 5 mm", "platform: [1, 2 cm, 3, 0, 90 deg, 1 rad]").replace(
+        "[front, up, flip]", "auto").replace("rz: auto", "rz: 45").replace("start_at: null", "start_at: {layer: 12}").replace(
+        "input: null", "input: 3").replace("layer_height: 1 mm", "layer_height: 1/16 in").replace(
+        "degree: 1", "degree: 1\n  compare: [constant, point-by-point]"))
+    assert job.cell.platform == pytest.approx((1, 20, 3, 0, math.pi / 2, 1))
+    assert job.cell.branch == "auto"
+    assert job.joints.rz == pytest.approx(math.pi / 4)
+    assert job.joints.compare == ("constant", "point-by-point")
+    assert job.program.start_at.layer == 12 and job.program.start_at.bead == 0
+    assert job.process.between_layers.input == 3
+    assert job.strategy.layer_height == pytest.approx(25.4 / 16)
+
+
+def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
+    monkeypatch.chdir("/")
+    assert read(WHOLE).part.file == str(tmp_path / "part.step")
+    job = read(WHOLE.replace("machine: fanuc-arcmate120ic", "machine: my/robot.json"))
+    assert job.cell.machine == str(tmp_path / "my" / "robot.json")
+
+
+LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key in [line.split(":")[0].strip()]}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "where", "says"),
+    [
+        ("layer_height: 1 mm", "layer_heigth: 1 mm", "UNKNOWN_KEY", "strategy.layer_heigth", "did you mean layer_height"),
+        ("half_angle: 20 deg", "angle: 20 deg", "UNKNOWN_KEY", "cell.nozzle.angle", "half_angle"),
+        ("version: 1", "version: 2", "BAD_VERSION", "version", "reads 1"),
+        ("version: 1", "version: true", "BAD_VERSION", "version", "true"),
+        ("layer_height: 1 mm", "layer_height: 0 mm", "BAD_VALUE", "strategy.layer_height", "more than 0 mm"),
+        ("layer_height: 1 mm", "layer_height: -1 mm", "BAD_VALUE", "strategy.layer_height", "-1 mm"),
+        ("layer_height: 1 mm", "layer_height: 1,5 mm", "BAD_VALUE", "strategy.layer_height", "1.5 mm"),
+        ("layer_height: 1 mm", "layer_height: 1 deg", "BAD_UNIT", "strategy.layer_height", "length such as 1 mm"),
+        ("layer_height: 1 mm", "layer_height: yes", "BAD_VALUE", "strategy.layer_height", "true"),
+        ("layer_height: 1 mm", "layer_height: null", "BAD_VALUE", "strategy.layer_height", "null"),
+        ("layer_height: 1 mm", "layer_height:", "BAD_VALUE", "strategy.layer_height", "no value"),
+        ("layer_height: 1 mm", "layer_height: .inf", "BAD_VALUE", "strategy.layer_height", "inf"),
+        ("layer_height: 1 mm", "layer_height: .nan", "BAD_UNIT", "strategy.layer_height", "nan"),
+        ("layer_height: 1 mm", "layer_height: 1:30", "BAD_UNIT", "strategy.layer_height", "1:30"),
+        ("layer_height: 1 mm", "layer_height: [1 mm]", "BAD_VALUE", "strategy.layer_height", "list"),
+        ("layer_height: 1 mm", "layer_height: 1 mm\n  layer_height: 2 mm", "DUPLICATE_KEY", "strategy.layer_height", "8 and 9"),
+        ("kind: revolution", "kind: surface", "NOT_YET", "strategy.kind", "not supported yet"),
+        ("kind: revolution", "kind: developable", "NOT_YET", "strategy.kind", "not supported yet"),
+        ("kind: revolution", "kind: torus", "BAD_VALUE", "strategy.kind", "revolution, surface, developable"),
+        ("setup: part-on-robot", "setup: rotary-table", "NOT_YET", "cell.setup", "part-on-robot"),
+        ("mode: local", "mode: symmetry-plane", "NOT_YET", "build_direction.mode", "local"),
+        ("setup: part-on-robot", "setup: part_on_robot", "BAD_VALUE", "cell.setup", "did you mean part-on-robot"),
+        ("[front, up, flip]", "[front, flip]", "BAD_VALUE", "cell.branch", "up|down"),
+        ("653.167, 0, 0, 0]", "653.167]", "BAD_VALUE", "cell.deposition_point", "six"),
+        ("653.167, 0, 0, 0]", "653.167, 0, 0, 5 mm]", "BAD_UNIT", "cell.deposition_point", "angle"),
+        ("degree: 1", "degree: 1.5", "BAD_VALUE", "joints.degree", "whole number"),
+        ("degree: 1", "degree: 1\n  compare: [best]", "BAD_VALUE", "joints.compare", "point-by-point"),
+        ("dry_run: false", "dry_run: 'no'", "BAD_VALUE", "program.dry_run", "true nor false"),
+        ("min_condition: auto", "min_condition: some", "BAD_VALUE", "joints.min_condition", "auto"),
+        ("min_condition: auto", "min_condition: 1.5", "BAD_VALUE", "joints.min_condition", "at most 1"),
+        ("[-180 deg, 180 deg]", "[180 deg, -180 deg]", "BAD_VALUE", "joints.rotation_range", "smaller first"),
+        ("bead_model: none", "bead_model: csw", "NOT_YET", "process.bead_model", "none"),
+        ("name: hemisphere", "name: a/b", "BAD_NAME", "name", "slash"),
+        ("name: hemisphere", "name: .hidden", "BAD_NAME", "name", "dot"),
+        ("name: hemisphere", f"name: {'x' * 300}", "BAD_NAME", "name", "too long"),
+        ("file: part.step", "file: other.step", "NO_FILE", "part.file", "other.step"),
+        ("file: part.step", "object: Revolve", "NO_PART", "part.file", "shape.step"),
+        ("file: part.step", "file: part.step\n  object: Revolve", "BAD_VALUE", "part.object", "FCStd"),
+        ("faces: [Face1, Face2]", "faces: [Edge1]", "BAD_VALUE", "part.faces", "Face1"),
+        ("post: fanuc", "post: !!python/name:os.system fanuc", "BAD_VALUE", "program.post", "tag"),
+        ("strategy:\n", "substrate: {file: part.step}\nstrategy:\n", "NOT_YET", "substrate", "leave substrate out"),
+    ],
+)
+def test_refusals_name_file_key_line_and_remedy(read, old, new, code, where, says):
+    assert old in WHOLE
+    error = refused(read, WHOLE.replace(old, new, 1))
+    assert error.code == code
+    assert error.where == f"job.yaml: {where}"
+    assert says in error.message
+    assert re.search(r"\(lines? \d+", error.message) or code == "NO_PART"
+    assert "\n" not in error.line()
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "says"),
+    [
+        ("", "EMPTY_FILE", "empty"), ("# only a remark\n", "EMPTY_FILE", "empty"), ("- 1\n- 2\n", "BAD_FILE", "mapping"),
+        ("just words", "BAD_FILE", "mapping"), ("part: {file: [", "BAD_FILE", "not YAML"), ("a:\n\t- b", "BAD_FILE", "line 2"),
+        ("version: 1", "NO_PART", "part: {file"), ("a: &a [*a]", "BAD_FILE", "alias"), ("[" * 3000, "BAD_FILE", ""),
+        ("{1: 2, [3]: 4}: 5", "BAD_FILE", "word"), ("part: 5", "BAD_VALUE", "section"), ("part: &a\n  file: *b", "BAD_FILE", ""),
+        ("---\npart: {file: part.step}\n---\npart: 1", "BAD_FILE", "document"),
+        ("a0: &a0 [1,1,1,1,1,1,1,1,1]\n" + "".join(f"a{i}: &a{i} [{','.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 9)),
+         "BAD_FILE", "too many"),
+    ],
+)
+def test_files_that_are_no_jobs(read, text, code, says):
+    error = refused(read, text)
+    assert error.code == code
+    assert says in error.message
+    assert error.exit_status == 2
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(InputError, match="no such file"):
+        jobs.read_job(str(tmp_path / "none.yaml"))
+    with pytest.raises(InputError) as caught:
+        jobs.read_job(str(tmp_path))
+    assert caught.value.code == "NO_FILE"
+    binary = tmp_path / "binary.yaml"
+    binary.write_bytes(b"version: 1\n\xff\xfe\x00")
+    with pytest.raises(InputError, match="line 2"):
+        jobs.read_job(str(binary))
+    large = tmp_path / "large.yaml"
+    large.write_bytes(b"#" * 5_000_000)
+    with pytest.raises(InputError, match="too large"):
+        jobs.read_job(str(large))
+
+
+@pytest.mark.parametrize("name", ["hemisphere", "laval-nozzle", "intake-funnel"])
+def test_the_examples_are_valid_and_are_those_of_the_paper(root, name):
+    job = jobs.read_job(str(root / "resources" / "examples" / f"{name}.yaml"))
+    assert Path(job.part.file).name == f"{name}.step"
+    assert job.strategy.layer_height == 1.0 and job.strategy.chord_error == 0.01
+    assert job.cell.limits == "paper"
+    assert job.cell.deposition_point == (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0)
+    assert job.cell.branch == ("front", "up", "flip")
+    assert job.joints.compare == ("constant", "point-by-point")
