@@ -45,11 +45,11 @@ class KdlArm:
         # a fixed segment to each joint's frame, then the joint about its axis through that frame's origin
         self.chain = self.kdl.Chain()
         for index, (origin, direction) in enumerate(zip(machine.chain.origins, machine.chain.directions, strict=True)):
-            self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self._frame(origin)))
+            self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(origin)))
             axis = self.kdl.Vector(*direction)
             joint = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), axis, self.kdl.Joint.RotAxis)
             self.chain.addSegment(self.kdl.Segment(joint, self.kdl.Frame()))
-        self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self._frame(machine.chain.flange)))
+        self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.flange)))
         self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)
         self._jacobian = self.kdl.ChainJntToJacSolver(self.chain)
 
@@ -59,17 +59,17 @@ class KdlArm:
         result[:, 3, 3] = 1.0
         frame = self.kdl.Frame()
         for row, angles in zip(result, np.asarray(q, float), strict=True):
-            self._forward.JntToCart(self._angles(angles), frame)
+            self._forward.JntToCart(self.angles(angles), frame)
             row[:3, :3] = [[frame.M[i, k] for k in range(3)] for i in range(3)]
             row[:3, 3] = [frame.p[i] for i in range(3)]
         return result
 
     def jacobian(self, q: ArrayLike) -> Array:
-        """Geometric Jacobians (n, 6, axes) at the flange's origin in base_link, rows velocity, then angular velocity."""
+        """Geometric Jacobians (n, 6, axes) at the flange's origin in base_link: rows velocity, angular velocity."""
         result = np.empty((len(np.asarray(q)), 6, self.axes))
         columns = self.kdl.Jacobian(self.axes)
         for row, angles in zip(result, np.asarray(q, float), strict=True):
-            self._jacobian.JntToJac(self._angles(angles), columns)
+            self._jacobian.JntToJac(self.angles(angles), columns)
             row[:] = [[columns[i, k] for k in range(self.axes)] for i in range(6)]
         return result
 
@@ -83,7 +83,7 @@ class KdlArm:
         result = np.full(seeds.shape, np.nan)
         found = self.kdl.JntArray(self.axes)
         for row, pose, seed in zip(result, np.asarray(poses, float), seeds, strict=True):
-            if solve.CartToJnt(self._angles(seed), self._frame(pose), found) >= 0:
+            if solve.CartToJnt(self.angles(seed), self.frame(pose), found) >= 0:
                 row[:] = [found[i] for i in range(self.axes)]
         return result
 
@@ -97,12 +97,14 @@ class KdlArm:
         self._velocity = self.kdl.ChainIkSolverVel_pinv(self.chain)
         return self.kdl.ChainIkSolverPos_NR(self.chain, self._forward, self._velocity, ITERATIONS, tolerance)
 
-    def _angles(self, angles: Array) -> Any:
+    def angles(self, angles: Array) -> Any:
+        """Joint angles (axes,) as PyKDL's JntArray."""
         array = self.kdl.JntArray(self.axes)
         for index, angle in enumerate(angles):
             array[index] = float(angle)
         return array
 
-    def _frame(self, pose: Array) -> Any:
+    def frame(self, pose: Array) -> Any:
+        """A pose (4, 4) as PyKDL's Frame."""
         rotation = self.kdl.Rotation(*(float(entry) for entry in pose[:3, :3].ravel()))
         return self.kdl.Frame(rotation, self.kdl.Vector(*(float(entry) for entry in pose[:3, 3])))
