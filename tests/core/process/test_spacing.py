@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Spacing against analytic truth and brute force."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.process import spacing
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+
+
+def bead(points, closed):
+    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    return Bead(points, up, up, np.arange(len(points), dtype=float), np.ones(len(points)), closed)
+
+
+def circle(radius, height, chord_error, start=0.0, turn=2 * np.pi):
+    step = 2 * np.arccos(1 - min(chord_error / radius, 0.0085))
+    angle = start + np.linspace(0.0, turn, int(np.ceil(abs(turn) / step)) + 1)
+    points = np.c_[radius * np.cos(angle), radius * np.sin(angle), np.full_like(angle, height)]
+    full = abs(turn) == 2 * np.pi
+    if full:
+        points[-1] = points[0]
+    return bead(points, full)
+
+
+def path(*beads):
+    return Toolpath(tuple(Layer((one,)) for one in beads), np.eye(4), 1.0, 0.01)
+
+
+@pytest.mark.parametrize("chord_error", [0.1, 0.01, 0.001])
+def test_layers_of_a_sphere_are_as_far_apart_as_the_sphere_says(chord_error):
+    radius, step = 45.0, 1.0
+    angles = np.arange(70) * step / radius
+    rng = np.random.default_rng(5)
+    beads = [circle(radius * np.cos(a), radius * np.sin(a), chord_error, rng.uniform(0, 6)) for a in angles]
+    found = spacing.between_layers(path(*beads))
+    exact = 2 * radius * np.sin(step / radius / 2)
+    assert len(found) == 69
+    assert [len(layer) for layer in found] == [len(one) for one in beads[1:]]
+    worst = max(np.abs(layer - exact).max() for layer in found)
+    assert worst < 2e-4 * chord_error  # the chords themselves would be off by the whole chord error
+
+
+def test_open_beads_of_uneven_steps():
+    rng = np.random.default_rng(8)
+
+    def arc(radius):
+        angle = np.sort(np.r_[0.0, 2.0, rng.uniform(0.0, 2.0, 90)])
+        return bead(np.c_[radius * np.cos(angle), radius * np.sin(angle), 0 * angle], False)
+
+    below, above = arc(30.0), arc(31.0)
+    found = spacing.between_layers(path(below, above))[0]
+    largest = np.diff(np.arctan2(below.points[:, 1], below.points[:, 0])).max()
+    assert np.abs(found - 1.0).max() < 30.0 * largest**4  # fourth order in the step, where chords have the second
+
+
+def test_beyond_the_ends_of_an_open_bead():
+    below = circle(30.0, 0.0, 0.01, 0.0, np.pi)
+    past = np.array([[30.0, -3.0, 4.0], [-30.0, -6.0, 8.0]])
+    found = spacing.between_layers(path(below, bead(past, False)))[0]
+    np.testing.assert_allclose(found, [5.0, 10.0], atol=1e-9)
+
+
+def test_corners_are_kept():
+    square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [0, 0, 0]], dtype=float)
+    points = np.array([[13.0, 14.0, 0.0], [5.0, -2.0, 0.0], [5.0, 4.0, 0.0], [-3.0, -4.0, 0.0], [10.0, 10.0, 7.0]])
+    found = spacing.distance(points, spacing.curve_of(Layer((bead(square, True),))))
+    np.testing.assert_allclose(found, [5.0, 2.0, 4.0, 5.0, 7.0], atol=1e-12)
+
+
+def test_nearest_of_all_segments_whatever_their_lengths():
+    """Random zigzags, whose every point is a corner, against all pairs."""
+    rng = np.random.default_rng(11)
+    for _ in range(20):
+        steps = rng.normal(size=(80, 3)) * rng.choice([0.1, 1.0, 20.0], size=(80, 1))
+        for before, step in zip(steps, steps[1:], strict=False):
+            step *= -1.0 if before @ step > 0.0 else 1.0  # each turns by more than 90 degrees
+        corners = np.cumsum(steps, axis=0)
+        points = rng.normal(size=(300, 3)) * 15.0 + corners[rng.integers(0, len(corners), 300)]
+        found = spacing.distance(points, spacing.curve_of(Layer((bead(corners, False),))))
+        start, along = corners[:-1], np.diff(corners, axis=0)
+        share = np.clip(((points[:, None] - start) * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
+        brute = np.linalg.norm(points[:, None] - start - share[..., None] * along, axis=-1).min(axis=1)
+        np.testing.assert_allclose(found, brute, atol=1e-9)
+
+
+def test_two_beads_in_a_layer_and_one_layer_alone():
+    inner, outer = circle(10.0, 0.0, 0.001), circle(20.0, 0.0, 0.001)
+    below = Layer((inner, outer))
+    above = circle(14.0, 3.0, 0.001)
+    found = spacing.distance(above.points, spacing.curve_of(below))
+    np.testing.assert_allclose(found, 5.0, atol=1e-6)
+    assert spacing.between_layers(path(inner)) == ()
