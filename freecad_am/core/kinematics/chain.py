@@ -17,6 +17,10 @@ from ..geometry import frames
 from ..geometry.frames import Array
 
 
+# poses done together: what they need stays in the processor's cache
+PIECE = 1024
+
+
 class JointFrames(NamedTuple):
     """Where the axes of a chain are: unit `directions` (..., axes, 3), a point `origins` (..., axes, 3) on each
     axis, and the `flange` (..., 4, 4); all in base_link, mm."""
@@ -61,13 +65,25 @@ class Chain:
     def _run(self, q: ArrayLike) -> JointFrames:
         angles = np.asarray(q, float)
         lead = angles.shape[:-1]
-        by_joint = np.ascontiguousarray(np.moveaxis(angles, -1, 0).reshape(self.axes, -1))
-        sines, cosines = np.sin(by_joint), np.cos(by_joint)
+        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
         count = by_joint.shape[1]
+        directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
+        flange = np.zeros((count, 4, 4))
+        flange[:, 3, 3] = 1.0
+        for start in range(0, count, PIECE):
+            piece = slice(start, start + PIECE)
+            self._run_piece(by_joint[:, piece], directions[:, :, piece], origins[:, :, piece], flange[piece])
+        return JointFrames(
+            np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
+            np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
+            flange.reshape(lead + (4, 4)),
+        )
+
+    def _run_piece(self, angles: Array, directions: Array, origins: Array, flange: Array) -> None:
+        sines, cosines = np.sin(angles), np.cos(angles)
+        count = angles.shape[1]
         # one row per column of the rotation, each holding x, y, z of all poses
         columns = np.repeat(np.eye(3).reshape(9, 1), count, axis=1).reshape(3, 3 * count)
-        directions = np.empty((self.axes, 3, count))
-        origins = np.empty((self.axes, 3, count))
         position = np.zeros(3 * count)
         for joint in range(self.axes):
             columns, position = _advance(columns, position, self._links[joint])
@@ -75,15 +91,8 @@ class Chain:
             origins[joint] = position.reshape(3, count)
             _turn(columns.reshape(3, 3, count), sines[joint], cosines[joint])
         columns, position = _advance(columns, position, self._links[-1])
-        flange = np.zeros((4, 4, count))
-        flange[:3, :3] = columns.reshape(3, 3, count).transpose(1, 0, 2)
-        flange[:3, 3] = position.reshape(3, count)
-        flange[3, 3] = 1.0
-        return JointFrames(
-            np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
-            np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
-            np.ascontiguousarray(np.moveaxis(flange, -1, 0)).reshape(lead + (4, 4)),
-        )
+        flange[:, :3, :3] = columns.reshape(3, 3, count).T
+        flange[:, :3, 3] = position.reshape(3, count).T
 
 
 def _advance(columns: Array, position: Array, link: Array) -> tuple[Array, Array]:

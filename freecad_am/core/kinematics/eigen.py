@@ -65,12 +65,22 @@ def _tridiagonal(matrices: Array) -> tuple[Array, Array]:
 
 def _polynomial(diagonal: Array, squares: Array, x: Array) -> tuple[Array, Array, Array]:
     """The characteristic polynomial of tridiagonal matrices at `x` with its first and second derivative."""
-    value, slope, curve = diagonal[0] - x, -np.ones_like(x), np.zeros_like(x)
+    # of degree 1, then up by the recurrence of the leading minors; half the second derivative saves a factor
+    value, slope, curve = diagonal[0] - x, np.full_like(x, -1.0), np.zeros_like(x)
     before, slope_before, curve_before = np.ones_like(x), np.zeros_like(x), np.zeros_like(x)
+    factor, spare = np.empty_like(x), np.empty_like(x)
     for row in range(1, len(diagonal)):
-        factor = diagonal[row] - x
+        np.subtract(diagonal[row], x, out=factor)
         square = squares[row - 1]
-        curve, curve_before = factor * curve - 2.0 * slope - square * curve_before, curve
-        slope, slope_before = factor * slope - value - square * slope_before, slope
-        value, before = factor * value - square * before, value
+        # the new minor takes the place of the one before the last
+        for older, last, lower in ((curve_before, curve, slope), (slope_before, slope, value), (before, value, None)):
+            older *= square
+            np.multiply(factor, last, out=spare)
+            np.subtract(spare, older, out=older)
+            if lower is not None:
+                older -= lower
+        value, before, slope, slope_before, curve, curve_before = (
+            before, value, slope_before, slope, curve_before, curve
+        )
+    curve *= 2.0
     return value, slope, curve

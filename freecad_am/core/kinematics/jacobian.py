@@ -19,7 +19,7 @@ from ..geometry.frames import Array
 from . import eigen
 from .chain import Chain
 
-PIECE = 4096
+PIECE = 1024
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
@@ -34,12 +34,14 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
     points = np.ascontiguousarray(np.broadcast_to(np.asarray(point, float), (count, 3)).T)
     result = np.empty((6, chain.axes, count))
     # (axes, 3, n) in memory
-    direction = frames.directions.transpose(1, 2, 0)
-    arm = points - frames.origins.transpose(1, 2, 0)
-    for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.multiply(direction[:, following], arm[:, last], out=result[row])
-        result[row] -= direction[:, last] * arm[:, following]
-        result[3 + row] = direction[:, row]
+    directions, origins = frames.directions.transpose(1, 2, 0), frames.origins.transpose(1, 2, 0)
+    for start in range(0, count, PIECE):
+        piece = slice(start, start + PIECE)
+        direction, arm = directions[:, :, piece], points[:, piece] - origins[:, :, piece]
+        for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
+            np.multiply(direction[:, following], arm[:, last], out=result[row, :, piece])
+            result[row, :, piece] -= direction[:, last] * arm[:, following]
+            result[3 + row, :, piece] = direction[:, row]
     return result.transpose(2, 0, 1)
 
 

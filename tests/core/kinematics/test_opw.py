@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics import machine, opw
+from freecad_am.core.kinematics import machine, opw, opw_inverse
 
 MACHINES = [name for name, _ in machine.known()]
 
@@ -65,7 +65,7 @@ def test_one_branch_is_the_same_as_in_all(arm):
 
 
 def test_pieces_do_not_show(arm):
-    q = random_joints(arm, opw.CHUNK + 3)
+    q = random_joints(arm, opw_inverse.CHUNK + 3)
     poses = arm.chain.forward(q)
     parts = np.concatenate([arm.opw.inverse(poses[:100]), arm.opw.inverse(poses[100:])], axis=1)
     assert np.array_equal(arm.opw.inverse(poses), parts, equal_nan=True)
@@ -124,6 +124,14 @@ def test_out_of_reach_is_nan_in_all_six_and_leaves_the_others_alone(arm):
     assert np.isnan(solutions[:, [3, 7]]).all()
     others = [i for i in range(20) if i not in (3, 7)]
     assert np.array_equal(solutions[:, others], arm.opw.inverse(poses[others]), equal_nan=True)
+
+
+def test_an_arm_folded_on_its_shoulder_is_not_reached():
+    """Where upper arm and forearm are alike the wrist centre can lie on axis 2, and axis 2 is free."""
+    arm = machine.load("staubli-rx60bl")
+    q = np.zeros((1, 6))
+    q[0, 2] = np.pi
+    assert np.isnan(arm.opw.inverse(arm.chain.forward(q))).all()
 
 
 def test_words_of_a_branch():
