@@ -43,6 +43,8 @@ class Workshop:
     folder: Path
     launcher: Path
 
+    text = JOB
+
     @property
     def job(self) -> Path:
         return self.folder / "cup.yaml"
