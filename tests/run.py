@@ -78,10 +78,8 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
         env = private_home(Path(folder))
         env["PYTEST_ARGUMENTS"] = shlex.join(arguments or ["tests/gui"])
         env.pop("VIRTUAL_ENV", None)
-        return watched(
-            ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", GUI_TIMEOUT, freecad, str(ROOT / "tests" / "gui_runner.py")],
-            env,
-        )
+        window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", GUI_TIMEOUT]
+        return watched([*window, freecad, str(ROOT / "tests" / "gui_runner.py")], env)
 
 
 def main() -> int:

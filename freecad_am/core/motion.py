@@ -52,14 +52,12 @@ class Motion:
     @property
     def moves(self) -> NDArray[np.bool_]:
         """(n,) bool: the rows a controller moves to; the first row of a bead repeats where it already stands."""
-        moves: NDArray[np.bool_] = ~(self.deposit & (self.point == 0))
-        return moves
+        return np.asarray(~(self.deposit & (self.point == 0)), dtype=np.bool_)
 
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,) bool: rows with joint values."""
-        reachable: NDArray[np.bool_] = np.isfinite(self.joints).all(axis=1)
-        return reachable
+        return np.asarray(np.isfinite(self.joints).all(axis=1), dtype=np.bool_)
 
     @property
     def total_time(self) -> float:

@@ -111,7 +111,8 @@ class Toolpath:
     """All layers from the platform up.
 
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error and
-    layer_height: mm. issues: findings made on the way (spacing, tilt-back, clearance).
+    layer_height: mm. overlap: how far closed beads run on past their seam, mm. issues: findings made on the way
+    (spacing, tilt-back, clearance).
     """
 
     layers: tuple[Layer, ...]
@@ -119,6 +120,7 @@ class Toolpath:
     layer_height: float
     chord_error: float
     issues: tuple[Issue, ...] = ()
+    overlap: float = 0.0
     family: str = field(default="revolution")
 
     def __post_init__(self) -> None:

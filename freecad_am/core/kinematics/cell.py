@@ -10,8 +10,8 @@ the two differ, and RZ degenerates where t is horizontal (ERRATA).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Sequence
 
 import numpy as np
 from numpy.typing import NDArray

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +44,9 @@ def plan(
 
 def best_rz(task: Task, points: Points, thresholds: Array) -> tuple[float, float]:
     """The RZ (rad) with the largest smallest margin over all points, and that margin (negative: none is feasible)."""
-    rough = np.arange(TRIED) * (TURN / TRIED) - np.pi
+    rough = np.linspace(-np.pi, np.pi, TRIED, endpoint=False)
     peak = rough[margins(task, points, thresholds, rough).argmax()]
-    near = peak + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
+    near: Array = peak + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
     fine = margins(task, points, thresholds, near)
     return float(near[fine.argmax()]), float(fine.max())
 

@@ -7,7 +7,7 @@ over points are means, so that a bead with more points is not judged worse; eq. 
 
 from __future__ import annotations
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +54,7 @@ def limits_klein(task: Task, points: Points, joints: Array) -> Array:
 
 def _liegeois_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
     slope = 2.0 * task.rows.offset(joints) / task.rows.half
-    return np.einsum("im,im->i", slope, rates @ task.rows.matrix.T) / _count(points)
+    return np.asarray(np.einsum("im,im->i", slope, rates @ task.rows.matrix.T) / _count(points))
 
 
 def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
@@ -99,9 +99,9 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
     length = task.parameters.characteristic_length
     if name == "manipulability":
         w = np.maximum(jac.manipulability(matrix, length), 1e-300)
-        return -jac.manipulability_rate(matrix, rates, length) / w**2 / _count(points)
+        return np.asarray(-jac.manipulability_rate(matrix, rates, length) / w**2 / _count(points))
     ratio = np.maximum(jac.condition(matrix, length), 1e-300)
-    return -condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points)
+    return np.asarray(-condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points))
 
 
 def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:
@@ -130,5 +130,5 @@ def _mean(points: Points, values: Array) -> Array:
 def _is_worst(points: Points, values: Array) -> NDArray[np.bool_]:
     # one point per bead, the first of the worst ones, so that a sum over points is the gradient of the maximum
     worst = values <= points.worst(values)[points.bead]
-    seen = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
-    return worst & (seen == 1)
+    seen: NDArray[np.int64] = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
+    return np.asarray(worst & (seen == 1), dtype=np.bool_)

@@ -6,7 +6,7 @@ Search everywhere, refine locally, settle in the flat valley, then find room for
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from ..issues import Issue
 from ..toolpath import Bead
 from . import refine, room, search, valley
-from .judged import judged
 from .joint_path import BeadPath
+from .judged import judged
 from .points import gather
-from .task import Task
+from .task import FITS, Task
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -35,9 +35,9 @@ def plan(
     best, each = found.best(), np.arange(len(beads))
     start = found.coefficients[best, each]
     # a bead that no rotation serves from its own seam may do from another: cheaper to try than a local search
-    hopeless = np.flatnonzero(found.margin[best, each] < 0.0)
+    hopeless = [int(k) for k in np.flatnonzero(found.margin[best, each] < 0.0)]
     roomy = room.for_beads(task, [beads[k] for k in hopeless], [places[k] for k in hopeless])
-    helped = {int(k): paths for k, paths in zip(hopeless, roomy) if paths is not None}
+    helped = {k: paths for k, paths in zip(hopeless, roomy) if paths is not None}
     progress(0.4, "refining layers")
     wanted = np.array([k not in helped for k in each])
     refined = refine.refine(task, full, threshold, start, wanted)
@@ -45,8 +45,8 @@ def plan(
     settled = valley.settle(task, coarse, coarse_threshold, refined.coefficients)
     at_peak = judged(task, beads, places, full, threshold, settled, refined)
     as_found = judged(task, beads, places, full, threshold, refined.coefficients, refined)
-    paths = [path if path.margin >= min(0.0, other.margin) else other for path, other in zip(at_peak, as_found)]
-    late = [int(k) for k in each if paths[k].margin < 0.0 and k not in helped and k not in hopeless]
+    paths = [path if path.margin >= min(FITS, other.margin) else other for path, other in zip(at_peak, as_found)]
+    late = [int(k) for k in each if paths[k].margin < FITS and k not in helped and k not in hopeless]
     helped.update({
         k: found for k, found in zip(late, room.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
         if found is not None

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,15 +44,13 @@ def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> t
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
     Between two beads the tool is withdrawn along its axis by `between_layers.lift`, goes to the same height above the
-    next start and down onto it. Closed beads run on past their seam by `overlap`.
+    next start and down onto it.
     """
     parts: list[_Rows] = []
     issues: list[Issue] = []
     before: Array | None = None
     lift, branch = process.between_layers.lift, opw.branch_index(joint_path.branch)
     for path in joint_path.beads:
-        if process.overlap > 0.0 and path.bead.closed:
-            path = _overlapped(path, process.overlap)
         above = _lifted(path, 0, cell, branch, lift)
         if lift > 0.0 and path.reachable and np.isnan(above).any():
             issues.append(Issue(ERROR, "RAPID_UNREACHABLE", f"the point {lift:g} mm above the start of the bead cannot be "
@@ -64,40 +61,9 @@ def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> t
         parts.append(_deposit(path))
         before = _lifted(path, -1, cell, branch, lift)
     last = joint_path.beads[-1]
-    if process.overlap > 0.0 and last.bead.closed:
-        last = _overlapped(last, process.overlap)
     if lift > 0.0:
         parts.append(_retract(last, _lifted(last, -1, cell, branch, lift), lift))
     return _joined(parts, cell, process), tuple(issues)
-
-
-def _overlapped(path: BeadPath, overlap: float) -> BeadPath:
-    """The closed bead run on past its seam by the overlap (mm), over its own beginning."""
-    bead = path.bead
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))])
-    overlap = min(overlap, float(along[-1]))
-    count = max(1, int(np.searchsorted(along, overlap)))
-    share = (overlap - along[count - 1]) / (along[count] - along[count - 1])
-
-    def more(column: Array, turn: Array | float = 0.0) -> Array:
-        end = column[count - 1] + share * (column[count] - column[count - 1])
-        return np.concatenate([column, column[1:count] + turn, [end + turn]])
-
-    def directions(column: Array) -> Array:
-        longer = more(column)
-        return longer / np.linalg.norm(longer, axis=1, keepdims=True)
-
-    longer = dataclasses.replace(
-        bead, points=more(bead.points), build=directions(bead.build), tool=directions(bead.tool),
-        parameter=more(bead.parameter, bead.parameter[-1] - bead.parameter[0]),
-        speed=np.concatenate([bead.speed, bead.speed[1 : count + 1]]), closed=False,
-        width=None if bead.width is None else more(bead.width),
-    )
-    return dataclasses.replace(
-        path, bead=longer, phi=more(path.phi, path.phi[-1] - path.phi[0]),
-        joints=more(path.joints, path.joints[-1] - path.joints[0]),
-        condition=more(path.condition), threshold=more(path.threshold),
-    )
 
 
 def _lifted(path: BeadPath, index: int, cell: Cell, branch: int, lift: float) -> Array:
@@ -105,7 +71,8 @@ def _lifted(path: BeadPath, index: int, cell: Cell, branch: int, lift: float) ->
     arm = cell.machine.opw
     assert arm is not None
     tool = path.bead.tool[index]
-    flange = cell.flange_poses((path.bead.points[index] + lift * tool)[None], tool[None], path.phi[index : index + 1 or None])
+    above = path.bead.points[index] + lift * tool
+    flange = cell.flange_poses(above[None], tool[None], path.phi[index, None])
     joints = arm.inverse_branch(flange, branch)[0]
     moved: Array = joints + TURN * np.round((path.joints[index] - joints) / TURN)
     return moved

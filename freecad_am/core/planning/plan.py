@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from typing import Callable, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ..toolpath import Bead, Toolpath
 from . import comparison, constant, layer_by_layer, point_by_point, search, turns
 from .findings import findings
 from .joint_path import BeadPath, JointPath
+from .overlap import run_on
 from .points import gather
 from .straight import kept_straight
 from .task import Task
@@ -43,7 +44,7 @@ def plan_joints(
     beads = [bead for _, _, bead in toolpath]
     branch = cell.branch if cell.branch is not None else best_branch(beads, cell, parameters)
     task = Task(cell, branch, parameters)
-    paths, issues = _planned(task, beads, places, toolpath.chord_error, parameters.method, progress)
+    paths, issues = _planned(task, toolpath, beads, places, progress)
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
     )
@@ -73,11 +74,11 @@ def _compare_order(parameters: JointParameters) -> list[str]:
 
 
 def _planned(
-    task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], chord_error: float, method: str,
-    progress: Progress,
+    task: Task, toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    paths, issues = METHODS[method](task, beads, places, progress)
-    straight = [kept_straight(task, path, chord_error) for path in paths]
+    paths, issues = METHODS[task.parameters.method](task, beads, places, progress)
+    longer = [run_on(task, path, toolpath.overlap) for path in paths]
+    straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
     paths, notes = turns.counted_on(task, [path for path, _ in straight])
     issues = issues + notes + [issue for _, found in straight for issue in found]
     for path in paths:

@@ -8,7 +8,7 @@ margin is largest. Kept for comparison: the sudden moves it makes are why layers
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,8 +75,7 @@ def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -
     joints = _near(task, at, phi, before)
     bad = _margin(task, at, phi, joints, threshold) < 0.0
     if bad.any():
-        part = np.flatnonzero(bad)
-        phi[bad], joints[bad] = _searched(task, _single(at, part), threshold[bad], before[bad])
+        phi[bad], joints[bad] = _searched(task, _single(at, np.flatnonzero(bad)), threshold[bad], before[bad])
     return phi, joints
 
 

@@ -14,7 +14,17 @@ from ..motion import Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
 from ..program import (
-    DEPOSIT, RAPID, Block, Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput,
+    DEPOSIT,
+    RAPID,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Wait,
+    WaitInput,
 )
 
 Array = NDArray[np.float64]
@@ -56,12 +66,14 @@ def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
     """(n,) bool: the rows run when a job resumes at a bead; its retract from the bead before is left out."""
     run = (motion.layer > start.layer) | (motion.layer == start.layer) & (motion.bead >= start.bead)
     if not (run & motion.deposit).any() or not ((motion.layer == start.layer) & (motion.bead == start.bead)).any():
-        raise InputError("START_AT", "program.start_at", f"there is no bead {start.bead} in a layer {start.layer}; the job has "
-                         f"layers 0 to {motion.layer.max()}")
+        raise InputError(
+            "START_AT", "program.start_at",
+            f"there is no bead {start.bead} in a layer {start.layer}; the job has layers 0 to {motion.layer.max()}",
+        )
     first = int(np.flatnonzero(run)[0])
     if first > 0 and _has_retract(motion, first):
         run[first] = False
-    return run
+    return np.asarray(run, dtype=np.bool_)
 
 
 def _has_retract(motion: Motion, first: int) -> bool:

@@ -21,6 +21,8 @@ from .task import Task
 
 Array = NDArray[np.float64]
 
+# share by which the condition stays above its threshold, so that an optimum on it does not fall below by rounding
+CONDITION_RESERVE = 1e-6
 STATIONARY = "stationary at the start found by the search"
 
 
@@ -96,7 +98,8 @@ def _slsqp(task: Task, points: Points, thresholds: Array, start: Array) -> tuple
         value = float(state(x).objective[0])
         return value if np.isfinite(value) else 1e6
 
-    result = minimize(
+    # scipy's stubs do not know a list of constraint dictionaries with their own types
+    result = minimize(  # type: ignore[call-overload]
         objective,
         start * scale,
         jac=lambda x: np.nan_to_num(state(x).gradient[0]) / scale,
@@ -135,7 +138,8 @@ def _state(task: Task, points: Points, thresholds: Array, coefficients: Array) -
     slope = criteria.rate(task, points, joints, rates, matrix)
     gradient = points.total((slope[:, None] * powers).T).T
     constraints, constraint_rates = _constraints(task, points, thresholds, phi, phi_rate, joints, rates, matrix, powers)
-    return _State(objective, gradient, _predicted(task, points, joints, rates, powers, gradient), constraints, constraint_rates)
+    predicted = _predicted(task, points, joints, rates, powers, gradient)
+    return _State(objective, gradient, predicted, constraints, constraint_rates)
 
 
 def _partly_unreachable(task: Task, points: Points, thresholds: Array, coefficients: Array, joints: Array) -> _State:
@@ -170,7 +174,7 @@ def _constraints(
     values = [0.25 * (1.0 - offset.T**2)]
     slopes = [-0.5 * offset.T * (rates @ task.rows.matrix.T / task.rows.half).T]
     ratio = jac.condition(matrix, task.parameters.characteristic_length)
-    values.append((ratio - thresholds)[None])
+    values.append((ratio - thresholds * (1.0 + CONDITION_RESERVE))[None])
     slopes.append(criteria.condition_rate(task, joints, rates, matrix)[None])
     if _narrow(task):
         low, high = task.parameters.rotation_range
@@ -199,7 +203,7 @@ def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: 
     gradient alone is taken.
     """
     if task.parameters.objective != "displacement":
-        return np.linalg.norm(gradient, axis=1)
+        return np.asarray(np.linalg.norm(gradient, axis=1))
     spread = rates[:, :, None] * powers[:, None, :]
     change = np.zeros_like(spread)
     change[1:] = spread[1:] - spread[:-1]

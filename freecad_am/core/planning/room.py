@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from . import refine, search, turns, valley
 from .joint_path import BeadPath
 from .judged import judged
 from .points import gather
-from .task import Task
+from .task import FITS, Task
 
 Array = NDArray[np.float64]
 Place = tuple[int, int]
@@ -24,6 +24,7 @@ Place = tuple[int, int]
 # slopes that close a full turn in joint space: only with these can a seam be moved after the planning
 CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 OFFSETS = 72
+MORE_PIECES = 3
 MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
 
 
@@ -56,10 +57,12 @@ def put_in(
     issues: list[Issue] = []
     for k, path in enumerate(paths):
         result += helped.get(k, [path])
-        if k not in helped and path.margin < 0.0 and turns.is_spiral(path.bead) and not task.endless.all():
-            if turns.turning_axis(task, path.joints) is not None:
-                issues.append(Issue(ERROR, "SPIRAL_LIMITED", "a spiral turns an axis without end, and this set of limits ends "
-                                    "it; use path: layers, or a limit set with an endless axis", layer=path.layer))
+        lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
+        if lost and turns.turning_axis(task, path.joints) is not None:
+            issues.append(Issue(
+                ERROR, "SPIRAL_LIMITED", "a spiral turns an axis without end, and this set of limits ends it; use path: layers, "
+                "or a limit set with an endless axis", layer=path.layer,
+            ))
     moved = sorted({found[0].layer for found in helped.values() if len(found) == 1})
     split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
     issues += ([turns.seam_note(moved)] if moved else []) + ([turns.split_note(split)] if split else [])
@@ -71,19 +74,22 @@ def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Arra
     started, index = turns.moved_seam(task, bead, whole.joints)
     if index:
         moved = _one(task, started, place, coefficients, MOVED)
-        if moved.margin >= 0.0:
+        if moved.margin >= FITS:
             return [moved]
-    parts = turns.pieces(task, bead, whole.joints)
-    if len(parts) == 1:
-        return None
-    cuts = [_piece(task, turns.cut(bead, part), place, coefficients) for part in parts]
-    return cuts if all(piece.margin >= 0.0 for piece in cuts) else None
+    for more in range(MORE_PIECES):
+        parts = turns.pieces(task, bead, whole.joints, more)
+        if len(parts) == 1:
+            return None
+        cuts = [_piece(task, turns.cut(bead, part), place, coefficients) for part in parts]
+        if all(piece.margin >= FITS for piece in cuts):
+            return cuts
+    return None
 
 
 def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPath:
     """A piece with the rotation of the whole bead, or where that does not serve with one of its own."""
     path = _one(task, bead, place, coefficients, SPLIT)
-    if path.margin >= 0.0:
+    if path.margin >= FITS:
         return path
     coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
     found = search.everywhere(task, coarse, task.thresholds(coarse))

@@ -47,7 +47,7 @@ class Found:
         """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
         feasible = self.margin >= 0.0
         ranked = np.where(feasible, self.objective, np.inf).argmin(axis=0)
-        return np.where(feasible.any(axis=0), ranked, self.margin.argmax(axis=0))
+        return np.asarray(np.where(feasible.any(axis=0), ranked, self.margin.argmax(axis=0)), dtype=np.int64)
 
 
 def everywhere(task: Task, points: Points, thresholds: Array, slopes: Array = SLOPES, offsets: int = OFFSETS) -> Found:

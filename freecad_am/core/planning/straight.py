@@ -72,11 +72,9 @@ def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath
     )
     phi = middle(path.phi)
     new = at + np.arange(len(at))
-    arm = task.cell.machine.opw
-    assert arm is not None
     flange = task.cell.flange_poses(finer.points[new], finer.tool[new], phi[new])
     joints = middle(path.joints)
-    found = arm.inverse_branch(flange, task.branch)
+    found = task.inverse(flange)
     joints[new] = found - 2.0 * np.pi * np.round((found - joints[new]) / (2.0 * np.pi))
     condition = np.insert(path.condition, at, task.condition_at(flange, joints[new]))
     return dataclasses.replace(

@@ -25,6 +25,8 @@ RESERVE = np.radians(0.05)
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
 UNREACHABLE = -np.inf
+# a margin that counts as none: optima lean on limits, which the reserve keeps off the true ones
+FITS = -1e-6
 
 
 @dataclass(frozen=True)
@@ -112,16 +114,20 @@ class Task:
     def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
         """phi (T,) and d phi / d value (T,) for the variable of the job: the rotation itself, or RZ of the paper."""
         if self.parameters.parameter == "rotation":
-            return value, np.ones_like(value)
+            return value, np.ones(len(value), dtype=np.float64)
         return self.cell.phi_of_rz(points.tool, value)
 
     def raw_joints(self, points: Points, phi: Array) -> Array:
         """(..., T, axes) joint values of the branch as the closed form gives them; NaN where unreachable."""
+        joints = self.inverse(points.frames.at(phi).reshape(-1, 4, 4))
+        return joints.reshape(*phi.shape, -1)
+
+    def inverse(self, flange: Array) -> Array:
+        """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable."""
         arm = self.cell.machine.opw
         assert arm is not None  # resolve() refuses other machines
-        flange = points.frames.at(phi)
-        joints: Array = arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch)
-        return joints.reshape(*phi.shape, -1)
+        joints: Array = arm.inverse_branch(flange, self.branch)
+        return joints
 
     def joints(self, points: Points, phi: Array) -> Array:
         """(..., T, axes) joint values counted on within each bead, in the turn that suits the limits best."""

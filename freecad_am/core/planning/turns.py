@@ -87,17 +87,18 @@ def turning_axis(task: Task, joints: Array) -> int | None:
     return int(turns.argmax()) if turns.max() >= 1.0 else None
 
 
-def pieces(task: Task, bead: Bead, joints: Array) -> list[slice]:
+def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
     """Where a bead is cut so that the turning axis starts each piece anew within its limits.
 
     A piece ends where the axis would pass a limit; the next starts with the axis turned back. An axis
-    without the stroke for a full turn gets pieces of equal length, which then need rotations of their own.
+    without the stroke for a full turn gets pieces of equal length, `more` than the fewest, which then need
+    rotations of their own.
     """
     axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.endless))
     low, high = task.rows_of_axis(axis)
     along = joints[:, axis]
     if high - low < TURN:
-        count = int(np.ceil(np.ptp(along) / (USABLE * (high - low))))
+        count = int(np.ceil(np.ptp(along) / (USABLE * (high - low)))) + more
         ends = np.round(np.linspace(0, len(bead) - 1, count + 1)).astype(int)
         return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
     rising = along[-1] > along[0]

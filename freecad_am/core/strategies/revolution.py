@@ -58,7 +58,9 @@ def plan(
     else:
         slices, issues = sliced(wall, strategy)
         layers, found = _layers(wall, slices, strategy, process, tilting)
-    return Toolpath(layers, wall.frame, strategy.layer_height, strategy.chord_error, (*wall.issues, *issues, *found))
+    return Toolpath(
+        layers, wall.frame, strategy.layer_height, strategy.chord_error, (*wall.issues, *issues, *found), process.overlap
+    )
 
 
 def _check_on_platform(wall: RevolvedWall, diameter: float) -> None:

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Motion and program: rows, times, rapids, overlap, resuming; what comes out survives the read-back."""
+
+import numpy as np
+import pytest
+
+from freecad_am import verify
+from freecad_am.core.issues import InputError, has_errors
+from freecad_am.core.kinematics import opw
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters, StartParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.program import FIRST_APPROACH, build
+from freecad_am.core.planning.straight import kept_straight
+from freecad_am.core.planning.task import Task
+from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
+from freecad_am.kdl import chain as kdl
+from freecad_am.posts import catalogue
+
+
+@pytest.fixture(scope="module")
+def planned(sliced, cell_of):
+    def make(process=None, layer_height=10.0, **cell):
+        toolpath = sliced("sphere", layer_height, process=process)
+        resolved = cell_of(toolpath, **cell)
+        joint_path = plan_joints(toolpath, resolved, JointParameters())
+        assert joint_path.feasible, joint_path.issues
+        motion, issues = assemble(joint_path, resolved, process or ProcessParameters())
+        assert not issues
+        return toolpath, resolved, joint_path, motion
+
+    return make
+
+
+def test_rows_follow_the_beads(planned):
+    toolpath, _, _, motion = planned()
+    for layer, index, bead in toolpath:
+        rows = (motion.layer == layer) & (motion.bead == index)
+        deposit = rows & motion.deposit
+        assert np.abs(motion.position[deposit] - bead.points).max() < 1e-9
+        assert (motion.point[deposit] == np.arange(len(bead))).all()
+        assert (motion.speed[deposit] == 6.0).all()
+        lifted = rows & ~motion.deposit
+        assert lifted.sum() == (2 if layer == 0 else 3) + (layer == len(toolpath.layers) - 1)
+    length = sum(bead.length for _, _, bead in toolpath)
+    assert motion.duration[motion.deposit].sum() == pytest.approx(length / 6.0)
+    assert not motion.deposit[-1] and not motion.deposit[0]
+
+
+def test_every_row_is_where_its_joints_put_the_nozzle(planned):
+    _, cell, _, motion = planned()
+    tip, axis = cell.tip_in_part(kdl.KdlArm(cell.machine).forward(motion.joints))
+    assert np.abs(tip - motion.position).max() < 1e-6
+    assert np.abs(axis - motion.tool).max() < 1e-9
+
+
+def test_rapids_withdraw_along_the_tool_axis_and_keep_the_axes_within_their_speed(planned):
+    process = ProcessParameters(between_layers=BetweenLayersParameters(lift=12.5), rapid_speed=80.0)
+    _, cell, joint_path, motion = planned(process)
+    moved = np.linalg.norm(np.diff(motion.position, axis=0), axis=1)
+    turned = np.abs(np.diff(motion.joints, axis=0)) / cell.machine.max_speed
+    rapid = ~motion.deposit[1:]
+    assert (moved[rapid] / motion.duration[1:][rapid] <= 80.0 + 1e-9).all()
+    assert (turned[rapid].max(axis=1) <= motion.duration[1:][rapid]).all()
+    for path in joint_path.beads[1:]:
+        first = np.flatnonzero((motion.layer == path.layer) & ~motion.deposit)[:3]
+        above = motion.position[first[1]] - path.bead.points[0]
+        assert np.abs(above - 12.5 * path.bead.tool[0]).max() < 1e-6
+
+
+@pytest.mark.parametrize("overlap", [0.3, 5.3, 40.0])
+def test_overlap_runs_on_over_the_beginning_and_survives_the_read_back(planned, overlap):
+    process = ProcessParameters(overlap=overlap)
+    toolpath, cell, _, motion = planned(process)
+    for layer, _, bead in toolpath:
+        rows = (motion.layer == layer) & motion.deposit
+        run = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1).sum()
+        assert run == pytest.approx(bead.length + min(overlap, bead.length), abs=0.02)
+    program = build(motion, cell, process, ProgramParameters(), "overlap")
+    files = catalogue.load("fanuc").write(program)
+    checked = verify.verify(cell, motion, program, files, catalogue.load("fanuc"), toolpath.chord_error)
+    assert not has_errors(checked.issues), checked.issues
+
+
+def test_what_happens_between_layers(planned):
+    between = BetweenLayersParameters(lift=20.0, wait=3.0, input=7, call="CLEAN")
+    process = ProcessParameters(between_layers=between, lead_on=0.5, lead_off=0.25)
+    toolpath, cell, _, motion = planned(process)
+    blocks = build(motion, cell, process, ProgramParameters(), "between").blocks
+    words = [type(block).__name__ for block in blocks]
+    layer = ["DepositOn", "Moves", "DepositOff"]
+    between_words = ["Moves", "Wait", "WaitInput", "Call", "LayerStart", "Moves"]
+    expected = ["LayerStart", "Moves", *layer]
+    for _ in toolpath.layers[1:]:
+        expected += [*between_words, *layer]
+    assert words == [*expected, "Moves"]
+    assert Wait(3.0) in blocks and WaitInput(7) in blocks and Call("CLEAN") in blocks
+    assert DepositOn(0.5) in blocks and DepositOff(0.25) in blocks
+    assert blocks[1].duration[0] == FIRST_APPROACH
+
+
+def test_resuming_runs_the_same_motion_from_there(planned):
+    process = ProcessParameters()
+    toolpath, cell, _, motion = planned(process)
+    whole = build(motion, cell, process, ProgramParameters(), "job")
+    later = build(motion, cell, process, ProgramParameters(start_at=StartParameters(layer=2)), "job")
+    starts = [block.layer for block in later.blocks if isinstance(block, LayerStart)]
+    assert starts == list(range(2, len(toolpath.layers)))
+    deposit = [m for m in whole.moves if m.kind == "deposit" and m.layer >= 2]
+    again = [m for m in later.moves if m.kind == "deposit"]
+    assert all(np.array_equal(a.joints, b.joints) for a, b in zip(deposit, again))
+    assert isinstance(later.blocks[1], Moves) and len(later.blocks[1]) == 2
+    with pytest.raises(InputError) as error:
+        build(motion, cell, process, ProgramParameters(start_at=StartParameters(layer=99)), "job")
+    assert error.value.code == "START_AT"
+
+
+def test_controller_values_are_those_of_the_pendant(planned):
+    _, cell, _, motion = planned()
+    program = build(motion, cell, ProcessParameters(), ProgramParameters(), "pendant")
+    joints = np.concatenate([moves.joints for moves in program.moves])
+    serial = motion.joints[motion.moves]
+    assert np.abs(joints[:, 2] - (serial[:, 2] - serial[:, 1])).max() < 1e-12
+    assert np.abs(joints[:, [0, 1, 3, 4, 5]] - serial[:, [0, 1, 3, 4, 5]]).max() < 1e-12
+
+
+def test_cartesian_motion_with_the_part_on_the_robot_is_refused(planned):
+    _, cell, _, motion = planned()
+    with pytest.raises(InputError) as error:
+        build(motion, cell, ProcessParameters(), ProgramParameters(motion="cartesian"), "remote")
+    assert error.value.code == "REMOTE_TCP"
+
+
+def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
+    """With a bent torch on the robot the arm works, and a coarse bead is not followed by joint motion alone."""
+    from freecad_am.core.parameters.cell import NozzleParameters
+
+    toolpath = sliced("sphere", 15.0)
+    cell = cell_of(
+        toolpath, setup="tool-on-robot", deposition_point=(1100.0, 0.0, 100.0, 0, 0, 0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, np.radians(45.0), 0.0)), branch="auto",
+    )
+    found = plan_joints(toolpath, cell, JointParameters())
+    assert found.feasible, found.issues
+    assert sum(len(path.bead) for path in found.beads) > toolpath.point_count
+    task = Task(cell, opw.branch_index(found.branch), JointParameters())
+    arm = kdl.KdlArm(cell.machine)
+    for path in found.beads:
+        share = np.linspace(0.0, 1.0, 21)[None, :, None]
+        between = path.joints[:-1, None] + share * np.diff(path.joints, axis=0)[:, None]
+        tip, _ = cell.tip_in_part(arm.forward(between.reshape(-1, 6)))
+        origin, along = path.bead.points[:-1, None], np.diff(path.bead.points, axis=0)[:, None]
+        offset = tip.reshape(len(origin), -1, 3) - origin
+        where = np.clip((offset * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
+        assert np.linalg.norm(offset - where[..., None] * along, axis=-1).max() < toolpath.chord_error * 1.05
+        again, issues = kept_straight(task, path, toolpath.chord_error)
+        assert len(again.bead) == len(path.bead) and not issues
