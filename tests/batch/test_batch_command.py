@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`batch`: a table of jobs."""
+
+import csv
+import io
+import json
+
+import FreeCAD
+import pytest
+
+SPHERE = "part.set.Ball.Radius"
+
+
+def summary(done):
+    return list(csv.DictReader(io.StringIO(done.out)))
+
+
+@pytest.mark.parametrize("processes", [1, 3])
+def test_one_plan_per_row(workshop, processes):
+    (workshop.folder / "rows.csv").write_text(
+        "strategy.layer_height,cell.branch,process.travel_speed\n"
+        '4 mm,"[front, up, flip]",6 mm/s\n8,,360 mm/min\n10 mm,auto,\n', encoding="utf-8")
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "all", "-j", processes)
+    assert done.status == 0, done.err
+    rows = summary(done)
+    assert [row["row"] for row in rows] == ["1", "2", "3"]
+    assert [row["layers"] for row in rows] == ["16", "8", "7"]
+    assert [row["strategy.layer_height"] for row in rows] == ["4 mm", "8", "10 mm"]
+    assert all(row["exit"] == "0" and row["status"] == "ok" for row in rows)
+    for row in rows:
+        report = json.loads((workshop.folder / "all" / row["folder"] / "report.json").read_text())
+        assert report["counts"]["layers"] == int(row["layers"])
+        assert (workshop.folder / "all" / row["folder"] / "program" / "CUP.LS").is_file()
+
+
+def test_a_row_is_what_plan_makes_of_it(workshop):
+    (workshop.folder / "rows.csv").write_text("strategy.layer_height\n6 mm\n")
+    assert workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows").status == 0
+    workshop.change("layer_height: 4 mm", "layer_height: 6 mm")
+    assert workshop.run("plan", "cup.yaml", "-o", "plan").status == 0
+    row, plan = workshop.files("rows/row-001"), workshop.files("plan")
+    assert set(row) == set(plan)
+    assert all(row[name] == plan[name] for name in row if name.startswith("program/") or name == "waypoints.csv")
+
+
+@pytest.mark.parametrize(
+    ("rows", "statuses", "worst"),
+    [
+        (["4 mm,0", "5 mm,9000"], ["0", "3"], 3),
+        (["1 kg,0", "5 mm,9000", "4 mm,0"], ["2", "3", "0"], 2),
+    ],
+)
+def test_ends_with_the_worst_row(workshop, rows, statuses, worst):
+    workshop.change("limits: paper", "limits: paper\n  deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0]")
+    table = ["strategy.layer_height,cell.deposition_point"]
+    for row in rows:
+        height, shift = row.split(",")
+        table.append(f'{height},"[{1045.747 + float(shift)}, -630.155, 653.167, 0, 0, 0]"')
+    (workshop.folder / "rows.csv").write_text("\n".join(table))
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-j", "2")
+    assert done.status == worst
+    found = summary(done)
+    assert [row["exit"] for row in found] == statuses
+    assert all(row["message"] for row in found if row["exit"] != "0")
+    assert all("row" in line for line in done.err.splitlines())
+
+
+def test_sets_properties_of_a_document(workshop):
+    document = FreeCAD.newDocument("Model")
+    ball = document.addObject("Part::Sphere", "Ball")
+    ball.Radius, ball.Angle1 = 30, 0
+    document.recompute()
+    document.saveAs(str(workshop.folder / "model.FCStd"))
+    FreeCAD.closeDocument(document.Name)
+    before = (workshop.folder / "model.FCStd").read_bytes()
+    workshop.change("part: {file: cup.step}", "part: {file: model.FCStd, object: Ball}")
+    (workshop.folder / "rows.csv").write_text(f"name,{SPHERE}\nsmall,20 mm\nlarge,4 cm\nasis,\n")
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out", "-j", "2")
+    assert done.status == 0, done.err
+    rows = summary(done)
+    assert [row["folder"] for row in rows] == ["small", "large", "asis"]
+    assert [int(row["layers"]) for row in rows] == [8, 16, 12]
+    assert (workshop.folder / "model.FCStd").read_bytes() == before
+    for column, cell, says in (
+        ("part.set.Bowl.Radius", "20 mm", "Bowl"), ("part.set.Ball.Size", "20 mm", "Size"),
+        (SPHERE, "20 s", "does not fit"), (SPHERE, "-5 mm", "Ball"), ("part.set.Ball", "1", "object"),
+    ):
+        (workshop.folder / "bad.csv").write_text(f"{column}\n{cell}\n")
+        done = workshop.run("batch", "bad.csv", "--job", "cup.yaml")
+        assert done.status == 2, (column, done.err)
+        assert says in done.err and "error[" in done.err
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        ("", "no rows"), ("strategy.layer_height\n", "no rows"), ("strategy.hight\n1\n", "layer_height"),
+        ("tragedy.layer_height\n1\n", "tragedy"), ("name,name\na,b\n", "twice"), ("name,\na,b\n", "empty"),
+        ("strategy.layer_height\n1,5 mm\n", "2 cells for 1"), ("strategy.layer_height;name\n1 mm;a\n", "commas"),
+        ('strategy.layer_height\n"1,5 mm"\n', "point"), ('name\n"a\n', "table"), ("name\na\nb,c\n", "row 2"),
+        ("strategy.layer_height\n[1\n", "not understood"), ("part.set.Ball.Radius\n1 mm\n", "FCStd"),
+    ],
+)
+def test_tables_that_are_wrong(workshop, table, says):
+    (workshop.folder / "rows.csv").write_text(table, encoding="utf-8")
+    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml")
+    assert done.status == 2
+    assert says in done.err and done.err.startswith("error[")
+    assert "Traceback" not in done.err
+
+
+def test_a_table_that_is_not_text(workshop):
+    (workshop.folder / "rows.csv").write_bytes(b"\xff\xfe\x00")
+    assert workshop.run("batch", "rows.csv", "--job", "cup.yaml").status == 2
+    assert workshop.run("batch", "none.csv", "--job", "cup.yaml").status == 2
+    (workshop.folder / "rows.csv").write_text("name\na\n")
+    assert workshop.run("batch", "rows.csv", "--job", "none.yaml").status == 2

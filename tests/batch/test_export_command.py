@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`export`: programs out of a saved document, computed again."""
+
+import FreeCAD
+import pytest
+
+from freecad_am import api
+
+
+@pytest.fixture
+def saved(workshop):
+    """A document with two programs, made through the macro interface and saved."""
+    document = FreeCAD.newDocument("Two")
+    part = api.open_part(document, str(workshop.folder / "cup.step"))
+    cell = api.make_cell(document, limits="paper", platform_diameter=100)
+    feature = api.make_feature(document, part, layer_height=8, chord_error=0.1)
+    toolpath = api.make_toolpath(document, feature, cell)
+    joint_path = api.make_joint_path(document, toolpath, cell)
+    api.make_program(document, joint_path, "First one", name="first")
+    api.make_program(document, joint_path, "Second", name="second", dry_run=True)
+    path = workshop.folder / "Two Cups.FCStd"
+    document.saveAs(str(path))
+    FreeCAD.closeDocument(document.Name)
+    return path
+
+
+def test_writes_all_programs(workshop, saved):
+    before = saved.read_bytes()
+    done = workshop.run("export", saved)
+    assert done.status == 0, done.err
+    files = workshop.files("out/Two Cups")
+    assert set(files) == {"program/FIRST.LS", "program/SECOND.LS"}
+    assert done.out.splitlines() == [str(workshop.folder / "out" / "Two Cups" / name) for name in sorted(files)]
+    assert files["program/FIRST.LS"] != files["program/SECOND.LS"]
+    assert saved.read_bytes() == before
+    again = workshop.run("export", saved, "-o", "again")
+    assert again.status == 0 and workshop.files("again") == files
+
+
+@pytest.mark.parametrize("names", [["First one"], ["Program"]], ids=["Label", "Name"])
+def test_writes_the_programs_named(workshop, saved, names):
+    assert workshop.run("export", saved, "-o", "some", "--object", *names).status == 0
+    assert set(workshop.files("some")) == {"program/FIRST.LS"}
+
+
+def test_recomputes(workshop, saved):
+    assert workshop.run("export", saved, "-o", "before").status == 0
+    document = FreeCAD.openDocument(str(saved))
+    (feature,) = api.stages_of(document, "feature")
+    feature.LayerHeight = 4.0
+    document.save()
+    FreeCAD.closeDocument(document.Name)
+    assert workshop.run("export", saved, "-o", "after").status == 0
+    before, after = workshop.files("before")["program/FIRST.LS"], workshop.files("after")["program/FIRST.LS"]
+    assert after.count(b"J P[") > 1.6 * before.count(b"J P[") > 0
+
+
+def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
+    document = FreeCAD.openDocument(str(saved))
+    (cell,) = api.stages_of(document, "cell")
+    cell.DepositionPoint = FreeCAD.Placement(FreeCAD.Vector(9000, 0, 0), FreeCAD.Rotation())
+    document.save()
+    FreeCAD.closeDocument(document.Name)
+    done = workshop.run("export", saved)
+    assert done.status == 3, done.err
+    assert done.err.startswith("error[")
+    assert not (workshop.folder / "out").exists()
+
+
+def test_bad_input(workshop, saved):
+    done = workshop.run("export", saved, "--object", "Third")
+    assert done.status == 2 and "First one, Second" in done.err
+    empty = workshop.folder / "empty.FCStd"
+    document = FreeCAD.newDocument("Empty")
+    document.saveAs(str(empty))
+    FreeCAD.closeDocument(document.Name)
+    done = workshop.run("export", empty)
+    assert done.status == 2 and "error[NO_PROGRAM] empty.FCStd" in done.err
+    (workshop.folder / "noise.FCStd").write_bytes(bytes(range(256)))
+    done = workshop.run("export", "noise.FCStd")
+    assert done.status == 2 and "error[BAD_FILE] noise.FCStd" in done.err
+    done = workshop.run("export", saved, "-o", "cup.step/below")
+    assert done.status == 2 and "error[UNWRITABLE]" in done.err
+    assert not (workshop.folder / "out").exists()
