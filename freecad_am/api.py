@@ -22,6 +22,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
+import unicodedata
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -45,8 +47,10 @@ from .objects.toolpath import Toolpath
 
 __all__ = (
     "change", "export", "issues", "make_all", "make_cell", "make_feature", "make_joint_path", "make_program",
-    "make_toolpath", "open_part", "recompute", "result", "stages_of", "told_to",
+    "make_toolpath", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
 )
+
+_NAME_LENGTH = 20
 
 
 def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any) -> Any:
@@ -108,7 +112,17 @@ def make_all(doc: Any, source: Any, faces: Sequence[str] = (), *, name: str = ""
         made = (cell, feature, toolpath, joint_path)
         if joint_path.Status != "up to date":
             return made
-        return (*made, make_program(doc, joint_path, name=name or source.Label))
+        return (*made, make_program(doc, joint_path, name=name or proposed_name(source.Label)))
+
+
+def proposed_name(text: str) -> str:
+    """A program name that controllers take, from a label: letters A to Z, digits and underscores.
+
+    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1".
+    """
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().upper()
+    name = re.sub(r"[^A-Z0-9]+", "_", plain).strip("_")[:_NAME_LENGTH].rstrip("_")
+    return name if name[:1].isalpha() else f"P{name}"
 
 
 def change(obj: Any, **values: Any) -> Any:

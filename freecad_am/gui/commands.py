@@ -101,8 +101,10 @@ def _program() -> None:
 
 
 def _part_name() -> str:
-    """The label of the part that is deposited, as a first proposal for the program's name."""
+    """A first proposal for the program's name, from the part that is deposited."""
+    from .. import api
+
     for obj in App.ActiveDocument.Objects:
         if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
-            return str(obj.Source[0].Label)
-    return str(App.ActiveDocument.Label)
+            return api.proposed_name(obj.Source[0].Label)
+    return api.proposed_name(App.ActiveDocument.Label)

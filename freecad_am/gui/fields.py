@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
@@ -16,6 +17,7 @@ from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
+_DIGITS = 10
 _LARGEST = 2_147_483_647
 
 
@@ -98,6 +100,7 @@ def _number(text: str, name: str) -> float:
 def _choice(row: Row, shown: str) -> Field:
     combo = QtGui.QComboBox()
     combo.addItems(list(row.spec.choices))
+    _shrink(combo)
     combo.setCurrentIndex(row.spec.choices.index(shown))
     return Field(row, combo, combo.currentText)
 
@@ -106,18 +109,27 @@ def _suggested(row: Row, shown: str, texts: list[str]) -> Field:
     combo = QtGui.QComboBox()
     combo.setEditable(True)
     combo.addItems(texts)
-    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+    _shrink(combo)
     combo.setEditText(shown)
     return Field(row, combo, lambda: combo.currentText().strip())
+
+
+def _shrink(combo: Any) -> None:
+    """Let a box be narrower than its longest text: the panel is narrow."""
+    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+    combo.setMinimumContentsLength(8)
 
 
 def _quantity(shown: float, unit: str, name: str) -> tuple[Any, Callable[[], float]]:
     """FreeCAD's own field for a number with a unit, and how to read it in that unit."""
     box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
     box.setProperty("unit", unit)
-    box.setProperty("rawValue", shown)
-    # its own display is cut to the decimals of the preferences, and so would be the value
-    box.findChild(QtGui.QLineEdit).setText(f"{shown:.10g} {unit}")
+    quantity = App.Units.Quantity(f"{shown!r} {unit}")
+    # the display would be cut to the decimals of the preferences, and the value with it
+    quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
+    box.setProperty("value", quantity)
+    box.setMinimumWidth(70)
+    box.findChild(QtGui.QLineEdit).setCursorPosition(0)
     first = box.property("rawValue")
 
     def read() -> float:
@@ -139,7 +151,7 @@ def _pose(row: Row, shown: tuple[float, ...]) -> Field:
         box, read = _quantity(number, unit, f"{label_of(row)} {name}")
         box.setObjectName(f"{row.name}{name}")
         box.setToolTip(f"{name}: {row.spec.help}")
-        box.setMinimumWidth(60)
-        grid.addWidget(box, index // 3, index % 3)
+        grid.addWidget(QtGui.QLabel(name), index % 3, 2 * (index // 3))
+        grid.addWidget(box, index % 3, 2 * (index // 3) + 1)
         reads.append(read)
     return Field(row, widget, lambda: tuple(read() for read in reads))

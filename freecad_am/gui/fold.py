@@ -8,6 +8,9 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 
+LONGEST_ROW = 2  # fields beside a label; more go below it
+
+
 class Fold:
     """A heading with an arrow, and under it a form that it folds and unfolds."""
 
@@ -25,8 +28,9 @@ class Fold:
         self.heading.setStyleSheet("QToolButton { font-weight: bold; border: none; }")
         self.body = QtGui.QWidget()
         self.form = QtGui.QFormLayout(self.body)
-        self.form.setContentsMargins(12, 0, 0, 4)
+        self.form.setContentsMargins(4, 0, 0, 4)
         self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        self.form.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         column.addWidget(self.heading)
         column.addWidget(self.body)
         self.heading.toggled.connect(self._show)
@@ -37,7 +41,11 @@ class Fold:
         """A row of the form."""
         name = QtGui.QLabel(label)
         name.setToolTip(widget.toolTip())
-        self.form.addRow(name, widget)
+        if widget.layout() is not None and widget.layout().count() > LONGEST_ROW:
+            self.form.addRow(name)
+            self.form.addRow(widget)
+        else:
+            self.form.addRow(name, widget)
 
     def _show(self, unfolded: bool) -> None:
         self.body.setVisible(unfolded)

@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
+from .. import api
 from ..core.issues import AmError
 from . import icons, inputs, recorded
 from .fold import Fold
@@ -26,7 +27,7 @@ class JobPanel:
         self.error.setWordWrap(True)
         self.error.setStyleSheet("QLabel { color: #c0182b; }")
         self.source = inputs.SourceChoice()
-        name = "" if self.source.object is None else self.source.object.Label
+        name = "" if self.source.object is None else api.proposed_name(self.source.object.Label)
         self.name = inputs.NameChoice(name)
         fold = Fold("Inputs", True)
         for choice in (self.source, self.name):

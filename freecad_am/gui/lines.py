@@ -84,21 +84,32 @@ def unshaded() -> Any:
 
 
 def turned(outline: Any, sides: int = 48) -> Any:
-    """A surface turned about Z from its outline (n, 2) of (radius, height)."""
+    """A surface turned about Z from its outline (n, 2) of (radius, height), outside to the right of its course."""
     outline = np.asarray(outline, dtype=np.float64)
+    node, hints = coin.SoSeparator(), coin.SoShapeHints()
+    hints.vertexOrdering = coin.SoShapeHints.CLOCKWISE
+    hints.shapeType = coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
+    node.addChild(hints)
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    points = np.concatenate([outline[:, :1, None] * ring[None], np.broadcast_to(
-        outline[:, 1:, None], (len(outline), sides + 1, 1))], axis=-1)
-    node = coin.SoSeparator()
-    hints, coordinates, mesh = coin.SoShapeHints(), coin.SoCoordinate3(), coin.SoQuadMesh()
-    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
-    hints.shapeType = coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
-    hints.creaseAngle = 0.5
+    for start, end in zip(outline, outline[1:], strict=False):
+        run, rise = end - start
+        node.addChild(_strip(ring, start, end, np.array([rise, -run]) / np.hypot(run, rise)))
+    return node
+
+
+def _strip(ring: Any, start: Any, end: Any, normal: Any) -> Any:
+    """The cone between two circles given by (radius, height), with its exact normals."""
+    points = np.stack([np.column_stack([r * ring, np.full(len(ring), z)]) for r, z in (start, end)])
+    normals = np.column_stack([normal[0] * ring, np.full(len(ring), normal[1])])
+    node, coordinates, mesh = coin.SoSeparator(), coin.SoCoordinate3(), coin.SoQuadMesh()
+    directions, binding = coin.SoNormal(), coin.SoNormalBinding()
+    binding.value = coin.SoNormalBinding.PER_VERTEX
     fill(coordinates.point, points.reshape(-1, 3).astype(np.float32))
-    mesh.verticesPerRow = sides + 1
-    mesh.verticesPerColumn = len(outline)
-    for child in (hints, coordinates, mesh):
+    fill(directions.vector, np.concatenate([normals, normals]).astype(np.float32))
+    mesh.verticesPerRow = len(ring)
+    mesh.verticesPerColumn = 2
+    for child in (coordinates, directions, binding, mesh):
         node.addChild(child)
     return node
 

@@ -34,6 +34,7 @@ class StagePanel:
         self.form.setWindowTitle(title)
         self.form.setWindowIcon(QtGui.QIcon(icons.path(proxy.kind.replace(" ", "_"))))
         self.column = QtGui.QVBoxLayout(self.form)
+        self.column.setContentsMargins(2, 2, 2, 2)
         self.error = self._note("error", "#c0182b")
         if obj is None:
             heading = Fold("Inputs", True)

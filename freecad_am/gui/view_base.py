@@ -22,6 +22,7 @@ class StageView:
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {}
     obj: Any = None
     root: Any = None
+    drawn = ""
 
     def __init__(self, vobj: Any) -> None:
         vobj.Proxy = self
@@ -64,19 +65,22 @@ class StageView:
     def refresh(self) -> None:
         """Draw what is stored now."""
         obj = self.obj
-        if obj is None or self.root is None or not getattr(obj, "ResultLayout", ""):
+        if obj is None or self.root is None or not getattr(obj, "Key", ""):
             return
         try:
             self.draw(obj, obj.Proxy.value(obj))
-        except InputError as error:  # a damaged result is told, not shown
-            App.Console.PrintError(error.line() + "\n")
+            self.drawn = obj.Key
+        except InputError as error:
+            if not obj.Document.Transacting:  # within undo the parts of a result come back one by one
+                App.Console.PrintError(error.line() + "\n")
+            return
         self.style(obj.ViewObject)
 
     def updateData(self, obj: Any, name: str) -> None:
         """A property of the object has changed."""
         if self.obj is None or obj.Document.Restoring:
             return
-        if name == "Key":
+        if name in ("Key", "ResultLayout", "ResultData") and obj.Key != self.drawn:
             self.refresh()
         elif name == "Status":
             obj.ViewObject.signalChangeIcon()

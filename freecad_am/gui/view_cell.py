@@ -57,6 +57,6 @@ class CellView(StageView):
 def _toolpath_of(obj: Any) -> Any:
     for follower in obj.InList:
         stage = stage_of(follower)
-        if stage is not None and stage.kind == "toolpath" and follower.ResultLayout:
+        if stage is not None and stage.kind == "toolpath" and follower.Key:
             return stage.value(follower)
     return None

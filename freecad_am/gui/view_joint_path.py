@@ -19,7 +19,7 @@ class JointPathView(StageView):
     icon = "joint_path"
 
     def scene(self, root: Any) -> None:
-        self.rapids = Lines(1.0, (0.9, 0.45, 0.1), DASHED)
+        self.rapids = Lines(1.0, (0.72, 0.72, 0.75), DASHED)
         self.wrong = Points(7.0, (0.9, 0.1, 0.2))
         root.addChild(self.rapids.node)
         root.addChild(self.wrong.node)

@@ -23,6 +23,12 @@ class ToolpathView(StageView):
         "LineWidth": ("App::PropertyFloat", 2.0, "Width of the beads' lines in pixels."),
     }
 
+    source_hidden = True
+
+    def __init__(self, vobj: Any) -> None:
+        super().__init__(vobj)
+        self.source_hidden = False
+
     def scene(self, root: Any) -> None:
         self.beads = Lines()
         self.directions = Lines(1.0, (0.86, 0.2, 0.55))
@@ -41,6 +47,9 @@ class ToolpathView(StageView):
         else:
             share = np.linspace(0.0, 1.0, len(self.points))
         self.beads.set(self.points, counts, colours.ramp(share))
+        if not self.source_hidden:  # a new path lies in the surface of its shape
+            self.source_hidden = True
+            obj.Feature.Source[0].ViewObject.Visibility = False
         if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):
             obj.Cell.ViewObject.Proxy.refresh()
 

@@ -76,7 +76,7 @@ def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
 
 def files_of(obj: Any) -> dict[str, bytes]:
     """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, saying why."""
-    files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.ResultLayout else {}
+    files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
     if obj.Status != "up to date" or not files:
         raise InputError("NO_PROGRAM", obj.Label, f"no program fits its inputs ({obj.Message or obj.Status})")
     return files

@@ -127,7 +127,7 @@ class Stage:
         self._busy = True
         try:
             key = self.key(obj)
-            if force or key != obj.Key or not obj.ResultLayout:
+            if force or key != obj.Key:
                 started = time.perf_counter()
                 outcome = self.compute(obj)
                 self._store(obj, outcome, key, time.perf_counter() - started)
@@ -146,10 +146,10 @@ class Stage:
 
     def value(self, obj: Any) -> Any:
         """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
-        if not obj.ResultLayout:
+        if not obj.Key:
             raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
         if self._kept is None or self._kept[0] != obj.Key:
-            self._kept = (obj.Key, store.unpack(obj.ResultData, obj.ResultLayout, obj.Label))
+            self._kept = (obj.Key, store.unpack(obj.ResultData, obj.ResultLayout, obj.Key, obj.Label))
         return self._kept[1]
 
     def key(self, obj: Any) -> str:
@@ -175,7 +175,7 @@ class Stage:
         return ""
 
     def _store(self, obj: Any, outcome: Outcome, key: str, seconds: float) -> None:
-        floats, text = store.pack(outcome.value)
+        floats, text = store.pack(outcome.value, key)
         obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
         obj.Issues = _issues_text(outcome.issues)
         for name, figure in outcome.figures:

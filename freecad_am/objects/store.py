@@ -25,24 +25,34 @@ _BYTES_PER_FLOAT = 6
 _DTYPES = ("float64", "int64", "bool")
 
 
-def pack(value: Any) -> tuple[list[float], str]:
-    """The floats and the text of a value. TypeError for what is not data."""
-    parts: list[NDArray[np.float64]] = []
-    text = json.dumps(_Packer(parts).tree(value), separators=(",", ":"))
-    return (np.concatenate(parts).tolist() if parts else []), text
+def pack(value: Any, key: str) -> tuple[list[float], str]:
+    """The floats and the text of a value, both marked with the key. TypeError for what is not data."""
+    packer = _Packer()
+    packer.put(np.array([_mark(key)]))
+    text = json.dumps(packer.tree(value), separators=(",", ":"))
+    return np.concatenate(packer.parts).tolist(), f"{key} {text}"
 
 
-def unpack(floats: list[float], text: str, where: str) -> Any:
-    """The value of `pack`; InputError 'BAD_RESULT' naming `where` for a damaged or unknown one."""
+def unpack(floats: list[float], text: str, key: str, where: str) -> Any:
+    """The value of `pack`; InputError 'BAD_RESULT' naming `where` for one that is damaged, unknown, or of another key.
+
+    While a step is undone, floats, text and key come back one after the other: for a moment they do not belong together.
+    """
     try:
-        return _Reader(np.array(floats, dtype=np.float64)).value(json.loads(text))
+        if not text.startswith(f"{key} ") or not floats or floats[0] != _mark(key):
+            raise ValueError("it belongs to other inputs")
+        return _Reader(np.array(floats, dtype=np.float64)).value(json.loads(text[len(key):]))
     except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error) as error:
         raise InputError("BAD_RESULT", where, f"the stored result cannot be read ({error}); recompute it") from None
 
 
+def _mark(key: str) -> float:
+    return float(zlib.crc32(key.encode()))
+
+
 class _Packer:
-    def __init__(self, parts: list[NDArray[np.float64]]) -> None:
-        self.parts = parts
+    def __init__(self) -> None:
+        self.parts: list[NDArray[np.float64]] = []
         self.size = 0
 
     def tree(self, value: Any) -> Any:

@@ -125,6 +125,19 @@ class Person:
                 return
         raise AssertionError(f"no button {standard_button} is to be seen")
 
+    def will_answer(self, standard_button):
+        """Answer the question that the next step brings up; returns a list that then holds the question."""
+        asked = []
+
+        def answer():
+            dialog = self.widgets.QApplication.activeModalWidget()
+            if isinstance(dialog, self.widgets.QMessageBox):
+                asked.append(dialog.text())
+                dialog.button(getattr(self.widgets.QMessageBox, standard_button)).click()
+
+        self.core.QTimer.singleShot(500, answer)
+        return asked
+
     def panel_closed(self):
         self.until(lambda: not self.gui.Control.activeDialog(), "the panel to close")
 
@@ -161,6 +174,11 @@ class Person:
         rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
         return rows[:, : image.width(), 2::-1].reshape(-1, 3).astype(int)
 
+    def path_pixels(self):
+        """How many pixels have the colours of the first layers (blue) and of the last (yellow)."""
+        red, green, blue = self.picture().T
+        return int(((blue > red + 60) & (blue > green + 30)).sum()), int(((red > blue + 60) & (green > blue + 60)).sum())
+
     def screenshot(self, name):
         """The whole screen, kept where ROBOTIC_AM_PICTURES says."""
         folder = os.environ.get("ROBOTIC_AM_PICTURES")
@@ -173,6 +191,17 @@ class Person:
         """The text of the report view."""
         views = self.window.findChildren(self.widgets.QTextEdit)
         return "\n".join(view.toPlainText() for view in views if view.objectName() == "Report view")
+
+
+@pytest.fixture
+def hemisphere():
+    """A new document with a hemisphere of 45 mm radius, its label with a blank and accents."""
+    document = App.newDocument("Window")
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Label = "Hémisphère n° 1"
+    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    document.recompute()
+    return part
 
 
 @pytest.fixture

@@ -1,29 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From a selected hemisphere to a program by clicks."""
 
-import FreeCAD as App
 import numpy as np
+import pytest
 
 from freecad_am import api
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.gui import stage_panel
 
 
-def hemisphere(doc):
-    part = doc.addObject("Part::Sphere", "Hémisphère")
-    part.Label = "Hémisphère n° 1"
-    part.Radius, part.Angle1, part.Angle2, part.Angle3 = 45, 0, 90, 360
-    doc.recompute()
-    return part
-
-
-def coloured(pixels):
-    """How many pixels are of the hues of the colour ramp's ends: blue at the platform, yellow at the top."""
-    red, green, blue = pixels.T
-    return int(((blue > red + 60) & (blue > green + 30)).sum()), int(((red > blue + 60) & (green > blue + 60)).sum())
-
-
-def test_from_a_selected_shape_to_a_program_by_clicks(person):
-    doc = App.newDocument("Clicks")
-    part = hemisphere(doc)
+def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
+    part, doc = hemisphere, hemisphere.Document
 
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
@@ -32,6 +19,7 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person):
     person.press("Ok")
     person.panel_closed()
     assert [(obj.Label, obj.Limits, obj.Status) for obj in api.stages_of(doc)] == [("Cell", "paper", "up to date")]
+    assert api.result(doc.Cell) == CellParameters(limits="paper")  # no digit is lost in the panel
 
     person.select(part)
     person.click("RoboticAM_Feature")
@@ -48,8 +36,8 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person):
     person.press("Ok")
     person.panel_closed()
     assert doc.Toolpath.Layers == 15
-    part.ViewObject.Visibility = False
-    blue, yellow = coloured(person.picture())
+    assert not part.ViewObject.Visibility  # the path lies in its surface
+    blue, yellow = person.path_pixels()
     assert blue > 200 and yellow > 100, (blue, yellow)
     person.screenshot("toolpath")
 
@@ -74,6 +62,141 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person):
     text = person.field(panel, "text").toPlainText()
     assert text.startswith("/PROG") and text.encode("latin-1") in api.result(doc.Program).files["CUP.LS"].replace(b"\r", b"")
     person.screenshot("program_text")
-    person.press("Close")
-    person.panel_closed()
+    person.field(panel, "close").click()
     assert np.isfinite(api.result(doc.JointPath).motion.joints).all()
+
+
+def test_new_job_makes_all_stages_in_one_step_of_undo(person, hemisphere):
+    doc = hemisphere.Document
+    person.select(hemisphere, "Face1")
+    person.click("RoboticAM_NewJob")
+    person.screenshot("panel_new_job")
+    person.press("Ok")
+    person.panel_closed()
+    assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
+    assert doc.Feature.Source[1] == ["Face1"]
+    person.look()
+    person.screenshot("new_job")
+    undo = doc.UndoCount
+    person.gui.runCommand("Std_Undo")
+    assert api.stages_of(doc) == [] and doc.UndoCount == undo - 1
+    person.gui.runCommand("Std_Redo")
+    person.idle()
+    assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
+    assert min(person.path_pixels()) > 100
+
+
+def test_without_a_selection_the_panel_says_what_to_do(person, hemisphere):
+    doc = hemisphere.Document
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    assert "Select the shape" in person.panel_error(panel)
+    person.press("Ok")
+    assert "Source is missing" in person.panel_error(panel) and doc.UndoCount == 0
+    person.select(hemisphere)
+    person.field(panel, "UseSelection").click()
+    person.press("Ok")
+    person.panel_closed()
+    assert doc.Feature.Status == "up to date"
+
+
+def test_without_its_input_a_stage_says_what_to_make_first(person, hemisphere):
+    for command, name, word in (
+        ("Toolpath", "Toolpath", "feature"), ("JointPath", "JointPath", "toolpath"), ("Program", "Program", "joint path"),
+    ):
+        person.click(f"RoboticAM_{command}")
+        panel = person.panel(f"RoboticAM_{name}")
+        assert f"There is no {word} in this document" in person.panel_error(panel)
+        person.press("Ok")
+        assert "missing" in person.panel_error(panel)
+        person.press("Cancel")
+        person.panel_closed()
+    assert api.stages_of(hemisphere.Document) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("LayerHeight", "-1 mm", "more than 0 mm"),
+        ("LayerHeight", "rubbish", "'rubbish' is not understood"),
+        ("LayerHeight", "3 deg", "not understood"),
+        ("LayerHeight", "500 mm", "layer"),
+    ],
+)
+def test_what_is_wrong_is_told_in_the_panel_and_nothing_is_made(person, hemisphere, name, text, message):
+    doc = hemisphere.Document
+    person.select(hemisphere)
+    person.click("RoboticAM_Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    person.type(panel, name, text)
+    person.press("Ok")
+    if text == "500 mm":  # only the layers know that it is too much
+        person.panel_closed()
+        person.click("RoboticAM_Toolpath")
+        panel = person.panel("RoboticAM_Toolpath")
+        person.press("Ok")
+        assert doc.getObject("Toolpath") is None
+    else:
+        assert doc.getObject("Feature") is None and doc.UndoCount == 0
+    assert message in person.panel_error(panel)
+    person.screenshot("panel_error")
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_a_double_click_changes_parameters_in_one_step_of_undo(person, hemisphere):
+    doc = hemisphere.Document
+    cell = api.make_cell(doc)
+    feature = api.make_feature(doc, hemisphere, layer_height=5)
+    toolpath = api.make_toolpath(doc, feature, cell)
+    keys = [obj.Key for obj in (feature, toolpath)]
+    person.double_click(feature)
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    person.type(panel, "LayerHeight", "10 mm")
+    person.choose(panel, "Spacing", "iso-height")
+    person.press("Ok")
+    person.panel_closed()
+    assert (feature.LayerHeight.Value, feature.Spacing, toolpath.Status) == (10.0, "iso-height", "up to date")
+    fewer = toolpath.Layers
+    assert fewer < 10 and len(api.result(toolpath).layers) == fewer
+    person.gui.runCommand("Std_Undo")
+    assert (feature.LayerHeight.Value, feature.Spacing, toolpath.Layers) == (5.0, "arc-length", 15)
+    assert [obj.Key for obj in (feature, toolpath)] == keys and toolpath.Status == "up to date"
+    assert len(api.result(toolpath).layers) == 15
+    person.gui.runCommand("Std_Redo")
+    assert (toolpath.Layers, toolpath.Status) == (fewer, "up to date")
+
+
+def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(person, hemisphere):
+    doc = hemisphere.Document
+    stages = api.make_all(doc, hemisphere)
+    steps, keys = doc.UndoCount, [obj.Key for obj in stages]
+    for obj in stages:
+        stage_panel.edit(obj)
+        panel = person.panel(f"RoboticAM_{type(obj.Proxy).__name__}")
+        assert "up to date" in person.field(panel, "findings").text()
+        for fold in panel.findChildren(person.widgets.QToolButton):
+            if fold.objectName().startswith("Fold"):
+                fold.setChecked(True)
+        person.screenshot(f"edit_{obj.Name}")
+        person.press("Ok")
+        person.panel_closed()
+    assert doc.UndoCount == steps and [obj.Key for obj in stages] == keys
+
+
+def test_deleting_an_input_is_told_by_what_follows(person, hemisphere):
+    doc = hemisphere.Document
+    api.make_all(doc, hemisphere)
+    person.select(doc.Toolpath)
+    asked = person.will_answer("Yes")
+    person.gui.runCommand("Std_Delete")
+    person.idle()
+    assert len(asked) == 1 and "Joint path" in asked[0]  # FreeCAD's own question
+    assert doc.getObject("Toolpath") is None
+    assert doc.JointPath.Status == "failed" and "Toolpath is missing" in doc.JointPath.Message
+    doc.recompute()
+    assert (doc.JointPath.Status, doc.Program.Status) == ("failed", "failed")
+    person.gui.runCommand("Std_Undo")
+    doc.recompute()
+    assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5

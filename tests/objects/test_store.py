@@ -39,16 +39,16 @@ def equal(one, other):
 @pytest.mark.parametrize("seed", range(5))
 def test_toolpaths_come_back(seed):
     path = toolpath(seed)
-    floats, text = store.pack(path)
+    floats, text = store.pack(path, "k")
     assert all(type(number) is float for number in floats)
-    assert equal(store.unpack(floats, text, "x"), path)
+    assert equal(store.unpack(floats, text, "k", "x"), path)
 
 
 @pytest.mark.parametrize("length", [0, 1, 5, 6, 7, 1000, 100_003])
 def test_bytes_come_back(length):
     data = np.random.default_rng(length).integers(0, 256, length, dtype=np.uint8).tobytes()
     files = {"A.LS": data, "é.LS": b""}
-    assert store.unpack(*store.pack(files), "x") == files
+    assert store.unpack(*store.pack(files, "k"), "k", "x") == files
 
 
 def test_special_numbers_and_types_come_back():
@@ -56,25 +56,35 @@ def test_special_numbers_and_types_come_back():
         np.array([np.nan, -0.0, np.inf, -np.inf, 5e-324, 0.1]), np.array([True, False]), np.array([2**53, -1]),
         np.zeros((0, 3)), np.arange(6.0).reshape(3, 2)[:, ::-1], None, True, 3, 0.1, "ü", (), np.float64(2.5),
     )
-    back = store.unpack(*store.pack(values), "x")
+    back = store.unpack(*store.pack(values, "k"), "k", "x")
     assert equal(back[:5], tuple(np.ascontiguousarray(v) for v in values[:5]))
     assert back[5:] == (None, True, 3, 0.1, "ü", (), 2.5)
 
 
 def test_a_document_cannot_name_what_is_called():
-    for name in ("os:system", ".api:open_part", ".core.issues:InputError", ".batch.host:find_freecad", ".objects.store:pack"):
+    floats, _ = store.pack((), "k")
+    ours = (".api:open_part", ".core.issues:InputError", ".batch.host:find_freecad", ".objects.store:pack")
+    for name in ("os:system", *ours):
         with pytest.raises(InputError, match="recompute"):
-            store.unpack([], json.dumps({"c": name, "v": {}}), "x")
+            store.unpack(floats, "k " + json.dumps({"c": name, "v": {}}), "k", "x")
 
 
 def test_damaged_results_are_told():
-    floats, text = store.pack(toolpath())
-    for bad in ((floats[:-1], text), (floats, text[:-1]), (floats, "{}"), ([float("nan")] * len(floats), text)):
+    floats, text = store.pack(toolpath(), "k")
+    for bad in ((floats[:-1], text), (floats, text[:-1]), (floats, "k {}"), ([float("nan")] * len(floats), text)):
         with pytest.raises(InputError) as caught:
-            store.unpack(*bad, "My path")
+            store.unpack(*bad, "k", "My path")
         assert caught.value.code == "BAD_RESULT" and caught.value.where == "My path"
+
+
+def test_parts_of_two_results_do_not_pass_for_one():
+    (one, one_text), (other, other_text) = store.pack((1.0,), "a" * 32), store.pack((2.0,), "b" * 32)
+    assert store.unpack(one, one_text, "a" * 32, "x") == (1.0,)
+    for mixed in ((other, one_text, "a" * 32), (one, other_text, "a" * 32), (one, one_text, "b" * 32)):
+        with pytest.raises(InputError, match="other inputs"):
+            store.unpack(*mixed, "x")
 
 
 def test_what_is_no_data_is_refused():
     with pytest.raises(TypeError):
-        store.pack(object())
+        store.pack(object(), "k")

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files show everything at once when they are opened, wherever they were made."""
+
+import subprocess
+
+import FreeCAD as App
+import numpy as np
+
+from freecad_am import api
+
+HEADLESS = """
+import sys
+sys.path.insert(0, {root!r})
+from freecad_am.batch import host
+host.find_freecad()
+import FreeCAD as App, Part
+from freecad_am import api
+document = App.newDocument("Made")
+part = document.addObject("Part::Feature", "Part")
+part.Shape = Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)
+stages = api.make_all(document, part)
+assert len(stages) == 5
+document.saveAs({path!r})
+"""
+
+
+def columns(document):
+    motion = api.result(document.JointPath).motion
+    beads = [bead.points for _, _, bead in api.result(document.Toolpath)]
+    return [motion.joints, motion.position, motion.duration, *beads], api.result(document.Program).files
+
+
+def assert_shown(person, document):
+    for obj in api.stages_of(document):
+        assert obj.ViewObject.Proxy is not None and obj.ViewObject.Visibility, obj.Label
+        assert obj.Status == "up to date" and "Touched" not in obj.State
+    blue, yellow = person.path_pixels()
+    assert blue > 200 and yellow > 100, (blue, yellow)
+
+
+def test_saved_closed_and_opened_again(person, hemisphere, tmp_path):
+    document = hemisphere.Document
+    api.make_all(document, hemisphere)
+    document.Toolpath.ViewObject.ShowDirections = True
+    arrays, files = columns(document)
+    assert_shown(person, document)
+    path = str(tmp_path / "Été en ville.FCStd")
+    document.saveAs(path)
+    App.closeDocument(document.Name)
+    again = App.openDocument(path)
+    person.idle(0.4)
+    assert again.Toolpath.ViewObject.ShowDirections
+    assert_shown(person, again)
+    person.screenshot("reopened")
+    arrays_again, files_again = columns(again)
+    assert files_again == files
+    for one, other in zip(arrays, arrays_again, strict=True):
+        assert np.array_equal(one, other, equal_nan=True)
+
+
+def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path):
+    path = str(tmp_path / "made.FCStd")
+    code = HEADLESS.format(root=str(root), path=path)
+    subprocess.run(["/usr/bin/python3", "-c", code], check=True, stdin=subprocess.DEVNULL)
+    document = App.openDocument(path)
+    person.idle(0.4)
+    assert_shown(person, document)
+    person.double_click(document.Feature)
+    person.panel("RoboticAM_RevolutionFeature")
+    person.press("Cancel")
+    person.panel_closed()
+    document.saveAs(str(tmp_path / "again.FCStd"))
+    App.closeDocument(document.Name)
+    assert_shown(person, App.openDocument(str(tmp_path / "again.FCStd")))
+
+
+def test_directions_and_infeasible_points_are_drawn_on_demand(person, hemisphere):
+    document = hemisphere.Document
+    cell = api.make_cell(document, limits="paper")
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+
+    def pixels(colour):
+        return int((np.abs(person.picture() - np.array(colour)).max(axis=1) < 25).sum())
+
+    assert pixels((219, 51, 140)) == 0
+    toolpath.ViewObject.ShowDirections = True
+    assert pixels((219, 51, 140)) > 100
+    person.screenshot("directions")
+    toolpath.ViewObject.ShowDirections = False
+    joint_path = api.make_joint_path(document, toolpath, cell, method="constant")
+    assert joint_path.Status == "infeasible" and joint_path.Message
+    assert pixels((230, 26, 51)) > 20
+    person.screenshot("infeasible")
