@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 from ..geometry import frames
 from ..geometry.frames import Array
 
-
 # poses done together: what they need stays in the processor's cache
 PIECE = 1024
 

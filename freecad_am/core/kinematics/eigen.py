@@ -12,32 +12,51 @@ import numpy as np
 
 from ..geometry.frames import Array
 
+# fewer matrices than this are done faster one at a time
+MANY = 400
 ITERATIONS = 60
 TOLERANCE = 1e-10
 
 
 def extremes(matrices: Array) -> tuple[Array, Array]:
     """The smallest and largest eigenvalues (n,) of positive semidefinite matrices (k, k, n), to about 1e-15 of the
-    largest. NaN where a matrix has one."""
-    size = len(matrices)
+    largest."""
+    if matrices.shape[2] < MANY:
+        values = np.linalg.eigvalsh(matrices.transpose(2, 0, 1))
+        return np.asarray(values[:, 0]), np.asarray(values[:, -1])
     diagonal, squares = _tridiagonal(matrices)
     trace = diagonal.sum(axis=0)
     scale = 1.0 / np.where(trace > 0.0, trace, 1.0)
     diagonal *= scale
     squares *= scale * scale
     roots = np.zeros((2, matrices.shape[2]))
-    roots[1] = np.where(np.isnan(trace), np.nan, 1.0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for _ in range(ITERATIONS):
-            value, slope, curve = _polynomial(diagonal, squares, roots)
-            radicand = (size - 1) * ((size - 1) * slope * slope - size * value * curve)
-            divisor = slope + np.copysign(np.sqrt(np.maximum(radicand, 0.0)), slope)
-            step = size * value / np.where(divisor == 0.0, 1.0, divisor)
-            roots -= step
-            if not (np.abs(step) > TOLERANCE).any():
-                break
-    roots[0, np.isnan(trace)] = np.nan
-    return roots[0] / scale, roots[1] / scale
+    roots[1] = 1.0
+    _iterate(diagonal, squares, roots)
+    roots /= scale
+    return roots[0], roots[1]
+
+
+def _iterate(diagonal: Array, squares: Array, roots: Array) -> None:
+    """Laguerre's iteration from starts outside all roots (2, n) to the nearest ones, in place."""
+    size = len(diagonal)
+    current, places = roots.copy(), np.arange(roots.shape[1])
+    for _ in range(ITERATIONS):
+        value, slope, curve = _polynomial(diagonal, squares, current)
+        radicand = ((size - 1) ** 2 * slope) * slope
+        radicand -= (size * (size - 1) * value) * curve
+        slope += np.copysign(np.sqrt(np.maximum(radicand, 0.0)), slope)
+        step = size * value / np.where(slope == 0.0, 1.0, slope)
+        current -= step
+        going = (np.abs(step) > TOLERANCE).any(axis=0)
+        left = np.count_nonzero(going)
+        if 2 * left < len(places):
+            # most are there: go on with the others alone
+            roots[:, places] = current
+            if not left:
+                return
+            current, places = current[:, going], places[going]
+            diagonal, squares = diagonal[:, going], squares[:, going]
+    roots[:, places] = current
 
 
 def _tridiagonal(matrices: Array) -> tuple[Array, Array]:
@@ -57,7 +76,8 @@ def _tridiagonal(matrices: Array) -> tuple[Array, Array]:
         product = np.einsum("ijn,jn->in", inner, column) * inverse
         product -= (0.5 * inverse * np.einsum("in,in->n", product, column)) * column
         update = column[:, None] * product
-        rest = inner - update - update.transpose(1, 0, 2)
+        rest = inner - update
+        rest -= update.transpose(1, 0, 2)
     diagonal[-2:] = rest[0, 0], rest[1, 1]
     squares[-1] = np.square(rest[1, 0])
     return diagonal, squares

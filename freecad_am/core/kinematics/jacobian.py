@@ -81,14 +81,15 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
     def of_piece(scaled: Array, piece: slice) -> Array:
         change = _rate(scaled, rates[:, piece])
         values, vectors = np.linalg.eigh(np.einsum("ikn,jkn->nij", scaled, scaled))
-        relative = []
+        halves = []
         for which in (0, -1):
             left = np.ascontiguousarray(vectors[:, :, which].T)
             # d(sigma^2) = 2 u^T dJ J^T u
             product = np.einsum("in,ikn->kn", left, change) * np.einsum("in,ikn->kn", left, scaled)
-            relative.append(product.sum(axis=0) / values[:, which])
+            halves.append(product.sum(axis=0))
+        low, high = values[:, 0], values[:, -1]
         with np.errstate(invalid="ignore", divide="ignore"):
-            result: Array = np.sqrt(values[:, 0] / values[:, -1]) * (relative[0] - relative[1])
+            result: Array = np.sqrt(low / high) * (halves[0] / low - halves[1] / high)
         return result
 
     return _in_pieces(of_piece, jacobians, length, with_slice=True)
@@ -96,21 +97,32 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
 
 def manipulability(jacobians: ArrayLike, length: float) -> Array:
     """sqrt(det(J J^T)) (n,) of Jacobians (n, 6, 6) with translation rows divided by `length` mm; Yoshikawa 1985."""
-    result: Array = np.abs(np.linalg.det(np.asarray(jacobians, float))) / length**3
-    return result
+
+    def of_piece(scaled: Array) -> Array:
+        result: Array = np.abs(np.linalg.det(scaled.transpose(2, 0, 1)))
+        return result
+
+    return _in_pieces(of_piece, jacobians, length)
 
 
 def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
     """The derivative (n,) of `manipulability` when the joints move with `rates` (n, 6), rad per unit of the parameter.
 
-    Jacobi's formula, d det J = det J tr(J^-1 dJ). NaN where J is singular.
+    Jacobi's formula, d det J = det J tr(J^-1 dJ). NaN where J is singular, and so the manipulability has a kink.
     """
-    matrices = np.asarray(jacobians, float)
-    change = _rate(np.moveaxis(matrices, 0, -1), np.asarray(rates, float).T).transpose(2, 0, 1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        relative = np.einsum("nij,nji->n", np.linalg.inv(matrices), change)
-    result: Array = manipulability(matrices, length) * relative
-    return result
+    rates = np.asarray(rates, float).T
+
+    def of_piece(scaled: Array, piece: slice) -> Array:
+        matrices = np.ascontiguousarray(scaled.transpose(2, 0, 1))
+        size = np.abs(np.linalg.det(matrices))
+        singular = size == 0.0
+        matrices[singular] = np.eye(6)
+        relative: Array = np.einsum("nij,jin->n", np.linalg.inv(matrices), _rate(scaled, rates[:, piece]))
+        relative[singular] = np.nan
+        relative *= size
+        return relative
+
+    return _in_pieces(of_piece, jacobians, length, with_slice=True)
 
 
 def _in_pieces(function: Callable[..., Array], jacobians: ArrayLike, length: float, with_slice: bool = False) -> Array:
@@ -121,7 +133,12 @@ def _in_pieces(function: Callable[..., Array], jacobians: ArrayLike, length: flo
         piece = slice(start, min(start + PIECE, len(result)))
         scaled = np.array(matrices[:, :, piece], order="C")
         scaled[:3] *= 1.0 / length
+        unknown = np.isnan(np.einsum("ijn->n", scaled))
+        if unknown.any():
+            # LAPACK takes no NaN: anything stands in for it
+            scaled[:, :, unknown] = np.eye(*scaled.shape[:2])[:, :, None]
         result[piece] = function(scaled, piece) if with_slice else function(scaled)
+        result[piece][unknown] = np.nan
     return result
 
 
@@ -150,7 +167,7 @@ def _frobenius(matrices: Array) -> Array:
         wrist += _product(left, carried)
         squares = [_squared_norm(block) for block in (arm, right, left, wrist)]
         bound = 1.0 / np.sqrt(_squared_norm(matrices) * sum(squares))
-    bound[np.isnan(bound) & ~np.isnan(matrices).any(axis=(0, 1))] = 0.0
+    bound[np.isnan(bound)] = 0.0
     return bound
 
 

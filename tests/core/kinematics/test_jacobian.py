@@ -92,6 +92,28 @@ def test_bound_is_below_the_condition_and_near_it(chain):
     assert (wanted <= 6.0 * bound * (1.0 + 1e-6)).all()
 
 
+def test_rate_of_manipulability(chain):
+    q, points = joints_and_points(chain, 300)
+    rates = np.random.default_rng(2).standard_normal(q.shape)
+    step = 1e-6
+    there = []
+    for t in (-step, step):
+        moved = q + t * rates
+        jacobians = jac.jacobian(chain, moved, carried(chain, q, points, moved)[0])
+        there.append(np.prod(singular_values(jacobians), axis=1))
+    wanted = (there[1] - there[0]) / (2 * step)
+    got = jac.manipulability_rate(jac.jacobian(chain, q, points), rates, LENGTH)
+    assert np.abs(got - wanted).max() < 1e-7
+
+
+def test_rates_where_the_arm_is_singular_to_the_last_bit_are_not_numbers():
+    flat = np.zeros((2, 6, 6))
+    flat[1] = np.eye(6)
+    rates = np.ones((2, 6))
+    assert np.isnan(jac.manipulability_rate(flat, rates, LENGTH)).tolist() == [True, False]
+    assert np.isnan(jac.condition_rate(flat, rates, LENGTH)).tolist() == [True, False]
+
+
 def test_rate_is_the_derivative_along_the_joints(chain):
     q, points = joints_and_points(chain, 300)
     rates = np.random.default_rng(2).standard_normal(q.shape)
@@ -132,6 +154,22 @@ def test_manipulability(chain):
     assert np.abs(jac.manipulability(jacobians, LENGTH) - wanted).max() < 1e-12 * wanted.max()
 
 
+def test_unreachable_poses_are_nan_and_spoil_no_other():
+    arm = machine.load("fanuc-arcmate120ic")
+    q, points = joints_and_points(arm.chain, 2 * eigen.MANY)
+    q[7] = np.nan
+    for count in (20, 2 * eigen.MANY):
+        jacobians = jac.jacobian(arm.chain, q[:count], points[:count])
+        others = np.delete(np.arange(count), 7)
+        for measure in (jac.condition, jac.condition_bound, jac.manipulability):
+            got = measure(jacobians, LENGTH)
+            assert np.isnan(got[7])
+            assert np.abs(got[others] - measure(jacobians[others], LENGTH)).max() < 1e-9
+        for measure in (jac.condition_rate, jac.manipulability_rate):
+            rate = measure(jacobians, np.ones((count, 6)), LENGTH)
+            assert np.isnan(rate[7]) and np.isfinite(rate[others]).all()
+
+
 def test_extreme_eigenvalues_of_awkward_matrices():
     """Double, vanishing and far apart eigenvalues, in any turn of the axes."""
     rng = np.random.default_rng(12)
@@ -143,6 +181,7 @@ def test_extreme_eigenvalues_of_awkward_matrices():
     turns = np.concatenate((np.eye(6)[None], np.linalg.qr(rng.standard_normal((40, 6, 6)))[0]))
     for spectrum in spectra:
         matrices = turns @ (np.array(spectrum)[:, None] * turns.transpose(0, 2, 1))
-        low, high = eigen.extremes(np.ascontiguousarray(matrices.transpose(1, 2, 0)))
+        many = np.tile(matrices.transpose(1, 2, 0), eigen.MANY // len(turns) + 1)
+        low, high = eigen.extremes(many)
         assert np.abs(low - min(spectrum)).max() <= 1e-9 * sum(spectrum)
         assert np.abs(high - max(spectrum)).max() <= 1e-9 * sum(spectrum)
