@@ -1,41 +1,69 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Started by the launcher: looks whether this Python serves, and runs the command in the same process.
 
-Ends with status 97 when FreeCAD, numpy, scipy or yaml is missing, so that the launcher tries the next Python. Runs in
-plain Python and in freecadcmd, which imports a script as a module, may run it twice after an exception and ends
-with 0 then: nothing is let out of here.
+Where FreeCAD, numpy, scipy or yaml is missing it hands over to the next Python of FREECAD_AM_NEXT. Runs in plain
+Python and in freecadcmd, which imports a script as a module, may run it twice after an exception and ends with 0
+then: nothing is let out of here.
 """
 
 import os
+import runpy
 import sys
 
-UNFIT = 97
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+NOBODY = 2
+SCRIPTS = {"test": os.path.join("tests", "run.py"), "bench": os.path.join("bench", "run.py")}
 
 
 def arguments():
-    """The words after the script, however the host passes them."""
-    return sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv and "FREECAD_AM_ROOT" in os.environ else sys.argv[1:]
+    """The words after the script; freecadcmd leaves only what follows a double dash to it."""
+    return sys.argv[sys.argv.index("--") + 1 :] if "FREECAD_AM_HOSTED" in os.environ else sys.argv[1:]
+
+
+def hand_over(missing, words):
+    """Go on in the next Python of the list; the exit status where there is none left."""
+    others = os.environ.get("FREECAD_AM_NEXT", "").split("\n")[1:]
+    if not others:
+        print(
+            f"error[NO_FREECAD] freecad-am: no Python here has FreeCAD, numpy, scipy and yaml (the last one tried lacks "
+            f"{', '.join(missing)}); on Debian: apt-get install freecad python3-scipy python3-yaml, else name a Python in "
+            "FREECAD_AM_PYTHON",
+            file=sys.stderr,
+        )
+        return NOBODY
+    script = os.path.join(HERE, "boot.py")
+    environment = {**os.environ, "FREECAD_AM_NEXT": "\n".join(others)}
+    hosted = os.path.basename(others[0]).lower().startswith("freecad")
+    command = [others[0], script, *(["--"] if hosted else []), *words]
+    if hosted:
+        environment["FREECAD_AM_HOSTED"] = "1"
+    os.execvpe(others[0], command, environment)
 
 
 def run(words):
-    """The exit status of a command, UNFIT when this Python cannot run it."""
-    folder = os.path.dirname(os.path.abspath(__file__))
-    sys.path[:] = [ROOT] + [entry for entry in sys.path if os.path.abspath(entry or ".") != folder]
-    sys.dont_write_bytecode = sys.dont_write_bytecode or not os.access(folder, os.W_OK)
+    """The exit status of a command."""
+    sys.path[:] = [ROOT] + [entry for entry in sys.path if os.path.abspath(entry or ".") != HERE]
+    if not os.access(HERE, os.W_OK):
+        sys.dont_write_bytecode = True
     from freecad_am.batch import host
 
-    if host.missing_modules():
-        return UNFIT
+    missing = host.missing_modules()
+    if missing:
+        return hand_over(missing, words)
     if words[:1] == ["ready"]:
         import importlib.util
 
         return 0 if importlib.util.find_spec("PyKDL") else 1
-    from freecad_am.batch import cli
-
+    if words[:1] and words[0] in SCRIPTS:
+        sys.argv[:] = [os.path.join(ROOT, SCRIPTS[words[0]]), *words[1:]]
+        runpy.run_path(sys.argv[0], run_name="__main__")
+        return 0
     if words[:1] == ["demo"]:
         example = os.path.join(ROOT, "resources", "examples", "hemisphere.yaml")
         words = ["plan", example, "-o", os.path.join("out", "hemisphere"), *words[1:]]
+    from freecad_am.batch import cli
+
     return cli.main(words)
 
 
@@ -44,6 +72,8 @@ def main():
     status = 1
     try:
         status = run(arguments())
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else int(end.code is not None)
     except KeyboardInterrupt:
         status = 130
     except BaseException:  # freecadcmd would run the script again
