@@ -161,8 +161,7 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
         raise InputError("NO_WALL", label, f"it is solid and has no {wall} wall; use wall: outer")
     if wall == "inner":
         return walls[-1], contour.meridian_of(walls[-1])
-    outer, inner = contour.meridian_of(walls[0]), contour.meridian_of(walls[-1])
-    return walls[0] + walls[-1], Meridian.chained(contour.halfway(outer, inner))
+    return walls[0] + walls[-1], Meridian.chained(contour.halfway(walls[0], walls[-1]))
 
 
 def _step_notes(chain: Chain, label: str) -> list[Issue]:

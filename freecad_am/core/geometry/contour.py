@@ -163,21 +163,32 @@ def meridian_of(chain: Chain) -> Meridian:
     return Meridian.chained([(piece.points, piece.tangents) for piece in chain])
 
 
-def halfway(outer: Meridian, inner: Meridian) -> list[tuple[Array, Array]]:
+def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
     """The wall in the middle: halfway between the points of the two that lie at the same share of their lengths.
 
-    Where both have as many kinks, shares count from kink to kink. Between parallel walls this is the parallel curve in
-    the middle. Returns pieces (points, tangents).
+    Where both have as many pieces, shares count from piece to piece, else from kink to kink, else over the whole.
+    Between parallel walls this is the parallel curve in the middle. Returns pieces (points, tangents).
     """
-    bounds = [np.r_[0.0, curve.kinks, curve.length] for curve in (outer, inner)]
+    curves = meridian_of(outer), meridian_of(inner)
+    if len(outer) == len(inner):
+        bounds = [_piece_ends(chain, curve) for chain, curve in zip((outer, inner), curves, strict=True)]
+    else:
+        bounds = [np.r_[0.0, curve.kinks, curve.length] for curve in curves]
     if len(bounds[0]) != len(bounds[1]):
-        shares = np.union1d(bounds[0] / outer.length, bounds[1] / inner.length)
+        ends = [at / at[-1] for at in bounds]
+        shares = np.union1d(*ends)
         shares = shares[np.r_[True, np.diff(shares) > 1e-9]]
-        bounds = [shares * outer.length, shares * inner.length]
+        bounds = [shares * curve.length for curve in curves]
     return [
-        _between((outer, inner), (bounds[0][i], bounds[1][i]), (bounds[0][i + 1], bounds[1][i + 1]))
+        _between(curves, (bounds[0][i], bounds[1][i]), (bounds[0][i + 1], bounds[1][i + 1]))
         for i in range(len(bounds[0]) - 1)
     ]
+
+
+def _piece_ends(chain: Chain, curve: Meridian) -> Array:
+    lengths = [float(arc_lengths(piece.points, piece.tangents).sum()) for piece in chain]
+    ends = np.r_[0.0, np.cumsum(lengths)]
+    return np.asarray(ends * (curve.length / ends[-1]))
 
 
 def _between(
@@ -192,8 +203,9 @@ def _between(
     share[-1] = 1.0
     points, tangents = np.zeros((len(share), 2)), np.zeros((len(share), 2))
     for curve, a, b in zip(curves, start, end, strict=True):
+        r, h, _ = curve.at(a + share * (b - a))
         # just inside, so that a kink at the start gives the tangent above it
-        r, h, t = curve.at(np.clip(a + share * (b - a), a + 2e-9, b))
+        _, _, t = curve.at(np.clip(a + share * (b - a), a + 2e-9, b))
         points += 0.5 * np.stack([r, h], axis=1)
         tangents += 0.5 * (b - a) * t
     size = np.linalg.norm(tangents, axis=1)
