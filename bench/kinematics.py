@@ -58,7 +58,8 @@ def run() -> list[Row]:
 def has_avx512() -> bool:
     """Whether numpy's loops use AVX-512 on this processor: without it the arc tangents are slower."""
     core = getattr(np, "_core", None) or np.core
-    return bool(core._multiarray_umath.__cpu_features__.get("AVX512_SKX", False))
+    found = core._multiarray_umath.__cpu_features__
+    return bool(found.get("AVX512_SKX") or found.get("X86_V4"))
 
 
 def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:

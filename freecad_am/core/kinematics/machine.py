@@ -215,16 +215,16 @@ def _check(machine: Machine, node: Node) -> None:
     if not (q == 0.0).all(axis=1).any():
         raise node.bad("the pose at all zeros is missing")
     wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
-    solvers = {"the joint frames": machine.chain.forward}
+    solvers = {"the joint frames give": machine.chain.forward}
     if machine.opw is not None:
-        solvers["opw"] = machine.opw.forward
-    for solver, forward in solvers.items():
+        solvers["opw gives"] = machine.opw.forward
+    for solver_gives, forward in solvers.items():
         off = np.abs(forward(q) - wanted)
         position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
         wrong = (position > POSITION_TOLERANCE) | (rotation > ROTATION_TOLERANCE)
         if wrong.any():
             index = int(np.argmax(wrong))
             raise poses[index].bad(
-                f"{solver} give{'' if ' ' in solver else 's'} a flange {position[index]:.6g} mm and "
+                f"{solver_gives} a flange {position[index]:.6g} mm and "
                 f"{rotation[index]:.3g} (largest entry of the rotation) from it; correct the geometry or the pose"
             )

@@ -77,6 +77,11 @@ class Node:
 
     def numbers(self, length: int) -> Array:
         """A list of finite numbers (length,)."""
+        if isinstance(self.value, list) and len(self.value) == length and {type(v) for v in self.value} <= {int, float}:
+            numbers = np.array(self.value, float)
+            if np.isfinite(numbers).all():
+                return numbers
+        # something is wrong: find which
         return np.array([item.number() for item in self.items(length)])
 
     def span(self) -> tuple[float, float]:
