@@ -7,7 +7,8 @@ import os
 import signal
 import sys
 import threading
-from typing import Any, Iterable
+from collections.abc import Iterable
+from typing import Any
 
 from freecad_am.core.issues import ERROR, Issue
 

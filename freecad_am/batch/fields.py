@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any, Iterable, TypeVar
+from collections.abc import Iterable
+from typing import Any, TypeVar
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
@@ -68,8 +69,8 @@ def text(value: Any, key: str) -> str:
 
 def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) -> Any:
     if spec.kind == f.GROUP:
-        factory = field.default_factory
-        return factory() if value is None else build(factory, value, key)  # type: ignore[misc, arg-type]
+        factory: Any = field.default_factory
+        return factory() if value is None else build(factory, value, key)
     if spec.optional and value in (None, {}):
         return None
     if isinstance(value, str) and value in spec.words:

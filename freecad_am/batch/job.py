@@ -114,7 +114,8 @@ def _name(value: Any, path: str) -> str:
         value = str(value)
     name = fields.text(value, "name").strip()
     if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
-        raise InputError("BAD_NAME", "name", f"{quantity.shown(name)} names files; use no slash, control sign or leading dot")
+        shown = quantity.shown(name)
+        raise InputError("BAD_NAME", "name", f"{shown} names files; use no slash, control sign or leading dot")
     if len(name.encode()) > _LONGEST_NAME:
         raise InputError("BAD_NAME", "name", f"the name is too long for a file; use at most {_LONGEST_NAME} letters")
     return name
@@ -128,7 +129,8 @@ def _part(section: dict[str, Any], path: str) -> PartSource:
     is_document = file.lower().endswith(".fcstd")
     for key in ("object", "set"):
         if section.get(key) is not None and not is_document:
-            raise InputError("BAD_VALUE", f"part.{key}", f"only an FCStd part has objects, {os.path.basename(file)} has none")
+            message = f"only an FCStd part has objects, {os.path.basename(file)} has none"
+            raise InputError("BAD_VALUE", f"part.{key}", message)
     if not os.path.isfile(file):
         raise InputError("NO_FILE", "part.file", f"there is no file {file}; paths are relative to the job file")
     name = section.get("object")

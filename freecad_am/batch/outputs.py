@@ -9,7 +9,8 @@ import shutil
 import signal
 import tempfile
 import threading
-from typing import Any, Iterable, Iterator
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 from freecad_am.core.issues import InputError
 
@@ -88,7 +89,8 @@ class Outputs:
 
     def _unwritable(self, path: str, error: Exception) -> InputError:
         reason = getattr(error, "strerror", None) or str(error)
-        return InputError("UNWRITABLE", path, f"outputs cannot be written here ({reason}); free it or choose another folder with -o")
+        message = f"outputs cannot be written here ({reason}); free it or choose another folder with -o"
+        return InputError("UNWRITABLE", path, message)
 
     def _make_folder(self) -> None:
         missing = []
@@ -97,8 +99,12 @@ class Outputs:
             missing.append(path)
             path = os.path.dirname(path)
         for path in reversed(missing):
-            os.mkdir(path)
-            self._made.append(path)
+            try:
+                os.mkdir(path)
+                self._made.append(path)
+            except FileExistsError:
+                if not os.path.isdir(path):  # else another row of the batch was quicker
+                    raise
 
     def _remove_made(self) -> None:
         for path in reversed(self._made):
@@ -140,10 +146,9 @@ def _earlier_report(folder: str) -> dict[str, Any] | None:
             report = json.load(stream)
     except (OSError, ValueError):
         return None
-    ours = isinstance(report, dict) and isinstance(report.get("programs"), list) and "issues" in report
-    if not ours or not isinstance(report.get("name"), str) or os.sep in report["name"]:
-        return None
-    return report
+    if not isinstance(report, dict) or not isinstance(report.get("programs"), list) or "issues" not in report:
+        return None  # somebody else's
+    return report if isinstance(report.get("name"), str) and os.sep not in report["name"] else None
 
 
 def _listed(folder: str) -> list[str]:

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
-from typing import Any, Iterable
+from typing import Any
 
 from freecad_am.core.kinematics.limits import Limits
 from freecad_am.core.motion import Motion
@@ -34,17 +35,22 @@ header{display:flex;align-items:center;gap:14px;flex-wrap:wrap}.sub{color:var(--
 .status.infeasible,.status.failed{background:var(--bad)}@media(prefers-color-scheme:dark){.status{color:#11151c}}
 .cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(125px,1fr));gap:10px;margin:0 0 16px}
 .card,figure,.table{background:var(--paper);border:1px solid var(--line);border-radius:10px}
-.card{padding:10px 12px}.card b{display:block;font-size:18px;white-space:nowrap;font-weight:600}.card span{color:var(--soft);font-size:13px}
-figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(400px,1fr));gap:10px}
+.card{padding:10px 12px}.card b{display:block;font-size:18px;white-space:nowrap;font-weight:600}
+.card span{color:var(--soft);font-size:13px}
+figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(400px,100%),1fr));gap:10px}
 figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}.table{overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
 th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
 tr:first-child>*{border-top:0}th{color:var(--soft);font-weight:500}th:first-child,td:first-child{text-align:left}
 td.text{text-align:left;white-space:normal}.error{color:var(--bad);font-weight:600}.warning{color:var(--warn);font-weight:600}
 svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px system-ui,sans-serif}
-svg .title{fill:var(--ink);font-size:13px;font-weight:600}svg .grid{stroke:var(--line)}svg .frame{fill:none;stroke:var(--soft);opacity:.5}
-svg .curve{fill:none;stroke-linejoin:round}svg .forbidden{fill:var(--bad);opacity:.13}svg .limit{stroke:var(--bad);stroke-dasharray:5 4}
-svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
+svg .title{fill:var(--ink);font-size:13px;font-weight:600}
+svg .grid{stroke:var(--line)}
+svg .frame{fill:none;stroke:var(--soft);opacity:.5}
+svg .curve{fill:none;stroke-linejoin:round}svg .forbidden{fill:var(--bad);opacity:.13}
+svg .limit{stroke:var(--bad);stroke-dasharray:5 4}
+svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}
+svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
 svg .far{stroke-width:1.2;opacity:.6}svg .direction{stroke:var(--ink);stroke-width:1.1;opacity:.6}
 svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-side{fill:var(--soft);opacity:.55}
 """
@@ -121,7 +127,8 @@ def _joints(content: Content) -> list[str]:
     names = content.limits.labels[: content.limits.axes]
     sections = [f'<h2>Joints against their limits</h2><div class="grid">{plots}</div>', _joint_table(content)]
     if content.motion.reachable.any():
-        sections.append(f"<h2>Speed and condition</h2><figure>{figures.speed_plot(content.motion, content.speed_ratio, names)}</figure>")
+        plot = figures.speed_plot(content.motion, content.speed_ratio, names)
+        sections.append(f"<h2>Speed and condition</h2><figure>{plot}</figure>")
     if content.condition is not None and content.threshold is not None:
         plot = figures.condition_plot(content.motion, content.condition, content.threshold)
         sections.append(f'<figure style="margin-top:10px">{plot}</figure>')

@@ -67,7 +67,8 @@ def _set(document: Any, name: str, key: str, text: str) -> None:
         near = ", ".join(sorted(obj.PropertiesList))
         raise InputError("BAD_VALUE", place, f"{name} has no property {key!r}; it has {near}") from None
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
-        raise InputError("BAD_VALUE", place, f"{text!r} does not fit this property; give a value such as it has now") from None
+        message = f"{text!r} does not fit this property; give a value such as it has now"
+        raise InputError("BAD_VALUE", place, message) from None
 
 
 def _typed(now: Any, text: str) -> Any:

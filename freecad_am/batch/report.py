@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -51,7 +52,7 @@ def build(
 def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float) -> None:
     """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
     branch = opw.branch_index(planned.branch)
-    others = [dict(entry) for entry in planned.comparison]
+    others: list[dict[str, Any]] = [dict(entry) for entry in planned.comparison]
     report["joints"] = {
         "method": planned.method,
         "objective": planned.objective,

@@ -13,7 +13,8 @@ import multiprocessing.connection
 import os
 import signal
 import sys
-from typing import Any, Iterable
+from collections.abc import Iterable
+from typing import Any
 
 from freecad_am.core.issues import AmError, Issue, has_errors
 
@@ -49,9 +50,12 @@ def run(path: str, job_path: str, output: str | None, processes: int, session: S
     return next(status for status in _WORST_FIRST if any(result["exit"] == status for result in results.values()))
 
 
-def _planned(rows: list[table.Row], folder: str, processes: int, session: Session) -> Iterable[tuple[table.Row, dict[str, Any]]]:
+def _planned(
+    rows: list[table.Row], folder: str, processes: int, session: Session
+) -> Iterable[tuple[table.Row, dict[str, Any]]]:
     context: Any = multiprocessing.get_context("fork" if sys.platform.startswith("linux") else "spawn")
-    waiting, running = list(reversed(rows)), {}
+    waiting = list(reversed(rows))
+    running: dict[Any, tuple[table.Row, Any]] = {}
     try:
         while waiting or running:
             while waiting and len(running) < processes:

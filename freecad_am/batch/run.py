@@ -6,8 +6,9 @@ from __future__ import annotations
 import contextlib
 import os
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, Iterator
+from typing import Any
 
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
 
@@ -97,7 +98,7 @@ def check(job: Job) -> Any:
     if job.program is not None:
         from freecad_am.posts import catalogue
 
-        post = catalogue.load(job.program.post)
+        post: Any = catalogue.load(job.program.post)
         post.program_name(job.name, "name")
     if job.cell is None:
         return None
@@ -194,6 +195,6 @@ def _save(document: Any, path: str) -> None:
     try:
         document.saveAs(path)
     except (OSError, RuntimeError) as error:
-        raise InputError("UNWRITABLE", os.path.dirname(path), f"the document cannot be saved ({error}); free the disk") from None
+        raise InputError("UNWRITABLE", path, f"the document cannot be saved ({error}); free the disk") from None
     if not os.path.isfile(path):
-        raise InputError("UNWRITABLE", os.path.dirname(path), "the document cannot be saved; free the disk")
+        raise InputError("UNWRITABLE", path, "the document cannot be saved; free the disk")

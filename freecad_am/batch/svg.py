@@ -60,7 +60,7 @@ def ticks(low: float, high: float, most: int = 6) -> list[float]:
     raw = (high - low) / most
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(power * factor for factor in (1, 2, 2.5, 5, 10) if power * factor >= raw * 0.999)
-    return [0.0 if abs(k * step) < step * 1e-9 else k * step for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
+    return [k * step + 0.0 for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
 
 
 @dataclass
@@ -113,24 +113,24 @@ class Plot:
         """A horizontal line with a name at its right end."""
         if self.y[0] <= y <= self.y[1]:
             at = float(self.to_y(np.array([y]))[0])
-            self.parts.append(f'<line class="{kind}" x1="{self.left}" x2="{self.width - self.right}" y1="{at:.1f}" y2="{at:.1f}"/>')
-            self.parts.append(
-                f'<text class="rule" x="{self.width - self.right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>'
-            )
+            right = self.width - self.right
+            self.parts.append(f'<line class="{kind}" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>')
+            self.parts.append(f'<text class="rule" x="{right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>')
 
     def bars(self, edges: Array, heights: Array) -> None:
         """A histogram."""
         at, zero = self.to_x(edges), float(self.to_y(np.array([0.0]))[0])
         for i, top in enumerate(self.to_y(heights).tolist()):
             if heights[i] > 0:
+                wide = max(at[i + 1] - at[i] - 1.0, 0.8)
                 self.parts.append(
-                    f'<rect class="bar" x="{at[i] + 0.5:.1f}" y="{top:.1f}" width="{max(at[i + 1] - at[i] - 1.0, 0.8):.1f}" '
-                    f'height="{zero - top:.1f}"><title>{edges[i]:.4g} to {edges[i + 1]:.4g}: {heights[i]:.4g} %</title></rect>'
+                    f'<rect class="bar" x="{at[i] + 0.5:.1f}" y="{top:.1f}" width="{wide:.1f}" height="{zero - top:.1f}">'
+                    f"<title>{edges[i]:.4g} to {edges[i + 1]:.4g}: {heights[i]:.4g} %</title></rect>"
                 )
 
     def legend(self, names: list[tuple[str, str]]) -> None:
         """Names of curves with their colours, in the top right corner."""
-        at = self.width - self.right
+        at = float(self.width - self.right)
         for name, stroke in reversed(names):
             at -= 9 + 6.2 * len(name)
             self.parts.append(f'<text class="key" x="{at + 8:.1f}" y="19">{escape(name)}</text>')
@@ -149,18 +149,18 @@ class Plot:
     def _grid(self) -> str:
         parts = []
         down, up = self.height - self.bottom, self.top
+        right, middle = self.width - self.right, (self.left + self.width - self.right) / 2
         for value in ticks(*self.x):
             at = float(self.to_x(np.array([value]))[0])
             parts.append(f'<line class="grid" x1="{at:.1f}" x2="{at:.1f}" y1="{up}" y2="{down}"/>')
             parts.append(f'<text class="tick" x="{at:.1f}" y="{down + 14}" text-anchor="middle">{value:g}</text>')
         for value in ticks(*self.y, most=5):
             at = float(self.to_y(np.array([value]))[0])
-            parts.append(f'<line class="grid" x1="{self.left}" x2="{self.width - self.right}" y1="{at:.1f}" y2="{at:.1f}"/>')
+            parts.append(f'<line class="grid" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>')
             parts.append(f'<text class="tick" x="{self.left - 6}" y="{at + 3.5:.1f}" text-anchor="end">{value:g}</text>')
-        middle = (self.left + self.width - self.right) / 2
-        parts.append(f'<text class="label" x="{middle}" y="{self.height - 6}" text-anchor="middle">{escape(self.x_label)}</text>')
-        centre = (up + down) / 2
         parts.append(
-            f'<text class="label" transform="translate(13 {centre}) rotate(-90)" text-anchor="middle">{escape(self.y_label)}</text>'
+            f'<text class="label" x="{middle}" y="{self.height - 6}" text-anchor="middle">{escape(self.x_label)}</text>'
+            f'<text class="label" transform="translate(13 {(up + down) / 2}) rotate(-90)" text-anchor="middle">'
+            f"{escape(self.y_label)}</text>"
         )
         return "".join(parts)

@@ -53,10 +53,12 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
         if ";" in column or "\t" in column:
             raise InputError("BAD_FILE", label, "cells are not separated by commas; save the table with commas")
         if column.split(".")[0] not in job.SECTIONS:
-            raise InputError("UNKNOWN_KEY", f"{label}: {column}", "there is no such key; use job keys such as strategy.layer_height")
+            message = "there is no such key; use job keys such as strategy.layer_height"
+            raise InputError("UNKNOWN_KEY", f"{label}: {column}", message)
     for number, line in enumerate(lines[1:], 1):
         if len(line) != len(columns):
-            raise InputError("BAD_FILE", f"{label} row {number}", f"{len(line)} cells for {len(columns)} columns; quote cells with commas")
+            message = f"{len(line)} cells for {len(columns)} columns; quote cells with commas"
+            raise InputError("BAD_FILE", f"{label} row {number}", message)
     return columns, lines[1:]
 
 

@@ -113,7 +113,8 @@ def test_what_is_left_out(read):
 
 def test_values_reach_the_parameters(read):
     job = read(WHOLE.replace("platform: 5 mm", "platform: [1, 2 cm, 3, 0, 90 deg, 1 rad]").replace(
-        "[front, up, flip]", "auto").replace("rz: auto", "rz: 45").replace("start_at: null", "start_at: {layer: 12}").replace(
+        "[front, up, flip]", "auto").replace("rz: auto", "rz: 45").replace(
+        "start_at: null", "start_at: {layer: 12}").replace(
         "input: null", "input: 3").replace("layer_height: 1 mm", "layer_height: 1/16 in").replace(
         "degree: 1", "degree: 1\n  compare: [constant, point-by-point]"))
     assert job.cell.platform == pytest.approx((1, 20, 3, 0, math.pi / 2, 1))
@@ -153,7 +154,7 @@ LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key
         ("layer_height: 1 mm", "layer_height: .nan", "BAD_UNIT", "strategy.layer_height", "nan"),
         ("layer_height: 1 mm", "layer_height: 1:30", "BAD_UNIT", "strategy.layer_height", "1:30"),
         ("layer_height: 1 mm", "layer_height: [1 mm]", "BAD_VALUE", "strategy.layer_height", "list"),
-        ("layer_height: 1 mm", "layer_height: 1 mm\n  layer_height: 2 mm", "DUPLICATE_KEY", "strategy.layer_height", "8 and 9"),
+        ("layer_height: 1 mm", "layer_height: 1 mm\n  layer_height: 2", "DUPLICATE_KEY", "strategy.layer_height", "8 and 9"),
         ("kind: revolution", "kind: surface", "NOT_YET", "strategy.kind", "not supported yet"),
         ("kind: revolution", "kind: developable", "NOT_YET", "strategy.kind", "not supported yet"),
         ("kind: revolution", "kind: torus", "BAD_VALUE", "strategy.kind", "revolution, surface, developable"),
@@ -195,9 +196,11 @@ def test_refusals_name_file_key_line_and_remedy(read, old, new, code, where, say
     ("text", "code", "says"),
     [
         ("", "EMPTY_FILE", "empty"), ("# only a remark\n", "EMPTY_FILE", "empty"), ("- 1\n- 2\n", "BAD_FILE", "mapping"),
-        ("just words", "BAD_FILE", "mapping"), ("part: {file: [", "BAD_FILE", "not YAML"), ("a:\n\t- b", "BAD_FILE", "line 2"),
+        ("just words", "BAD_FILE", "mapping"), ("part: {file: [", "BAD_FILE", "not YAML"),
+        ("a:\n\t- b", "BAD_FILE", "line 2"),
         ("version: 1", "NO_PART", "part: {file"), ("a: &a [*a]", "BAD_FILE", "alias"), ("[" * 3000, "BAD_FILE", ""),
-        ("{1: 2, [3]: 4}: 5", "BAD_FILE", "word"), ("part: 5", "BAD_VALUE", "section"), ("part: &a\n  file: *b", "BAD_FILE", ""),
+        ("{1: 2, [3]: 4}: 5", "BAD_FILE", "word"), ("part: 5", "BAD_VALUE", "section"),
+        ("part: &a\n  file: *b", "BAD_FILE", ""),
         ("---\npart: {file: part.step}\n---\npart: 1", "BAD_FILE", "document"),
         ("a0: &a0 [1,1,1,1,1,1,1,1,1]\n" + "".join(f"a{i}: &a{i} [{','.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 9)),
          "BAD_FILE", "too many"),

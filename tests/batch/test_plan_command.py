@@ -26,7 +26,8 @@ def test_a_whole_job(workshop):
     assert done.status == 0, done.err
     names = set(workshop.files())
     assert {"cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/CUP.LS"} <= names
-    assert names - {"cup.FCStd", "waypoints.csv", "report.json", "report.html"} == {n for n in names if n.startswith("program/")}
+    others = names - {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
+    assert all(name.startswith("program/") for name in others)
     assert set(done.out.split("\n")[:-1]) == {str(workshop.folder / "out" / "cup" / name) for name in names}
     assert all(MESSAGE.fullmatch(line) for line in done.err.splitlines())
     assert "\x1b" not in done.err and "\r" not in done.err  # no progress without a terminal
@@ -39,9 +40,9 @@ def test_a_whole_job(workshop):
     between = 80.0 * np.sin(0.05)  # the chord of 4 mm of arc
     assert report["spacing_mm"]["min"] == pytest.approx(between, abs=1e-4)
     assert report["spacing_mm"]["max"] == pytest.approx(between, abs=1e-4)
-    assert report["length_mm"] == pytest.approx(
-        sum(np.linalg.norm(np.diff(points[[row["layer"] == str(k) for row in rows]], axis=0), axis=1).sum() for k in range(16)),
-        rel=1e-6)
+    layers = np.array([int(row["layer"]) for row in rows])
+    steps = [np.diff(points[layers == k], axis=0) for k in range(16)]
+    assert report["length_mm"] == pytest.approx(np.linalg.norm(np.concatenate(steps), axis=1).sum(), rel=1e-6)
     joints = report["joints"]
     assert joints["method"] == "layer-by-layer" and joints["feasible"] is True
     angles = np.array([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
@@ -75,7 +76,7 @@ def test_the_page_is_one_file_that_parses(workshop):
 
     Checker().feed(page)
     assert open_tags == []
-    for word in ("q1", "q6 (endless)", "Distance to the layer before", "Joint speeds", "Condition", "Comparison", "constant"):
+    for word in ("q1", "q6 (endless)", "Distance to the layer before", "Joint speeds", "Condition", "Comparison"):
         assert word in page
     assert "NaN" not in page and ">nan" not in page and "inf<" not in page
     report = json.loads(workshop.files()["report.json"])
@@ -136,7 +137,7 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     (out / "program" / "notes.txt").write_text("mine")
     (out / "program" / "OLD.LS").write_text("of an earlier run")
     (out / "photo.jpg").write_text("mine")
-    workshop.write_job(workshop.text.replace("  limits: paper", "  limits: paper\n  deposition_point: [9000, 0, 500, 0, 0, 0]"))
+    workshop.change("  limits: paper", "  limits: paper\n  deposition_point: [9000, 0, 500, 0, 0, 0]")
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 3
     assert re.search(r"^error\[[A-Z_]+\] layer 0 .*: ", done.err, re.MULTILINE)

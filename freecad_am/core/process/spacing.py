@@ -56,9 +56,9 @@ def distance(points: Array, curve: Curve) -> Array:
     moved along its cubic.
     """
     half = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max())
-    bound, _ = cKDTree(np.concatenate((curve.start, curve.end[-1:]))).query(points)
     middles = cKDTree(0.5 * (curve.start + curve.end))
-    radius = (bound + half) * (1.0 + 1e-9)
+    to_vertex = cKDTree(np.concatenate((curve.start, curve.end[-1:]))).query(points)[0]
+    radius: Array = (np.asarray(to_vertex) + half) * (1.0 + 1e-9)
     segment = np.empty(len(points), dtype=np.intp)
     for some in np.array_split(np.arange(len(points)), _parts(middles, points, radius)):
         segment[some] = _nearest_chord(middles, points[some], radius[some], curve)
@@ -141,7 +141,8 @@ def _bead_curve(bead: Bead) -> tuple[Array, Array, Array, Array, Array, Array]:
 
 def _mirrored(tangent: Array, chord: Array) -> Array:
     """The tangent at the other end of the arc with this chord."""
-    return 2.0 * np.einsum("ij,ij->i", tangent, chord)[:, None] * chord - tangent
+    other: Array = 2.0 * np.einsum("ij,ij->i", tangent, chord)[:, None] * chord - tangent
+    return other
 
 
 def _unit(vectors: Array) -> Array:
