@@ -145,13 +145,14 @@ def _quantity(shown: float, unit: str, name: str) -> tuple[Any, Callable[[], flo
 def _pose(row: Row, shown: tuple[float, ...]) -> Field:
     widget = QtGui.QWidget()
     grid = QtGui.QGridLayout(widget)
-    grid.setContentsMargins(0, 0, 0, 0)
+    grid.setContentsMargins(12, 0, 0, 0)
+    grid.setColumnStretch(1, 1)
     reads = []
     for index, (number, unit, name) in enumerate(zip(shown, _POSE_UNITS, _POSE_NAMES, strict=True)):
         box, read = _quantity(number, unit, f"{label_of(row)} {name}")
         box.setObjectName(f"{row.name}{name}")
         box.setToolTip(f"{name}: {row.spec.help}")
-        grid.addWidget(QtGui.QLabel(name), index % 3, 2 * (index // 3))
-        grid.addWidget(box, index % 3, 2 * (index // 3) + 1)
+        grid.addWidget(QtGui.QLabel(name), index, 0)
+        grid.addWidget(box, index, 1)
         reads.append(read)
     return Field(row, widget, lambda: tuple(read() for read in reads))

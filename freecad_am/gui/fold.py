@@ -7,7 +7,6 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-
 LONGEST_ROW = 2  # fields beside a label; more go below it
 
 

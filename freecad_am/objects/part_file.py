@@ -23,6 +23,9 @@ def part_shape(path: str, object_name: str = "") -> tuple[Any, str]:
         return read_shape(path), stem
     if not os.path.isfile(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
+    for document in App.listDocuments().values():
+        if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
+            return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
     active = App.ActiveDocument
     try:
         document = App.openDocument(path, True)

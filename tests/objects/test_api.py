@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The macro interface: parameters as keywords, nothing left behind by what fails, files in and out."""
+
+import math
+import os
+
+import FreeCAD as App
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+
+LABEL = "Hémisphère n° 1"
+
+
+def test_keywords_are_in_outer_units(doc):
+    cell = api.make_cell(
+        doc, "Ma cellule", nozzle_half_angle="0.5 rad", nozzle_length=80, deposition_point=(1000, 0, 700, 0, 90, 0),
+        platform="1 cm", branch="front up noflip", platform_diameter=App.Units.Quantity("12 cm"),
+    )
+    parameters = api.result(cell)
+    assert parameters.nozzle.half_angle == pytest.approx(0.5) and parameters.nozzle.length == 80
+    assert parameters.deposition_point == pytest.approx((1000, 0, 700, 0, math.pi / 2, 0))
+    assert (parameters.platform, parameters.platform_diameter) == (10.0, 120.0)
+    assert parameters.branch == ("front", "up", "noflip") and cell.Label == "Ma cellule"
+    api.change(cell, platform_diameter=90, nozzle_length="10 cm")
+    assert (api.result(cell).platform_diameter, api.result(cell).nozzle.length) == (90.0, 100.0)
+
+
+def test_dataclasses_and_keywords_together(doc, part):
+    feature = api.make_feature(
+        doc, part, strategy=RevolutionParameters(layer_height=7.0, spacing="iso-height"),
+        build_direction=BuildDirectionParameters(max_tilt=1.0), chord_error=0.02,
+    )
+    assert feature.Proxy.parameters(feature, RevolutionParameters) == RevolutionParameters(7.0, 0.02, "iso-height")
+    assert feature.MaxTilt.Value == pytest.approx(math.degrees(1.0))
+    cell = api.make_cell(doc, parameters=CellParameters(platform_diameter=60.0))
+    assert api.result(cell) == CellParameters(platform_diameter=60.0)
+
+
+@pytest.mark.parametrize("undo", [0, 1])
+@pytest.mark.parametrize(
+    ("values", "code", "where"),
+    [
+        ({"layer_height": -1}, "BAD_VALUE", "strategy.layer_height"),
+        ({"layer_height": "1 s"}, "BAD_UNIT", "strategy.layer_height"),
+        ({"layer_height": "1,5 mm"}, "BAD_VALUE", "strategy.layer_height"),
+        ({"spacing": "odd"}, "BAD_VALUE", "strategy.spacing"),
+        ({"layer_hight": 1}, "UNKNOWN_PARAMETER", "Feature"),
+        ({"faces": ["Edge1"]}, "BAD_FACES", "Feature.Source"),
+        ({"faces": ["Face9"]}, None, None),
+    ],
+)
+def test_what_fails_leaves_nothing_behind(doc, part, undo, values, code, where):
+    doc.UndoMode = undo
+    with pytest.raises(InputError) as caught:
+        api.make_feature(doc, part, **values)
+    if code:
+        assert (caught.value.code, caught.value.where) == (code, where)
+    assert [obj.Name for obj in doc.Objects] == [part.Name]
+    assert doc.UndoCount == 0 and not doc.HasPendingTransaction
+
+
+def test_a_failed_change_changes_nothing(job):
+    job.doc.UndoMode = 1
+    with pytest.raises(InputError):
+        api.change(job.feature, chord_error=0.05, layer_height=0)
+    assert (job.feature.ChordError.Value, job.feature.Status) == (0.01, "up to date")
+
+
+def test_missing_inputs_are_told(doc, part):
+    for make in (lambda: api.make_feature(doc, None), lambda: api.make_toolpath(doc, None),
+                 lambda: api.make_joint_path(doc, None, None), lambda: api.make_program(doc, None)):
+        with pytest.raises(InputError, match="is missing; choose"):
+            make()
+    with pytest.raises(InputError, match="no shape"):
+        api.make_feature(doc, api.make_cell(doc))
+    with pytest.raises(InputError, match="no stage"):
+        api.result(part)
+
+
+def test_stale_inputs_are_renewed_by_what_is_made_from_them(doc, part):
+    feature = api.make_feature(doc, part, layer_height=10)
+    feature.LayerHeight = 20
+    toolpath = api.make_toolpath(doc, feature)
+    assert feature.Status == toolpath.Status == "up to date" and toolpath.Layers == 4
+
+
+def test_all_stages_at_once(doc, part):
+    made = api.make_all(doc, part)
+    assert [obj.Proxy.kind for obj in made] == ["cell", "feature", "toolpath", "joint path", "program"]
+    assert made[-1].ProgramName == "HEMISPHERE_N_1" and made[-1].Status == "up to date"
+    assert api.stages_of(doc, "program") == [made[-1]]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [("Hémisphère n° 1", "HEMISPHERE_N_1"), ("cup", "CUP"), ("12", "P12"), ("ω", "P"), ("a" * 50, "A" * 20)],
+)
+def test_proposed_names(text, name):
+    assert api.proposed_name(text) == name
+
+
+def test_progress_is_told_and_may_cancel(job):
+    told = []
+    with api.told_to(lambda fraction, text: told.append(fraction)):
+        api.change(job.joint_path, tolerance=1e-7)
+    assert told and told == sorted(told) and min(told) >= 0.0 and max(told) <= 1.0
+
+    def cancel(fraction, text):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), api.told_to(cancel):
+        api.change(job.joint_path, tolerance=1e-6)
+    assert job.joint_path.Status == "failed"
+    api.recompute(job.doc)
+    assert job.joint_path.Status == "up to date"
+
+
+def test_export_writes_the_files(job, tmp_path):
+    paths = api.export(job.program, str(tmp_path / "new" / "folder"))
+    files = api.result(job.program).files
+    assert {os.path.basename(path) for path in paths} == set(files) == set(os.listdir(tmp_path / "new" / "folder"))
+    for path in paths:
+        with open(path, "rb") as file:
+            assert file.read() == files[os.path.basename(path)]
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="choose a folder"):
+        api.export(job.program, str(tmp_path / "file"))
+
+
+@pytest.mark.parametrize("ending", ["step", "brep", "iges"])
+def test_parts_from_files(doc, tmp_path, ending):
+    path = str(tmp_path / f"Été.{ending}")
+    shape = Part.makeSphere(30, App.Vector(), App.Vector(0, 0, 1), 0, 90)
+    {"step": shape.exportStep, "brep": shape.exportBrep, "iges": shape.exportIges}[ending](path)
+    part = api.open_part(doc, path)
+    assert part.Label == "Été" and part.State == ["Up-to-date"]
+    assert part.Shape.BoundBox.ZMax == pytest.approx(30, abs=1e-3)
+    assert api.make_feature(doc, part, layer_height=5).WallLength.Value == pytest.approx(15 * math.pi, rel=1e-5)
+
+
+def test_parts_from_documents_are_taken_where_they_stand(doc, part, tmp_path):
+    box = doc.addObject("App::Part", "Assembly")
+    box.addObject(part)
+    box.Placement = App.Placement(App.Vector(5, 6, 7), App.Rotation())
+    doc.recompute()
+    doc.saveAs(str(tmp_path / "part.FCStd"))
+    target, doc_name = App.newDocument("Target"), doc.Name
+    try:
+        for closed in (False, True):
+            found = api.open_part(target, str(tmp_path / "part.FCStd"), LABEL)
+            assert found.Shape.BoundBox.ZMin == pytest.approx(7, abs=1e-6) and found.Label.startswith("Hémisphère n°")
+            assert App.ActiveDocument.Name == target.Name
+            assert (doc_name in App.listDocuments()) is not closed
+            if not closed:
+                App.closeDocument(doc_name)
+        assert App.listDocuments().keys() == {target.Name}
+        with pytest.raises(InputError, match="Hémisphère"):
+            api.open_part(target, str(tmp_path / "part.FCStd"), "no such")
+        (tmp_path / "bad.FCStd").write_bytes(b"nothing")
+        for name in ("bad.FCStd", "none.FCStd", "none.step"):
+            with pytest.raises(InputError):
+                api.open_part(target, str(tmp_path / name))
+        assert len(target.Objects) == 2
+    finally:
+        App.closeDocument(target.Name)
+
+
+def test_a_part_inside_a_moved_assembly_is_planned_where_it_is_seen(doc, part):
+    box = doc.addObject("App::Part", "Assembly")
+    box.addObject(part)
+    box.Placement = App.Placement(App.Vector(5, 6, 7), App.Rotation(App.Vector(0, 0, 1), 90))
+    part.Placement.Base = App.Vector(10, 0, 0)
+    doc.recompute()
+    feature = api.make_feature(doc, part, layer_height=10)
+    assert api.result(feature).frame[:3, 3] == pytest.approx([5, 16, 7], abs=1e-9)
+
+
+def test_a_wire_turned_about_a_line(doc):
+    wire = doc.addObject("Part::Feature", "Wire")
+    wire.Shape = Part.makePolygon([App.Vector(20, 0, 0), App.Vector(30, 0, 40)])
+    line = doc.addObject("Part::Line", "Axis")
+    line.X1 = line.Y1 = line.Z1 = line.X2 = line.Y2 = 0
+    line.Z2 = 50
+    doc.recompute()
+    feature = api.make_feature(doc, wire, axis=(line, "Edge1"), layer_height=10)
+    assert feature.WallLength.Value == pytest.approx(math.hypot(10, 40))
+    line.X1 = 1
+    assert feature.Status == "stale"
+    box = doc.addObject("Part::Box", "Box")
+    doc.recompute()
+    with pytest.raises(InputError, match="no straight line"):
+        api.make_feature(doc, wire, axis=(box, "Face1"))

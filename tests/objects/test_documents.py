@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What documents do to stages: saving, opening, undo, copies, old files."""
+
+import dataclasses
+import zipfile
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.objects import stage as stages
+
+
+def equal(one, other):
+    """Bit for bit, dataclasses and tuples gone through."""
+    if isinstance(one, np.ndarray):
+        return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+    if isinstance(one, (tuple, list)):
+        return len(one) == len(other) and all(map(equal, one, other))
+    if dataclasses.is_dataclass(one):
+        names = [field.name for field in dataclasses.fields(one)]
+        return type(one) is type(other) and all(equal(getattr(one, name), getattr(other, name)) for name in names)
+    return one == other or (one != one and other != other)
+
+
+@pytest.fixture
+def reopened(job, tmp_path):
+    """The job saved and opened again, with what it was before."""
+    values = [api.result(obj) for obj in job.stages]
+    path = str(tmp_path / "Pièce à déposer.FCStd")
+    job.doc.saveAs(path)
+    again = App.openDocument(path)
+    yield again, values, path
+    App.closeDocument(again.Name)
+
+
+def test_results_are_there_after_reopening_and_nothing_is_computed(job, reopened, monkeypatch):
+    again, values, _ = reopened
+    for kind in {type(obj.Proxy) for obj in job.stages}:
+        monkeypatch.setattr(kind, "compute", lambda self, obj: pytest.fail("computed"))
+    found = api.stages_of(again)
+    assert [obj.Label for obj in found] == [obj.Label for obj in api.stages_of(job.doc)]
+    for before in job.stages:
+        obj = again.getObject(before.Name)
+        assert obj.Status == "up to date" and obj.State == ["Up-to-date"]
+        assert obj.Key == before.Key == obj.Proxy.key(obj)
+        assert equal(api.result(obj), values[job.stages.index(before)])
+    again.recompute()
+    for obj in found:
+        obj.touch()
+    again.recompute()
+    assert [obj.Status for obj in found] == ["up to date"] * 5
+
+
+def test_results_are_compressed_outside_the_document_text(reopened):
+    path = reopened[2]
+    with zipfile.ZipFile(path) as archive:
+        text = archive.getinfo("Document.xml")
+        assert text.file_size < 300_000
+        assert all(entry.compress_type == zipfile.ZIP_DEFLATED for entry in archive.infolist())
+
+
+def test_a_forced_recompute_gives_the_same(job):
+    before = [api.result(obj) for obj in job.stages]
+    api.recompute(job.doc, force=True)
+    for obj, value in zip(job.stages, before, strict=True):
+        assert api.result(obj) is not value and equal(api.result(obj), value)
+
+
+def test_undo_and_redo_take_parameters_results_and_status_along(job):
+    job.doc.UndoMode = 1
+    first, first_key = api.result(job.toolpath), job.toolpath.Key
+    api.change(job.feature, layer_height=20)
+    second = api.result(job.toolpath)
+    assert job.doc.UndoCount == 1 and job.doc.UndoNames == ["Edit Feature"]
+    assert len(second.layers) < len(first.layers)
+    for _ in range(2):
+        job.doc.undo()
+        assert (job.feature.LayerHeight.Value, job.toolpath.Key) == (10.0, first_key)
+        assert [obj.Status for obj in job.stages] == ["up to date"] * 5
+        assert equal(api.result(job.toolpath), first)
+        job.doc.redo()
+        assert job.feature.LayerHeight.Value == 20.0 and equal(api.result(job.toolpath), second)
+    job.doc.undo()
+    job.doc.openTransaction("By hand")
+    job.feature.LayerHeight = 5
+    job.doc.commitTransaction()
+    assert job.program.Status == "stale"
+    job.doc.undo()
+    assert [obj.Status for obj in job.stages] == ["up to date"] * 5
+
+
+def test_every_function_is_one_step_of_undo(doc, part):
+    doc.UndoMode = 1
+    cell = api.make_cell(doc)
+    feature = api.make_feature(doc, part, layer_height=10)
+    toolpath = api.make_toolpath(doc, feature, cell)
+    joint_path = api.make_joint_path(doc, toolpath, cell)
+    api.make_program(doc, joint_path, name="CUP")
+    assert doc.UndoCount == 5
+    for count in (4, 3, 2, 1, 0):
+        doc.undo()
+        assert len(api.stages_of(doc)) == count
+    for _ in range(5):
+        doc.redo()
+    assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
+    assert api.result(doc.Program).files.keys() >= {"CUP.LS"}
+
+
+def test_copies_keep_their_own_result(job):
+    copy = job.doc.copyObject(job.toolpath, False)
+    assert copy.Name != job.toolpath.Name and equal(api.result(copy), api.result(job.toolpath))
+    kept = api.result(copy)
+    api.change(job.toolpath, seam_angle=30)
+    assert copy.SeamAngle.Value == 0 and equal(api.result(copy), kept) and copy.Status == "up to date"
+    api.change(copy, seam_angle=60)
+    assert job.toolpath.SeamAngle.Value == 30
+    start = [api.result(obj).layers[0].beads[0].points[0] for obj in (job.toolpath, copy)]
+    assert not np.allclose(*start)
+
+
+def test_a_copy_of_the_whole_job_stands_alone_in_another_document(job):
+    other = App.newDocument("Other")
+    try:
+        other.copyObject(job.program, True)
+        found = api.stages_of(other)
+        assert len(other.Objects) == 6 and [obj.Status for obj in found] == ["up to date"] * 5
+        program = api.stages_of(other, "program")[0]
+        assert api.result(program).files == api.result(job.program).files
+        api.change(api.stages_of(other, "feature")[0], layer_height=20)
+        assert job.feature.LayerHeight.Value == 10 and job.program.Status == "up to date"
+    finally:
+        App.closeDocument(other.Name)
+
+
+def test_an_old_document_gets_what_it_lacks(job, tmp_path):
+    for name in ("MaxTilt", "Seconds", "WallFaces"):
+        assert job.feature.removeProperty(name)
+    job.doc.saveAs(str(tmp_path / "old.FCStd"))
+    again = App.openDocument(str(tmp_path / "old.FCStd"))
+    try:
+        assert again.Feature.MaxTilt.Value == 90 and again.Feature.WallFaces == []
+        assert again.Feature.Status == "up to date" and again.Feature.SchemaVersion == stages.SCHEMA_VERSION
+        api.recompute(again)
+        assert [obj.Status for obj in api.stages_of(again)] == ["up to date"] * 5
+    finally:
+        App.closeDocument(again.Name)
+
+
+def test_class_paths_are_those_of_the_file_format(job):
+    paths = [f"{type(obj.Proxy).__module__}.{type(obj.Proxy).__qualname__}" for obj in job.stages]
+    assert paths == [
+        "freecad_am.objects.cell.Cell", "freecad_am.objects.feature.RevolutionFeature",
+        "freecad_am.objects.toolpath.Toolpath", "freecad_am.objects.joint_path.JointPath",
+        "freecad_am.objects.program.Program",
+    ]
