@@ -6,6 +6,7 @@ Python and in freecadcmd, which imports a script as a module, may run it twice a
 then: nothing is let out of here.
 """
 
+import gc
 import os
 import runpy
 import sys
@@ -70,6 +71,7 @@ def run(words):
 def main():
     """Run and end the process with the status; FreeCAD's own clean-up at exit is not waited for."""
     status = 1
+    gc.set_threshold(100_000, 50, 50)
     try:
         status = run(arguments())
     except SystemExit as end:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import PoseFrames
@@ -83,6 +82,8 @@ def only_bead(points: Points, bead: int) -> tuple[Points, slice]:
 
 
 def _slsqp(task: Task, points: Points, thresholds: Array, start: Array) -> tuple[Array, float, str, int]:
+    from scipy.optimize import minimize  # slow to import, and most jobs on parts of revolution never need it
+
     cache: dict[bytes, _State] = {}
     # coefficients of high powers act more strongly: bring them to the scale of a rotation
     scale = np.abs(points.parameter).max() ** np.arange(len(start))

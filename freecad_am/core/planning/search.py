@@ -20,9 +20,9 @@ from .task import UNREACHABLE, Task, condition_margin
 
 Array = NDArray[np.float64]
 
-POINTS_PER_BEAD = 11
-OFFSETS = 30
-SLOPES = np.linspace(-2.0, 2.0, 17)
+POINTS_PER_BEAD = 10
+OFFSETS = 24
+SLOPES = np.linspace(-2.0, 2.0, 13)
 # of candidates with the same objective the one that moves the joints less is taken
 TIE = 1e-6
 # poses handled at once, so that a long job does not fill the memory
