@@ -96,7 +96,7 @@ def render(content: Content) -> str:
 def _subtitle(content: Content) -> str:
     joints = content.report["joints"]
     if joints is None:
-        return "toolpath only: the job names no cell"
+        return "the path alone, without joints"
     return f"{content.report['machine']['title']}, limits {content.report['machine']['limits']}, joints {joints['method']}"
 
 

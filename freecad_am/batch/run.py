@@ -157,9 +157,10 @@ def _write(job: Job, stages: Stages, cell: Any, files: outputs.Outputs, session:
     planned = None if stages.joint_path is None else api.result(stages.joint_path)
     if planned is not None:
         toolpath = planned.joint_path.toolpath(toolpath)
-    motion = waypoints.from_toolpath(toolpath) if planned is None else planned.motion
+    axes = () if cell is None else cell.machine.axes
+    motion = waypoints.from_toolpath(toolpath, len(axes)) if planned is None else planned.motion
     with stages.timed("waypoints", session):
-        files.write(outputs.WAYPOINTS, waypoints.text(motion, () if planned is None else cell.machine.axes))
+        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes))
     programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
     for name, content in programs.items():
         files.write(f"{outputs.PROGRAMS}/{name}", content)

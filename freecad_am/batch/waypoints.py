@@ -22,8 +22,11 @@ def text(motion: Motion, axes: tuple[str, ...] = ()) -> Iterator[str]:
         yield _rows(motion, slice(start, start + _ROWS_AT_ONCE))
 
 
-def from_toolpath(toolpath: Toolpath) -> Motion:
-    """The deposit alone, for a job without a cell: no rapid rows, no axes, durations from length and speed."""
+def from_toolpath(toolpath: Toolpath, axes: int = 0) -> Motion:
+    """The deposit alone, for a job that has no joint path: no rapid rows, durations from length and speed.
+
+    `axes` columns of joints that no point has.
+    """
     beads = list(toolpath)
     sizes = [len(bead) for _, _, bead in beads]
     position = np.concatenate([bead.points for _, _, bead in beads])
@@ -40,7 +43,7 @@ def from_toolpath(toolpath: Toolpath) -> Motion:
         tool=np.concatenate([bead.tool for _, _, bead in beads]),
         speed=speed,
         width=np.concatenate([np.full(len(b), np.nan) if b.width is None else b.width for _, _, b in beads]),
-        joints=np.empty((len(position), 0)),
+        joints=np.full((len(position), axes), np.nan),
         duration=np.where(point > 0, step / speed, 0.0),
     )
 

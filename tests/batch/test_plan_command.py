@@ -152,6 +152,18 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     assert rows[0]["q1_deg"] == "" and rows[0]["x_mm"] != ""
 
 
+def test_a_toolpath_that_cannot_be_deposited_is_reported_too(workshop):
+    workshop.change("cell:\n", "build_direction: {tilt: 60 deg, max_tilt: 10 deg}\ncell:\n")
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 3 and "error[" in done.err
+    assert set(workshop.files()) == {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
+    rows, points = deposit(workshop.files()["waypoints.csv"].decode())
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 40.0, atol=1e-5)
+    assert all(row[f"q{axis}_deg"] == "" for row in rows for axis in range(1, 7))
+    report = json.loads(workshop.files()["report.json"])
+    assert report["status"] == "infeasible" and report["joints"] is None
+
+
 def test_a_run_of_another_name_takes_the_place_of_the_last(workshop):
     assert workshop.run("plan", "cup.yaml", "-o", "out").status == 0
     workshop.change("name: cup", "name: bowl")
