@@ -48,13 +48,13 @@ def _of_face(face: Any) -> list[tuple[Axis, float]]:
     surface, area = face.Surface, face.Area
     found = []
     if surface.TypeId == "Part::GeomSurfaceOfRevolution":
-        found.append((_axis(surface.Location, surface.Direction), area))
+        found.append((_axis(surface.Location, surface.Direction), area + 1.0))
     elif surface.TypeId in ("Part::GeomCylinder", "Part::GeomCone", "Part::GeomToroid"):
         found.append((_axis(surface.Center, surface.Axis), area))
     elif surface.TypeId == "Part::GeomSphere":
         found.append((_axis(surface.Center, surface.Axis), 1e-6 * area))
     for edge in face.Edges:
-        if edge.Degenerated or _great(edge, face):
+        if edge.Degenerated or edge.isSeam(face):
             continue
         if edge.Curve.TypeId == "Part::GeomCircle":
             found.append((_axis(edge.Curve.Center, edge.Curve.Axis), 1e-3 * edge.Length * edge.Curve.Radius))
@@ -63,11 +63,6 @@ def _of_face(face: Any) -> list[tuple[Axis, float]]:
             if fitted is not None:
                 found.append((fitted, 1e-4 * edge.Length**2))
     return found
-
-
-def _great(edge: Any, face: Any) -> bool:
-    """Whether an edge is a meridian of the sphere it lies on: a seam, or an arc from pole to pole."""
-    return bool(face.Surface.TypeId == "Part::GeomSphere" and edge.isSeam(face))
 
 
 def _circle_through(points: Array) -> Axis | None:
@@ -97,7 +92,7 @@ def _same(one: Axis, other: Axis) -> bool:
 
 
 def from_normals(faces: list[Any]) -> Axis | None:
-    """The line that all surface normals meet, or None where there is no such line or more than one direction.
+    """The line that all surface normals meet, the upright one on a sphere, or None where there is none.
 
     A normal n at p meets the axis (point c, direction a) when n . (c x a) + (p x n) . a = 0. With m = c x a that is
     linear in (a, m): the axis is the null direction of all samples, of those the one without pitch (a . m = 0).
@@ -118,14 +113,28 @@ def from_normals(faces: list[Any]) -> Axis | None:
     size = np.abs(p - middle).max()
     rows = np.hstack([np.cross((p - middle) / size, n), n])
     values, vectors = np.linalg.svd(rows)[1:]
-    null = vectors[values < 1e-6 * values[0]] if len(values) == 6 else vectors[-1:]
-    if len(null) == 0:
-        null = vectors[-1:]
-    directions = null[:, :3]
-    strength, basis = np.linalg.svd(directions)[1:]
-    if strength[0] < 1e-9 or (len(strength) > 1 and strength[1] > 1e-6):
+    exact = int((values < 1e-6 * values[0]).sum())
+    # a cylinder that is not quite round still slides along itself exactly: then the next best motion is asked for
+    for count in (max(exact, 1), max(exact, 1) + 1):
+        null = vectors[-count:]
+        directions = null[:, :3]
+        strength, basis = np.linalg.svd(directions)[1:]
+        if strength[0] > 1e-6:
+            break
+    else:
         return None
+    if len(strength) > 1 and strength[1] > 1e-6:
+        return _through_centre(middle, size, null)
     a = basis[0]
     moment = np.linalg.lstsq(directions.T, a, rcond=None)[0] @ null[:, 3:]
     moment = moment - (moment @ a) * a
     return middle + size * np.cross(a, moment), a
+
+
+def _through_centre(middle: Array, size: float, null: Array) -> Axis | None:
+    """The upright axis through the point about which a shape may turn in every direction, None where there is none."""
+    # m = c x a for every null direction (a, m) is linear in the centre c
+    rows = np.vstack([np.cross(np.eye(3), a).T for a in null[:, :3]])
+    centre, _, rank, _ = np.linalg.lstsq(rows, null[:, 3:].ravel(), rcond=None)
+    off = np.abs(rows @ centre - null[:, 3:].ravel()).max()
+    return (middle + size * centre, np.array([0.0, 0.0, 1.0])) if rank == 3 and off < 1e-6 else None

@@ -14,6 +14,7 @@ from ..core.geometry.contour import Piece
 from ..core.geometry.profile import Array
 from ..core.geometry.sampling import Curve, arc, line
 from .cylindrical import AxisFrame, as_array, edge_points, flattened, pieces_of, smooth_pieces
+from .lost_pole import has_lost_pole, restored
 
 TOLERANCE = 1e-3  # mm a face may be off its own surface of revolution
 EDGE_TOLERANCE = 1e-2  # mm an edge may be off a parallel or a meridian
@@ -41,6 +42,8 @@ class Patch:
 
 def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
     """The face about the axis of the frame."""
+    if has_lost_pole(face):
+        return _closed_on_axis(face, name, frame)
     if _ends_a_turn(face, frame):
         return Patch(name, (), 0.0)
     try:
@@ -57,6 +60,16 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
         return Patch(name, (), edge, "it is cut out or slanted: an edge runs neither around nor along it")
     turn = _turn(face, frame)
     return Patch(name, tuple(Piece(name, points, tangents, turn) for points, tangents in curves), deviation)
+
+
+def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
+    """The patch of a face whose file has lost its pole."""
+    curves = restored(face, frame)
+    edge = _edge_deviation(face, frame)
+    if curves is None or edge > EDGE_TOLERANCE:
+        what = "it has an edge but no area, so the file is damaged or it does not turn about the axis"
+        return Patch(name, (), max(edge, 2.0 * TOLERANCE), what)
+    return Patch(name, tuple(Piece(name, points, tangents) for points, tangents in curves), 0.0)
 
 
 def _ends_a_turn(face: Any, frame: AxisFrame) -> bool:

@@ -14,6 +14,7 @@ from ..core.geometry.profile import Array, Meridian, RevolvedWall
 from ..core.issues import NOTE, WARNING, InputError, Issue
 from .axis import candidates
 from .cylindrical import AxisFrame, axis_frame
+from .lost_pole import has_lost_pole
 from .patch import Patch, patch_of, planar
 from .turn import common_turn, merged
 from .wire import pieces_of_edges
@@ -75,7 +76,9 @@ def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any]
 def _from_faces(
     named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str, selected: bool
 ) -> RevolvedWall:
-    wide = [(name, face) for name, face in named if 2.0 * face.Area > SLIVER * face.Length]
+    wide = [
+        (name, face) for name, face in named if 2.0 * face.Area > SLIVER * face.Length or has_lost_pole(face)
+    ]
     if not wide:
         raise InputError("NO_WALL", label, "it has no face of any width; choose another object")
     lines = [axis] if axis is not None else list(candidates([face for _, face in wide]))
@@ -85,7 +88,7 @@ def _from_faces(
     for point, direction in lines:
         frame = axis_frame(point, direction)
         patches = [patch_of(face, name, frame) for name, face in wide]
-        bad = sum(face.Area for (_, face), patch in zip(wide, patches, strict=True) if not patch.sound)
+        bad = sum(face.Area + SLIVER for (_, face), patch in zip(wide, patches, strict=True) if not patch.sound)
         if best is None or bad < best[0]:
             best = bad, frame, patches
         if bad == 0.0:

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files in: the good ones whole, the bad ones with a reason, and nothing printed."""
+
+import FreeCAD  # noqa: F401
+import Part
+import pytest
+
+from freecad_am.brep.read import read_shape
+from freecad_am.core.issues import InputError
+
+
+@pytest.fixture
+def cone():
+    return Part.makeCone(20, 10, 30)
+
+
+@pytest.mark.parametrize("name", ["a.step", "a.STP", "b.brep", "with space.stp", "Hémisphère ø45 – été.step"])
+def test_shapes_come_back_whole(tmp_path, cone, name):
+    path = tmp_path / name
+    cone.exportBrep(str(path)) if name.endswith("brep") else cone.exportStep(str(tmp_path / "x.step"))
+    if not name.endswith("brep"):
+        (tmp_path / "x.step").rename(path)
+    shape = read_shape(path)
+    assert shape.Volume == pytest.approx(cone.Volume, rel=1e-9)
+    assert len(shape.Faces) == 3
+
+
+def test_iges_comes_back(tmp_path, cone):
+    cone.exportIges(str(tmp_path / "a.igs"))
+    assert read_shape(str(tmp_path / "a.igs")).Area == pytest.approx(cone.Area, rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "content", "code"), [
+    ("missing.step", None, "NO_FILE"), ("empty.step", b"", "EMPTY_FILE"), ("bad.step", b"no STEP file\n", "BAD_FILE"),
+    ("bad.brep", b"xx", "BAD_FILE"), ("bad.igs", b"xx", "BAD_FILE"), ("binary.step", bytes(range(256)) * 20, "BAD_FILE"),
+    ("part.stl", b"solid x\nendsolid x\n", "UNSUPPORTED_FILE"), ("part.3mf", b"x", "UNSUPPORTED_FILE"),
+    ("part.OBJ", b"x", "UNSUPPORTED_FILE"), ("part.txt", b"x", "UNSUPPORTED_FILE"), ("part", b"x", "UNSUPPORTED_FILE"),
+])
+def test_what_cannot_be_read_is_refused_by_name(tmp_path, name, content, code):
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(InputError) as refused:
+        read_shape(path)
+    assert refused.value.code == code
+    assert refused.value.where == name
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.98])
+def test_truncated_files_are_refused_and_standard_output_stays_clean(tmp_path, cone, share, capfd):
+    cone.exportStep(str(tmp_path / "whole.step"))
+    capfd.readouterr()
+    content = (tmp_path / "whole.step").read_bytes()
+    (tmp_path / "cut.step").write_bytes(content[: int(share * len(content))])
+    with pytest.raises(InputError) as refused:
+        read_shape(tmp_path / "cut.step")
+    assert refused.value.code == "BAD_FILE"
+    assert capfd.readouterr().out == ""
+
+
+def test_damaged_content_never_reaches_standard_output(tmp_path, cone, capfd):
+    cone.exportStep(str(tmp_path / "whole.step"))
+    capfd.readouterr()
+    text = (tmp_path / "whole.step").read_text().replace("CONICAL_SURFACE", "COMICAL_SURFACE")
+    (tmp_path / "odd.step").write_text(text)
+    try:
+        read_shape(tmp_path / "odd.step")
+    except InputError as refused:
+        assert refused.code in ("BAD_FILE", "EMPTY_FILE")
+    assert capfd.readouterr().out == ""
+
+
+def test_a_file_without_a_shape_is_empty(tmp_path):
+    Part.makeCompound([]).exportBrep(str(tmp_path / "nothing.brep"))
+    with pytest.raises(InputError) as refused:
+        read_shape(tmp_path / "nothing.brep")
+    assert refused.value.code == "EMPTY_FILE"
+
+
+def test_a_folder_is_no_file(tmp_path):
+    (tmp_path / "a.step").mkdir()
+    with pytest.raises(InputError, match="folder"):
+        read_shape(tmp_path / "a.step")
