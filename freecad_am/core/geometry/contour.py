@@ -12,11 +12,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from .profile import Array, Meridian, arc_lengths
+from .profile import Array, Meridian, arc_lengths, turning
 
 JOIN = 1e-4  # mm; ends closer than this are one point
 BRIDGE = 0.2  # mm; wider gaps are not bridged
 LEVEL = 1e-4  # mm; heights closer than this are the same
+SQUARE = (np.radians(60.0), np.radians(120.0))  # corners between a wall and the rim that ends it
+RIM = 1.0 / 6.0  # of the contour; a longer piece is a wall
 
 
 @dataclass(frozen=True)
@@ -91,15 +93,16 @@ def upright(chain: Chain) -> Chain:
 def walls(chain: Chain) -> list[Chain]:
     """The walls of a closed contour, the one at the larger radius first.
 
-    The contour is cut at its lowest and highest points; flat pieces there, and flat pieces at the ends of what is
-    left, are end faces and no wall. A contour of a full part has one wall, of a hollow part two.
+    The contour is cut at its lowest and highest points; flat pieces there, short rims square to both walls there, and
+    flat pieces at the ends of what is left, are end faces and no wall. A contour of a full part has one wall, of a hollow part two.
     """
     level = np.vstack([piece.points for piece in chain])[:, 1]
     low, high = float(level.min()), float(level.max())
     meets = float(np.hypot(*(ends(chain)[1] - ends(chain)[0]))) < JOIN
+    rims = _rims(chain, meets, low, high)
     runs: list[Chain] = [[]]
-    for piece in chain:
-        if piece.flat and min(abs(piece.points[0, 1] - low), abs(piece.points[0, 1] - high)) < LEVEL:
+    for index, piece in enumerate(chain):
+        if index in rims or (piece.flat and _at_extreme(piece.points[0], low, high)):
             runs.append([])
             continue
         for part in _cut_at(piece, low, high):
@@ -110,6 +113,27 @@ def walls(chain: Chain) -> list[Chain]:
         runs[0] = runs.pop() + runs[0]
     found = [stripped for run in runs if (stripped := _without_flat_ends(run))]
     return [upright(run) for run in sorted(found, key=_mean_radius, reverse=True)]
+
+
+def _rims(chain: Chain, meets: bool, low: float, high: float) -> set[int]:
+    """Indices of slanted end faces: straight pieces that reach the lowest or highest level, where no flat piece is,
+    square to both neighbours, which they join to each other, and shorter than RIM of the contour.
+    """
+    lengths = [float(arc_lengths(piece.points, piece.tangents).sum()) for piece in chain]
+    flat_levels = [piece.points[0, 1] for piece in chain if piece.flat]
+    found = set()
+    for index, piece in enumerate(chain):
+        if not meets and index in (0, len(chain) - 1):
+            continue
+        before, after = chain[index - 1].tangents[-1], chain[(index + 1) % len(chain)].tangents[0]
+        turns = turning(before, piece.tangents[0]), turning(piece.tangents[-1], after)
+        square = turns[0] * turns[1] > 0.0 and all(SQUARE[0] < abs(turn) < SQUARE[1] for turn in turns)
+        straight = float(np.abs(piece.tangents - piece.tangents[0]).max()) < 1e-6
+        levels = [z for z in (low, high) if np.abs(piece.points[[0, -1], 1] - z).min() < LEVEL]
+        ends_wall = any(all(abs(flat - z) > LEVEL for flat in flat_levels) for z in levels)
+        if straight and square and ends_wall and lengths[index] < RIM * sum(lengths):
+            found.add(index)
+    return found
 
 
 def _at_extreme(point: Array, low: float, high: float) -> bool:

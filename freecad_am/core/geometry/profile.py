@@ -32,13 +32,14 @@ def arc_lengths(points: Array, tangents: Array) -> Array:
     """
     steps = np.diff(points, axis=0)
     chords = np.hypot(steps[:, 0], steps[:, 1])
-    a = _angle(steps, tangents[:-1])
-    b = _angle(steps, tangents[1:])
+    a = turning(steps, tangents[:-1])
+    b = turning(steps, tangents[1:])
     length: Array = chords * (1.0 + (2.0 * a * a - a * b + 2.0 * b * b) / 30.0)
     return length
 
 
-def _angle(one: Array, other: Array) -> Array:
+def turning(one: Array, other: Array) -> Array:
+    """Angle (...,) rad from vectors to others, (..., 2), counter-clockwise positive."""
     cross = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
     angle: Array = np.arctan2(cross, (one * other).sum(axis=-1))
     return angle
@@ -100,7 +101,7 @@ class Meridian:
     def kinks(self) -> Array:
         """Arc lengths (k,) at which the tangent jumps, mm."""
         at = np.flatnonzero(np.diff(self.s) == 0.0)
-        kinks: Array = self.s[at[np.abs(_angle(self.tangents[at], self.tangents[at + 1])) > KINK]]
+        kinks: Array = self.s[at[np.abs(turning(self.tangents[at], self.tangents[at + 1])) > KINK]]
         return kinks
 
     @property
@@ -160,7 +161,7 @@ def _bridge(points: list[Array], tangents: list[Array], lengths: list[float], to
         points.append(np.array([end, to]))
         tangents.append(np.array([along, along]))
         lengths.extend([0.0, distance])
-    if SAME_PLACE < distance <= STEP or abs(_angle(tangents[-1][-1], tangent)) > KINK:
+    if SAME_PLACE < distance <= STEP or abs(turning(tangents[-1][-1], tangent)) > KINK:
         points.append(np.array([to]))
         tangents.append(np.array([tangent]))
         lengths.append(0.0)

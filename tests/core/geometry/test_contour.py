@@ -85,6 +85,25 @@ def test_a_dome_with_a_rounded_rim_is_cut_in_its_rim():
     assert all(wall.points[0] == pytest.approx([44.0, -1.0], abs=1e-6) for wall in walls)
 
 
+@pytest.mark.parametrize("start", range(4))
+@pytest.mark.parametrize("slope", [0.3, 1.0, 3.0])
+def test_rims_square_to_slanted_walls_are_no_wall(start, slope):
+    along = np.array([-1.0, slope]) / np.hypot(1.0, slope)
+    across = 2.0 * np.array([along[1], -along[0]])
+    foot = np.array([40.0, 0.0])
+    ring = [foot, foot + 25.0 * along, foot + 25.0 * along + across, foot + across]
+    ring = corners(*np.roll(ring, start, axis=0), np.roll(ring, start, axis=0)[0])
+    outer, inner = (contour.meridian_of(wall) for wall in contour.walls(contour.chains(ring)[0][0]))
+    assert (outer.length, inner.length) == pytest.approx((25.0, 25.0))
+    assert outer.points[0] == pytest.approx(foot + across)
+    assert inner.points[0] == pytest.approx(foot)
+
+
+def test_sides_of_a_square_on_its_corner_are_walls():
+    ring = corners((30, 0), (40, 10), (30, 20), (20, 10), (30, 0))
+    assert [names(wall) for wall in contour.walls(ring)] == [["Face1", "Face2"], ["Face4", "Face3"]]
+
+
 def test_halfway_between_parallel_walls_is_the_parallel_in_the_middle():
     def wall(off):
         return pieces(line((45 + off, -20), (45 + off, 0)), arc((0, 0), 45 + off, 0.0, np.pi / 2))
