@@ -30,7 +30,7 @@ class Session:
         self._handle(signal.SIGTERM)
         sys.stdout.flush()
         sys.stderr.flush()
-        self._saved = (os.dup(1), os.dup(2))
+        self._saved = (_kept(1), _kept(2))
         self._tty = os.isatty(2)
         if not os.environ.get("FREECAD_AM_DEBUG"):
             nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -91,6 +91,13 @@ class Session:
     def _interrupt(self, *_: Any) -> None:
         self._interrupted = True
         raise KeyboardInterrupt
+
+
+def _kept(descriptor: int) -> int:
+    try:
+        return os.dup(descriptor)
+    except OSError:  # closed by who started us
+        return os.open(os.devnull, os.O_WRONLY)
 
 
 def _write(descriptor: int, text: str) -> None:

@@ -35,16 +35,39 @@ class Curve:
 
 
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit."""
+    """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
+
+    A spiral is one layer; there it is the distance of each point to the turn before.
+    """
+    beads = toolpath.layers[0].beads
+    if len(toolpath.layers) == 1 and len(beads) == 1 and not beads[0].closed and toolpath.family == "revolution":
+        return between_turns(beads[0])
     return tuple(
         distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
         for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False)
     )
 
 
+def between_turns(bead: Bead) -> tuple[Array, ...]:
+    """Per quarter turn after the first turn, (n,) mm: the distance of its points to the stretch one turn before.
+
+    The stretch is three quarters of a turn long, so that it holds the nearest point but not the points' own neighbours.
+    """
+    angle = np.abs(bead.parameter - bead.parameter[0])
+    quarter = 0.5 * np.pi
+    found = []
+    for start in np.arange(4.0 * quarter, angle[-1], quarter):
+        mine = (angle >= start) & (angle < start + quarter)
+        first, last = np.searchsorted(angle, (start - 5.0 * quarter, start - 2.0 * quarter))
+        first = max(int(first) - 1, 0)
+        if mine.any() and last - first > 1:
+            found.append(distance(bead.points[mine], Curve(*_columns(bead.points[first : int(last) + 1], closed=False))))
+    return tuple(found)
+
+
 def curve_of(layer: Layer) -> Curve:
     """The smooth curve through the points of a layer's beads."""
-    pieces = [_bead_curve(bead) for bead in layer.beads]
+    pieces = [_columns(bead.points, bead.closed) for bead in layer.beads]
     return Curve(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
 
 
@@ -114,15 +137,14 @@ def _to_cubic(points: Array, segment: NDArray[np.intp], curve: Curve) -> Array:
     return found
 
 
-def _bead_curve(bead: Bead) -> tuple[Array, Array, Array, Array, Array, Array]:
-    """The columns of `Curve` for one bead."""
-    points = bead.points
+def _columns(points: Array, closed: bool) -> tuple[Array, ...]:
+    """The columns of `Curve` for the points (n, 3) of one bead or a part of it."""
     step = np.diff(points, axis=0)
     length = np.linalg.norm(step, axis=1)
     chord = step / np.where(length > 0.0, length, 1.0)[:, None]
     before, after = np.roll(chord, 1, axis=0), chord
     smooth = np.einsum("ij,ij->i", before, after) > np.cos(CORNER)  # at the start of each segment
-    smooth[0] &= bead.closed
+    smooth[0] &= closed
     # the tangent of the parabola through three points: the nearer neighbour counts more
     tangent = _unit(before * length[:, None] + after * np.roll(length, 1)[:, None])
     at_start, at_end = tangent, np.roll(tangent, -1, axis=0)

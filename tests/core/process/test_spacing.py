@@ -91,3 +91,19 @@ def test_two_beads_in_a_layer_and_one_layer_alone():
     found = spacing.distance(above.points, spacing.curve_of(below))
     np.testing.assert_allclose(found, 5.0, atol=1e-6)
     assert spacing.between_layers(path(inner)) == ()
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_turns_of_a_spiral_are_one_pitch_apart(way):
+    radius, pitch, turns = 20.0, 1.5, 6.3
+    angle = np.linspace(0.0, 2 * np.pi * turns, 2000)
+    points = np.c_[radius * np.cos(angle), way * radius * np.sin(angle), pitch * angle / (2 * np.pi)]
+    up = np.tile([0.0, 0.0, 1.0], (2000, 1))
+    spiral = Bead(points, up, up, way * angle, np.ones(2000), False)
+    found = np.concatenate(spacing.between_layers(Toolpath((Layer((spiral,)),), np.eye(4), 1.5, 0.01)))
+    assert len(found) == np.count_nonzero(angle >= 2 * np.pi)
+    # the nearest point of the helix turn below, by minimising over its angle on a fine grid
+    back = np.linspace(-0.1, 0.1, 200_001)
+    chord = 2 * radius * np.sin(back / 2)
+    exact = np.sqrt(chord**2 + (pitch - pitch * back / (2 * np.pi)) ** 2).min()
+    np.testing.assert_allclose(found, exact, atol=1e-6)
