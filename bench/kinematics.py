@@ -7,38 +7,22 @@ against each other before anything is timed.
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from statistics import median
 from time import perf_counter
-from typing import NamedTuple
 
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import numpy as np
 
-import numpy as np  # noqa: E402
+from freecad_am.core.geometry import frames
+from freecad_am.core.kinematics import jacobian as jac
+from freecad_am.core.kinematics import machine
+from freecad_am.kdl import chain as kdl
 
-from freecad_am.core.geometry import frames  # noqa: E402
-from freecad_am.core.kinematics import jacobian as jac  # noqa: E402
-from freecad_am.core.kinematics import machine  # noqa: E402
-from freecad_am.kdl import chain as kdl  # noqa: E402
+from rows import Row
 
 POSES, FEW, ROUNDS = 2000, 200, 15
 MACHINE = "fanuc-arcmate120ic"
 LENGTH = 1000.0
-
-
-class Row(NamedTuple):
-    """One comparison. `ours` and `peer` in microseconds per pose; `peer` and `ratio` None where it is not installed."""
-
-    name: str
-    ours: float
-    peer: float | None
-    ratio: float | None
-    required: float
 
 
 def run() -> list[Row]:
@@ -72,7 +56,7 @@ def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
     try:
         from eaik.IK_Homogeneous import HomogeneousRobot
     except ImportError:
-        return Row(f"{name}: peer not installed", 1e6 * _time(ours) / POSES, None, None, required)
+        return Row(f"{name}: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", required)
     zero = arm.chain.frames(np.zeros(6))
     upright = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), zero.directions), zero.origins)
     scale = np.ones((4, 4))
@@ -96,7 +80,7 @@ def _one_branch(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> list[
         return arm.opw.inverse_branch(poses, branch)
 
     if not kdl.available():
-        return [Row(f"{name} solvers: peer not installed", 1e6 * _time(ours) / POSES, None, None, 100.0)]
+        return [Row(f"{name} solvers: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", 100.0)]
     second = kdl.KdlArm(arm)
     seeds = q[:FEW] + np.random.default_rng(2).uniform(-1, 1, (FEW, 6)) * np.radians(2.0)
     rows = []
@@ -145,7 +129,7 @@ def _row(
     times = [(_time(ours), _time(peer)) for _ in range(ROUNDS)]
     own = 1e6 * median(time for time, _ in times) / count
     other = 1e6 * median(time for _, time in times) / peer_count
-    return Row(name, own, other, other / own, required)
+    return Row(name, own, other, "us/pose", required)
 
 
 def _time(function: Callable[[], object], least: float = 0.01) -> float:
@@ -157,19 +141,3 @@ def _time(function: Callable[[], object], least: float = 0.01) -> float:
         took = perf_counter() - start
         if took > least:
             return took / calls
-
-
-def main() -> int:
-    """Print all comparisons; 1 when one falls short."""
-    short = False
-    for row in run():
-        if row.ratio is None:
-            print(f"{row.name}: {row.ours:.3f} us/pose")
-            continue
-        short |= row.ratio < row.required
-        print(f"{row.name}: {row.ours:.3f} against {row.peer:.3f} us/pose, {row.ratio:.1f}x (at least {row.required:g}x)")
-    return int(short)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

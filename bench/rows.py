@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A line of the benchmark: what we cost, what a named peer costs in the same run, and the ratio asked for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Row(NamedTuple):
+    """`ours` and `peer` in `unit`, medians; peer None where it is not installed. The peer must cost at least
+    `required` times what we do."""
+
+    name: str
+    ours: float
+    peer: float | None
+    unit: str
+    required: float
+
+    @property
+    def ratio(self) -> float | None:
+        """How many times as much the peer costs."""
+        return None if self.peer is None else self.peer / self.ours
+
+    @property
+    def short(self) -> bool:
+        """True when the ratio asked for is not reached."""
+        return self.ratio is not None and self.ratio < self.required
+
+    def line(self) -> str:
+        """The comparison in words."""
+        if self.peer is None or self.ratio is None:
+            return f"  --   {self.name}: {self.ours:.3f} {self.unit}, peer not installed"
+        mark = "SHORT" if self.short else "ok"
+        return (
+            f"{mark:>5}  {self.name}: {self.ours:.3f} against {self.peer:.3f} {self.unit}, {self.ratio:.2f} times "
+            f"(at least {self.required:g})"
+        )

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs the benchmarks named, or all; ends with 1 when one falls short.
+
+Peers that come from the package index alone are installed into an environment of the benchmark's own (.bench-env), which
+sees the distribution's packages; nothing else uses it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ENVIRONMENT = HERE.parent / ".bench-env"
+PEERS = ("eaik",)
+BENCHMARKS = ("kinematics", "planning", "whole")
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+
+
+def environment_python() -> Path | None:
+    """The Python of the benchmark's environment, made and filled when it is not there; None when that fails."""
+    python = ENVIRONMENT / "bin" / "python"
+    if python.exists():
+        return python
+    print(f"bench: making {ENVIRONMENT.name} with {', '.join(PEERS)}", file=sys.stderr)
+    made = subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(ENVIRONMENT)], check=False)
+    if made.returncode == 0:
+        # the distribution's numpy and scipy stay as they are: FreeCAD is built against them
+        filled = subprocess.run([str(python), "-m", "pip", "install", "-q", "--no-deps", *PEERS], check=False)
+        if filled.returncode == 0:
+            return python
+    print("bench: the peers could not be installed; their rows go without", file=sys.stderr)
+    return None
+
+
+def main(names: list[str]) -> int:
+    """Print a line per comparison."""
+    sys.path[:0] = [str(HERE.parent), str(HERE)]
+    from freecad_am.batch import host
+
+    host.find_freecad()
+    short = False
+    for name in names or BENCHMARKS:
+        if name not in BENCHMARKS:
+            print(f"error[USAGE] bench: there is no benchmark {name!r}; use {', '.join(BENCHMARKS)}", file=sys.stderr)
+            return 2
+        print(f"{name}", flush=True)
+        for row in importlib.import_module(name).run():
+            short |= row.short
+            print(row.line(), flush=True)
+    return int(short)
+
+
+if __name__ == "__main__":
+    if "BENCH_INSIDE" not in os.environ:
+        python = environment_python()
+        inside = {**os.environ, **ONE_THREAD, "BENCH_INSIDE": "1"}
+        os.execve(python or sys.executable, [str(python or sys.executable), __file__, *sys.argv[1:]], inside)
+    sys.exit(main(sys.argv[1:]))

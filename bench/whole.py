@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The whole of a job: the hemisphere in 71 layers from its STEP file to program files and FCStd.
+
+Peer: a bare FreeCAD process that starts, imports the same file and saves it. Both as processes of their own, in turns.
+The time of report.html is taken off ours.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from statistics import median
+
+from rows import Row
+
+ROOT = Path(__file__).resolve().parent.parent
+EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
+ROUNDS = 9
+BARE = """import os, sys
+import FreeCAD, Import
+document = FreeCAD.newDocument("Bare")
+Import.insert({step!r}, document.Name)
+document.recompute()
+document.saveAs({saved!r})
+sys.stdout.flush()
+os._exit(0)
+"""
+
+
+def run() -> list[Row]:
+    """One comparison."""
+    host = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
+    with tempfile.TemporaryDirectory() as folder:
+        job, out = Path(folder) / "hemisphere.yaml", Path(folder) / "out"
+        text = (EXAMPLE.parent / "hemisphere.yaml").read_text(encoding="utf-8").replace("hemisphere.step", str(EXAMPLE))
+        job.write_text("".join(line for line in text.splitlines(True) if "compare:" not in line), encoding="utf-8")
+        script = Path(folder) / "bare.py"
+        script.write_text(BARE.format(step=str(EXAMPLE), saved=str(Path(folder) / "bare.FCStd")), encoding="utf-8")
+        plan = [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out)]
+        ours, bare = [], []
+        for number in range(ROUNDS + 1):
+            took = _took(plan) - _page_time(out)
+            other = _took([host, str(script)]) if host else None
+            if number:  # the first round fills the caches
+                ours.append(took)
+                bare.append(other)
+        return [Row("71 layers, STEP to programs and FCStd; FreeCAD starting, importing and saving the same file",
+                    median(ours), median(bare) if host else None, "s", 1.0 / 8.0)]
+
+
+def _took(command: list[str]) -> float:
+    environment = {key: value for key, value in os.environ.items() if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
+    start = time.perf_counter()
+    done = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, env=environment)
+    took = time.perf_counter() - start
+    if done.returncode:
+        print(done.stderr, file=sys.stderr)
+        raise AssertionError(f"{command[0]} ended with {done.returncode}")
+    return took
+
+
+def _page_time(out: Path) -> float:
+    """Seconds the report page took."""
+    timing = json.loads((out / "report.json").read_text(encoding="utf-8"))["timing_s"]
+    return float(timing.get("page", 0.0))
