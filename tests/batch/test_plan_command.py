@@ -147,7 +147,9 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     report = json.loads(workshop.files()["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []
     assert report["issues"][0].keys() == {"level", "code", "message", "layer", "bead", "point"}
-    assert report["joints"]["feasible"] is False
+    assert report["joints"]["feasible"] is False and report["duration_s"] > 0.0
+    page = workshop.files()["report.html"].decode()
+    assert "UNREACHABLE" in page and not re.search(r"\bnan\b|\binf\b", page)
     rows, _ = deposit(workshop.files()["waypoints.csv"].decode())
     assert rows[0]["q1_deg"] == "" and rows[0]["x_mm"] != ""
 
@@ -282,3 +284,32 @@ def test_machines_lists_those_that_plan_accepts(workshop):
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 0, done.err
     assert json.loads(workshop.files()["report.json"])["machine"]["id"] == "my-robot"
+
+
+def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
+    import os
+    import pty
+
+    shown = []
+
+    def read(descriptor):
+        shown.append(os.read(descriptor, 4096))
+        return shown[-1]
+
+    screen = os.open(os.devnull, os.O_WRONLY)
+    keep = os.dup(1)
+    os.dup2(screen, 1)  # pty.spawn copies to it
+    try:
+        home = workshop.environment()["FREECAD_USER_HOME"]
+        command = f"cd '{workshop.folder}' && FREECAD_USER_HOME='{home}' '{workshop.launcher}' plan cup.yaml"
+        status = pty.spawn(["/bin/sh", "-c", command], read)
+    finally:
+        os.dup2(keep, 1)
+        os.close(keep)
+        os.close(screen)
+    text = b"".join(shown).decode()
+    assert os.waitstatus_to_exitcode(status) == 0
+    assert "joint path" in text and "%" in text
+    last = text.rindex("page ...")
+    assert text[last:].startswith("page ...\r\x1b[K")
+    assert "\x1b" not in text[last + 12 :]
