@@ -67,7 +67,7 @@ def make_feature(
 
     `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
     """
-    links = {"Source": None if source is None else (source, list(faces)), "Axis": axis}
+    links = {"Source": _with_faces(source, faces), "Axis": axis}
     return _make(doc, RevolutionFeature, "Feature", label, links, [strategy, build_direction], values)
 
 
@@ -126,15 +126,21 @@ def proposed_name(text: str) -> str:
 
 
 def change(obj: Any, **values: Any) -> Any:
-    """Change parameters of a stage (or its ProgramName, as `name`), and renew it and what follows; the object.
+    """Change parameters or inputs of a stage as its `make_...` takes them, and renew it and what follows; the object.
 
     `am.change(doc.Feature, layer_height=2)`. An error of what follows is told in its own Status.
     """
     proxy = _stage(obj)
     with _one_step(obj.Document, f"Edit {obj.Label}"):
-        if "name" in values and isinstance(proxy, Program):
-            obj.ProgramName = values.pop("name")
+        links = {link.key: link.name for link in proxy.links}
+        if isinstance(proxy, Program):
+            links["name"] = "ProgramName"
+        if "source" in values:
+            values["source"] = _with_faces(values["source"], values.pop("faces", ()))
+        chosen = {links[key]: values.pop(key) for key in links if key in values}
         given(obj, proxy, [], values)
+        for property_name, value in chosen.items():
+            setattr(obj, property_name, value)
         _renew(obj)
         for follower in _in_order(obj.InListRecursive):
             with contextlib.suppress(AmError):
@@ -233,6 +239,10 @@ def _make(
             doc.removeObject(obj.Name)
             raise
     return obj
+
+
+def _with_faces(source: Any, faces: Sequence[str]) -> Any:
+    return None if source is None else (source, list(faces))
 
 
 def _renew(obj: Any, force: bool = False) -> None:

@@ -57,47 +57,41 @@ def _new_job() -> None:
     stage_panel.show(job_panel.JobPanel())
 
 
-def _open(proxy: type, title: str, maker: str, choices: list[Any]) -> None:
-    from . import stage_panel
+def _open(proxy: Any, title: str, *more: Any) -> None:
+    from . import inputs, stage_panel
 
-    stage_panel.show(stage_panel.StagePanel(proxy, title, maker, choices))
+    stage_panel.show(stage_panel.StagePanel(proxy, title, [*inputs.of(proxy), *more]))
 
 
 def _cell() -> None:
     from ..objects.cell import Cell
 
-    _open(Cell, "Cell", "make_cell", [])
+    _open(Cell, "Cell")
 
 
 def _feature() -> None:
     from ..objects.feature import RevolutionFeature
-    from . import inputs
 
-    _open(RevolutionFeature, "Feature", "make_feature", [inputs.SourceChoice()])
+    _open(RevolutionFeature, "Feature")
 
 
 def _toolpath() -> None:
     from ..objects.toolpath import Toolpath
-    from . import inputs
 
-    choices = [inputs.StageChoice("feature", "Feature"), inputs.StageChoice("cell", "Cell", required=False)]
-    _open(Toolpath, "Toolpath", "make_toolpath", choices)
+    _open(Toolpath, "Toolpath")
 
 
 def _joint_path() -> None:
     from ..objects.joint_path import JointPath
-    from . import inputs
 
-    choices = [inputs.StageChoice("toolpath", "Toolpath"), inputs.StageChoice("cell", "Cell")]
-    _open(JointPath, "Joint path", "make_joint_path", choices)
+    _open(JointPath, "Joint path")
 
 
 def _program() -> None:
     from ..objects.program import Program
     from . import inputs
 
-    choices = [inputs.StageChoice("joint path", "Joint path"), inputs.NameChoice(_part_name())]
-    _open(Program, "Program", "make_program", choices)
+    _open(Program, "Program", inputs.NameChoice(_part_name()))
 
 
 def _part_name() -> str:

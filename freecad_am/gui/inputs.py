@@ -9,12 +9,12 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
-from ..objects.stage import stage_of
+from ..objects.stage import Link, Stage, stage_of
 from . import recorded
 
 
 class Input:
-    """A row of the panel that gives one argument of the macro function."""
+    """A row of the panel that gives arguments of the macro function."""
 
     label = ""
     widget: Any = None
@@ -24,83 +24,94 @@ class Input:
         """What to do when there is nothing to choose, '' when there is."""
         return ""
 
-    def argument(self) -> str:
-        """The argument as Python text, '' for none."""
+    def arguments(self) -> dict[str, str]:
+        """Arguments by keyword as Python texts."""
         raise NotImplementedError
 
 
 class StageChoice(Input):
-    """One of the stages of a kind in the active document; the selected one first, else the last."""
+    """One of the stages of a kind in the active document; the present one, else the selected one, else the last."""
 
-    def __init__(self, kind: str, label: str, keyword: str = "", required: bool = True) -> None:
-        self.kind, self.label, self.keyword, self.required = kind, label, keyword, required
+    def __init__(self, link: Link, present: Any) -> None:
+        self.link, self.label = link, link.kind[0].upper() + link.kind[1:]
         self.widget = QtGui.QComboBox()
-        self.widget.setObjectName(f"Input{label.replace(' ', '')}")
+        self.widget.setObjectName(f"Input{link.name}")
+        self.widget.setToolTip(link.help)
         names = []
         for obj in App.ActiveDocument.Objects:
             stage = stage_of(obj)
-            if stage is not None and stage.kind == kind:
+            if stage is not None and stage.kind == link.kind:
                 names.append(obj.Name)
                 self.widget.addItem(obj.Label, obj.Name)
-        if not required:
+        if not link.required:
             self.widget.addItem("none", "")
         selected = [obj.Name for obj in Gui.Selection.getSelection() if obj.Name in names]
-        wanted = selected[0] if selected else (names[-1] if names else "")
+        wanted = present.Name if present is not None else (selected or names[-1:] or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(wanted)))
 
     @property
     def missing(self) -> str:
-        if not self.required or self.widget.count():
+        if not self.link.required or self.widget.count():
             return ""
-        return f"There is no {self.kind} in this document yet. Make one first: button {self.label} in the toolbar."
+        return f"There is no {self.link.kind} in this document yet. Make one first: button {self.label} in the toolbar."
 
-    def argument(self) -> str:
-        if not self.widget.count():
-            text = "None"
-        else:
-            name = self.widget.currentData()
-            text = recorded.reference(App.ActiveDocument.getObject(name)) if name else "None"
-        return f"{self.keyword}={text}" if self.keyword else text
+    def arguments(self) -> dict[str, str]:
+        name = self.widget.currentData() if self.widget.count() else ""
+        return {self.link.key: recorded.reference(App.ActiveDocument.getObject(name)) if name else "None"}
 
 
-class SourceChoice(Input):
-    """The shape or faces to deposit: what is selected, renewed by a button."""
+class ShapeChoice(Input):
+    """A shape with some of its faces, or an axis: what is selected, renewed by a button. `present`: as the link holds it."""
 
-    label = "Shape"
-
-    def __init__(self) -> None:
+    def __init__(self, link: Link, present: Any, take_now: bool) -> None:
+        self.link, self.label, self.present = link, link.name, present
         self.widget = QtGui.QWidget()
+        self.widget.setToolTip(link.help)
         row = QtGui.QHBoxLayout(self.widget)
         row.setContentsMargins(0, 0, 0, 0)
         self.text = QtGui.QLineEdit()
-        self.text.setObjectName("Source")
+        self.text.setObjectName(link.name)
         self.text.setReadOnly(True)
-        self.text.setPlaceholderText("select a shape or faces")
+        self.text.setPlaceholderText("select" if link.required else "of the shape")
         button = QtGui.QPushButton("Use selection")
-        button.setObjectName("UseSelection")
-        button.setToolTip("Take the shape or the faces that are selected now")
+        button.setObjectName(f"Use{link.name}")
+        button.setToolTip(f"Takes what is selected now. {link.help}")
         button.clicked.connect(self.take)
         row.addWidget(self.text)
         row.addWidget(button)
-        self.object: Any = None
-        self.faces: list[str] = []
-        self.take()
+        if take_now and present is None:
+            self.take()
+        self._show()
 
     def take(self, *_: Any) -> None:
         """Take what is selected now."""
-        found = selected_shape()
-        if found is not None:
-            self.object, self.faces = found
-            self.text.setText(" ".join([self.object.Label, *self.faces]))
+        for entry in Gui.Selection.getSelectionEx():
+            obj, names = entry.Object, list(entry.SubElementNames)
+            if self.link.name == "Axis":
+                self.present = (obj, names[:1])
+                break
+            if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull():
+                self.present = (obj, [name for name in names if name.startswith("Face")])
+                break
+        self._show()
+
+    def _show(self) -> None:
+        if self.present is not None:
+            self.text.setText(" ".join([self.present[0].Label, *self.present[1]]))
 
     @property
     def missing(self) -> str:
-        return "" if self.object is not None else "Select the shape to deposit, or its faces, and press Use selection."
+        if not self.link.required or self.present is not None:
+            return ""
+        return "Select the shape to deposit, or its faces, and press Use selection."
 
-    def argument(self) -> str:
-        if self.object is None:
-            return "None"
-        return f"{recorded.reference(self.object)}, {self.faces!r}"
+    def arguments(self) -> dict[str, str]:
+        if self.present is None:
+            return {self.link.key: "None"} if self.link.required else {}
+        obj, names = self.present
+        if self.link.name == "Axis":
+            return {"axis": f"({recorded.reference(obj)}, {(names or [''])[0]!r})"}
+        return {"source": recorded.reference(obj), "faces": repr([name for name in names if name])}
 
 
 class NameChoice(Input):
@@ -113,14 +124,17 @@ class NameChoice(Input):
         self.widget.setObjectName("ProgramName")
         self.widget.setToolTip("Name of the program and of its files; the controller may refuse some")
 
-    def argument(self) -> str:
-        return f"name={self.widget.text().strip()!r}"
+    def arguments(self) -> dict[str, str]:
+        return {"name": repr(self.widget.text().strip())}
 
 
-def selected_shape() -> tuple[Any, list[str]] | None:
-    """The selected object with a shape and its selected faces, None when nothing of that kind is selected."""
-    for entry in Gui.Selection.getSelectionEx():
-        obj = entry.Object
-        if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull():
-            return obj, [name for name in entry.SubElementNames if name.startswith("Face")]
-    return None
+def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
+    """The inputs of a stage to be made, or of an existing one."""
+    found: list[Input] = []
+    for link in proxy.links:
+        present = None if obj is None else getattr(obj, link.name)
+        if link.kind:
+            found.append(StageChoice(link, present))
+        else:
+            found.append(ShapeChoice(link, present, take_now=link.required))
+    return found

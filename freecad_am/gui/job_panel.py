@@ -9,6 +9,7 @@ from PySide import QtCore, QtGui
 
 from .. import api
 from ..core.issues import AmError
+from ..objects.feature import RevolutionFeature
 from . import icons, inputs, recorded
 from .fold import Fold
 
@@ -26,8 +27,8 @@ class JobPanel:
         self.error.setObjectName("error")
         self.error.setWordWrap(True)
         self.error.setStyleSheet("QLabel { color: #c0182b; }")
-        self.source = inputs.SourceChoice()
-        name = "" if self.source.object is None else api.proposed_name(self.source.object.Label)
+        self.source = inputs.ShapeChoice(RevolutionFeature.links[0], None, take_now=True)
+        name = "" if self.source.present is None else api.proposed_name(self.source.present[0].Label)
         self.name = inputs.NameChoice(name)
         fold = Fold("Inputs", True)
         for choice in (self.source, self.name):
@@ -53,7 +54,7 @@ class JobPanel:
         """Make all stages; True closes the panel, an error is shown in it."""
         QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))
         try:
-            recorded.make("make_all", [self.source.argument(), self.name.argument()], {})
+            recorded.make("make_all", {**self.source.arguments(), **self.name.arguments()})
         except AmError as error:
             self.say(str(error))
             return False

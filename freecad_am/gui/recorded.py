@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import FreeCADGui as Gui
@@ -11,15 +10,14 @@ import FreeCADGui as Gui
 IMPORT = "import freecad_am.api as am"
 
 
-def make(function: str, arguments: Sequence[str], values: dict[str, Any]) -> None:
+def make(function: str, arguments: dict[str, str]) -> None:
     """Call a function that makes something in the active document. Raises what it raises."""
-    texts = ["App.ActiveDocument", *(text for text in arguments if text), *_keywords(values)]
-    _run(f"am.{function}({', '.join(texts)})")
+    _run(function, "App.ActiveDocument", arguments)
 
 
-def change(obj: Any, values: dict[str, Any]) -> None:
-    """Change parameters of a stage. Raises what `api.change` raises."""
-    _run(f"am.change({', '.join([reference(obj), *_keywords(values)])})")
+def change(obj: Any, arguments: dict[str, str]) -> None:
+    """Change parameters and inputs of a stage. Raises what `api.change` raises."""
+    _run("change", reference(obj), arguments)
 
 
 def reference(obj: Any) -> str:
@@ -27,10 +25,7 @@ def reference(obj: Any) -> str:
     return f"App.ActiveDocument.getObject({obj.Name!r})"
 
 
-def _keywords(values: dict[str, Any]) -> list[str]:
-    return [f"{key}={value!r}" for key, value in values.items()]
-
-
-def _run(call: str) -> None:
+def _run(function: str, first: str, arguments: dict[str, str]) -> None:
+    texts = [first, *(f"{key}={text}" for key, text in arguments.items())]
     Gui.doCommand(IMPORT)
-    Gui.doCommand(call)
+    Gui.doCommand(f"am.{function}({', '.join(texts)})")

@@ -20,15 +20,10 @@ MOST_ISSUES = 6
 
 
 class StagePanel:
-    """Parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK.
+    """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK."""
 
-    maker: name of the macro function that makes the stage. choices: the inputs to choose.
-    """
-
-    def __init__(
-        self, proxy: type[Stage], title: str, maker: str, choices: Sequence[inputs.Input], obj: Any = None
-    ) -> None:
-        self.proxy, self.maker, self.choices, self.obj = proxy, maker, choices, obj
+    def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
+        self.proxy, self.choices, self.obj = proxy, choices, obj
         self.form = QtGui.QWidget()
         self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
         self.form.setWindowTitle(title)
@@ -36,12 +31,12 @@ class StagePanel:
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
         self.error = self._note("error", "#c0182b")
-        if obj is None:
-            heading = Fold("Inputs", True)
+        if choices:
+            heading = Fold("Inputs", obj is None)
             for choice in choices:
                 heading.add(choice.label, choice.widget)
-            if choices:
-                self.column.addWidget(heading.widget)
+            self.column.addWidget(heading.widget)
+        self.first_inputs = self._inputs()
         self.fields: list[fields.Field] = []
         for section in proxy.sections:
             self._add_section(section)
@@ -108,6 +103,9 @@ class StagePanel:
         self.findings.setText("\n".join([f"Status: {self.obj.Status}", *lines]))
         self.findings.show()
 
+    def _inputs(self) -> dict[str, str]:
+        return {key: text for choice in self.choices for key, text in choice.arguments().items()}
+
     def say(self, text: str) -> None:
         """Show what is wrong."""
         self.error.setText(text)
@@ -124,11 +122,12 @@ class StagePanel:
         self.say("")
         QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))
         try:
-            changed = {field.row.key: field.value for field in self.fields if field.changed}
+            chosen = self._inputs()
+            changed = {field.row.key: repr(field.value) for field in self.fields if field.changed}
             if self.obj is None:
-                recorded.make(self.maker, [choice.argument() for choice in self.choices], changed)
-            elif changed:
-                recorded.change(self.obj, changed)
+                recorded.make(f"make_{self.proxy.kind.replace(' ', '_')}", {**chosen, **changed})
+            elif changed or chosen != self.first_inputs:
+                recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
         except AmError as error:
             self.say(str(error))
             return False
@@ -151,4 +150,7 @@ def show(panel: Any) -> None:
 
 def edit(obj: Any) -> None:
     """Open the panel of an existing stage."""
-    show(StagePanel(type(obj.Proxy), f"{obj.Label}", "", (), obj))
+    choices = inputs.of(type(obj.Proxy), obj)
+    if obj.Proxy.kind == "program":
+        choices.append(inputs.NameChoice(obj.ProgramName))
+    show(StagePanel(type(obj.Proxy), obj.Label, choices, obj))

@@ -37,6 +37,11 @@ class Link:
     required: bool = True
     type_name: str = "App::PropertyLink"
 
+    @property
+    def key(self) -> str:
+        """Its name as a macro keyword: joint_path for JointPath."""
+        return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in self.name).lstrip("_")
+
 
 @dataclass(frozen=True)
 class Section:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From a selected hemisphere to a program by clicks."""
 
+import FreeCAD as App
 import numpy as np
 import pytest
 
@@ -95,7 +96,7 @@ def test_without_a_selection_the_panel_says_what_to_do(person, hemisphere):
     person.press("Ok")
     assert "Source is missing" in person.panel_error(panel) and doc.UndoCount == 0
     person.select(hemisphere)
-    person.field(panel, "UseSelection").click()
+    person.field(panel, "UseSource").click()
     person.press("Ok")
     person.panel_closed()
     assert doc.Feature.Status == "up to date"
@@ -200,3 +201,41 @@ def test_deleting_an_input_is_told_by_what_follows(person, hemisphere):
     person.gui.runCommand("Std_Undo")
     doc.recompute()
     assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
+
+
+def test_inputs_and_the_name_can_be_changed_in_the_panel(person, hemisphere):
+    doc = hemisphere.Document
+    _, feature, toolpath, _, program = api.make_all(doc, hemisphere, name="CUP")
+    other = api.make_cell(doc, "Other cell", platform_diameter=100)
+    stage_panel.edit(toolpath)
+    person.choose(person.panel("RoboticAM_Toolpath"), "InputCell", "Other cell")
+    person.press("Ok")
+    person.panel_closed()
+    assert toolpath.Cell == other and toolpath.Feature == feature
+    stage_panel.edit(program)
+    panel = person.panel("RoboticAM_Program")
+    person.type(panel, "ProgramName", "not a name")
+    person.press("Ok")
+    assert "cannot be a program name" in person.panel_error(panel) and program.ProgramName == "CUP"
+    person.type(panel, "ProgramName", "MUG")
+    person.press("Ok")
+    person.panel_closed()
+    assert "MUG.LS" in program.Files and program.Status == "up to date"
+
+
+def test_a_line_turned_about_an_axis_by_clicks(person):
+    doc = App.newDocument("Line")
+    wall, axis = doc.addObject("Part::Line", "Wall"), doc.addObject("Part::Line", "AxisLine")
+    wall.X1, wall.Z1, wall.X2, wall.Z2 = 30, 0, 40, 50
+    axis.X1, axis.Z1, axis.X2, axis.Z2 = 0, 0, 0, 50
+    doc.recompute()
+    person.select(wall)
+    person.click("RoboticAM_Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    person.press("Ok")
+    assert person.panel_error(panel)  # a line alone has no axis
+    person.select(axis, "Edge1")
+    person.field(panel, "UseAxis").click()
+    person.press("Ok")
+    person.panel_closed()
+    assert doc.Feature.Status == "up to date" and doc.Feature.Axis == (axis, ["Edge1"])
