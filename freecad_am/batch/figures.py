@@ -13,6 +13,8 @@ from . import svg
 
 AXIS_COLOURS = ("#3b6fd4", "#d9633b", "#2f9e6e", "#9a5bd0", "#c79a1e", "#cf3f74", "#3aa5b8", "#7a7f87")
 
+_MOST_SPEED = 250.0  # per cent of the limit; what is faster is cut off, or the rest would not be seen
+
 
 def time_axis(motion: Motion) -> tuple[Array, str, tuple[float, float]]:
     """When each row is reached, in a unit that reads well, with the label and range of the axis."""
@@ -49,6 +51,8 @@ def speed_plot(motion: Motion, speed_ratio: Array, names: tuple[str, ...]) -> st
     shown = np.where(motion.deposit[:, None] & (motion.point > 0)[:, None], speed_ratio * 100.0, np.nan)
     largest = float(np.nanmax(shown, initial=0.0))
     top = max(_nice(largest), 125.0) if largest > 40.0 else _nice(largest)  # the limit is shown where it is near
+    top = min(top, _MOST_SPEED)
+    shown = np.minimum(shown, top)
     plot = svg.Plot("Joint speeds while depositing", span, (0.0, top), label, "% of the limit", width=940)
     order = np.argsort(-np.nan_to_num(np.nanmax(np.nan_to_num(shown), axis=0)))
     for axis in order:

@@ -38,11 +38,12 @@ header{display:flex;align-items:center;gap:14px;flex-wrap:wrap}.sub{color:var(--
 .card{padding:10px 12px}.card b{display:block;font-size:18px;white-space:nowrap;font-weight:600}
 .card span{color:var(--soft);font-size:13px}
 figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(400px,100%),1fr));gap:10px}
-figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}.table{overflow-x:auto}
+figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}.table{overflow-x:auto}.findings{max-height:340px;overflow-y:auto}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
 th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
 tr:first-child>*{border-top:0}th{color:var(--soft);font-weight:500}th:first-child,td:first-child{text-align:left}
-td.text{text-align:left;white-space:normal}.error{color:var(--bad);font-weight:600}.warning{color:var(--warn);font-weight:600}
+td.text,td.place{text-align:left}td.text{white-space:normal}
+.error{color:var(--bad);font-weight:600}.warning{color:var(--warn);font-weight:600}
 svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px system-ui,sans-serif}
 svg .title{fill:var(--ink);font-size:13px;font-weight:600}
 svg .grid{stroke:var(--line)}
@@ -175,10 +176,10 @@ def _issues(issues: list[dict[str, Any]]) -> str:
         place = " ".join(f"{word} {issue[word]}" for word in ("layer", "bead", "point") if issue[word] is not None)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
-            f'<td class="text">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
+            f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
         )
     more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
-    return f'<h2>Findings</h2><div class="table"><table>{"".join(rows)}</table></div>{more}<h2>Path</h2>'
+    return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}<h2>Path</h2>'
 
 
 def _programs(programs: list[str]) -> str:
