@@ -94,7 +94,8 @@ def walls(chain: Chain) -> list[Chain]:
     """The walls of a closed contour, the one at the larger radius first.
 
     The contour is cut at its lowest and highest points; flat pieces there, short rims square to both walls there, and
-    flat pieces at the ends of what is left, are end faces and no wall. A contour of a full part has one wall, of a hollow part two.
+    flat pieces at the ends of what is left, are end faces and no wall. A contour of a full part has one wall, of a
+    hollow part two.
     """
     level = np.vstack([piece.points for piece in chain])[:, 1]
     low, high = float(level.min()), float(level.max())

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..geometry.profile import Array
 from ..parameters.cell import NozzleParameters
+from .platform import Platform
 
 ROUNDING = 1e-9  # mm^2 of depth that is rounding
 AZIMUTHS = 240  # samples of the general case before its minimum is refined
@@ -24,15 +25,12 @@ AZIMUTHS = 240  # samples of the general case before its minimum is refined
 
 @dataclass(frozen=True)
 class Deposit:
-    """Beads in the order of deposit as arcs about the axis: radius and height (m,) mm in the feature frame.
-
-    platform_radius: mm of the disc at height 0, 0 without a platform.
-    """
+    """Beads in the order of deposit as arcs about the axis: radius and height (m,) mm in the feature frame."""
 
     radius: Array
     height: Array
     nozzle: NozzleParameters
-    platform_radius: float
+    platform: Platform
 
     def clear(self, bead: NDArray[np.intp], tool: Array, reach: Array) -> NDArray[np.bool_]:
         """Whether the nozzle is clear, (k,).
@@ -136,15 +134,15 @@ class Deposit:
         In the plane of the disc the depth is least on the line under the tool axis, and concave along it: only the ends
         of the stretches that matter need be looked at.
         """
-        if self.platform_radius <= 0.0:
+        if self.platform.radius <= 0.0:
             return np.ones(len(bead), dtype=bool)
-        r0, z0 = self.radius[bead], self.height[bead]
+        r0, z0 = self.radius[bead], self.height[bead] - self.platform.height
         level = np.hypot(tool[:, 0], tool[:, 1])
         leaning = level > 1e-12
         along = tool[:, :2] / np.where(leaning, level, 1.0)[:, None]
         # p runs from the foot of the deposit point along the tool's lean; x = level p - tool_z z0
         offset, side = r0 * along[:, 0], r0 * along[:, 1]
-        half = np.sqrt(np.maximum(self.platform_radius**2 - side**2, 0.0))
+        half = np.sqrt(np.maximum(self.platform.radius**2 - side**2, 0.0))
         drop = tool[:, 2] * z0
         safe = np.where(leaning, level, 1.0)
         low = np.maximum(-offset - half, drop / safe)

@@ -19,7 +19,7 @@ from ..parameters.strategy import RevolutionParameters
 from ..process import seam
 from ..slicing import arc_length, iso_height
 from ..toolpath import Bead, Layer, Toolpath
-from . import spiral
+from . import platform, spiral
 from .tilt import Tilting
 
 SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
@@ -37,21 +37,21 @@ class Slices:
 
 def plan(
     wall: RevolvedWall, strategy: RevolutionParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    nozzle: NozzleParameters, platform_diameter: float,
+    nozzle: NozzleParameters, platform_diameter: float, platform_frame: Array | None = None,
 ) -> Toolpath:
     """The toolpath of a wall of revolution, in part coordinates.
 
     Layers by arc length or height; points per bead from the chord error; build directions from the mode, capped and
-    tilted back until the nozzle is clear. platform_diameter: mm, 0 without a platform. A spiral is one layer with
-    one open bead. Raises InputError 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN'.
+    tilted back until the nozzle is clear. platform_diameter: mm, 0 without a platform. platform_frame: (4, 4) pose
+    of the platform in part coordinates, None when the feature frame sits on it. A spiral is one layer with one open
+    bead. Raises InputError 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN'.
     """
     if build.mode == "symmetry-plane":
         raise InputError(
             "NOT_FOR_FAMILY", "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
-    _check_on_platform(wall, platform_diameter)
-    tilting = Tilting(wall, build, nozzle, 0.5 * platform_diameter)
+    tilting = Tilting(wall, build, nozzle, platform.under(wall, platform_diameter, platform_frame))
     issues: list[Issue] = []
     if strategy.path == "spiral":
         layers, found = spiral.layers(wall, strategy, process, tilting)
@@ -61,16 +61,6 @@ def plan(
     return Toolpath(
         layers, wall.frame, strategy.layer_height, strategy.chord_error, (*wall.issues, *issues, *found), process.overlap
     )
-
-
-def _check_on_platform(wall: RevolvedWall, diameter: float) -> None:
-    base = float(wall.meridian.points[0, 0])
-    if diameter > 0.0 and base > 0.5 * diameter * (1.0 + 1e-9):
-        raise InputError(
-            "OFF_PLATFORM", "cell.platform_diameter",
-            f"the base of the wall has a diameter of {2.0 * base:.6g} mm and does not stand on the platform of "
-            f"{diameter:.6g} mm; give the right diameter, or 0 for none",
-        )
 
 
 def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:

@@ -19,6 +19,7 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
 from ..slicing import build_direction as directions
 from .clearance import Deposit
+from .platform import Platform
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,12 @@ class Rows:
 
 @dataclass(frozen=True)
 class Tilting:
-    """Everything that decides the tool axes of a wall. platform_radius: mm, 0 without a platform."""
+    """Everything that decides the tool axes of a wall."""
 
     wall: RevolvedWall
     parameters: BuildDirectionParameters
     nozzle: NozzleParameters
-    platform_radius: float
+    platform: Platform
 
     def settle(
         self, radius: Array, height: Array, tangent: Array, azimuths: Sequence[Array], rising: Sequence[bool],
@@ -72,7 +73,7 @@ class Tilting:
         capped = self._capped(rows)
         angle = capped.copy()
         if self.parameters.clearance == "nozzle":
-            angle = self._cleared(rows, capped, Deposit(radius, height, self.nozzle, self.platform_radius))
+            angle = self._cleared(rows, capped, Deposit(radius, height, self.nozzle, self.platform))
         angle = _worst_of_bead(rows.bead, angle)
         stuck = np.isnan(angle)
         angle = np.where(stuck, directions.from_vertical(rows.build), angle)

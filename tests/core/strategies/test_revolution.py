@@ -204,9 +204,6 @@ def test_what_is_not_for_parts_of_revolution_is_refused():
     with pytest.raises(InputError, match="symmetry-plane") as refused:
         plan(SPHERE, BuildDirectionParameters(mode="symmetry-plane"))
     assert refused.value.code == "NOT_FOR_FAMILY"
-    with pytest.raises(InputError, match=r"90 mm.*80 mm") as refused:
-        plan(SPHERE, platform=80.0)
-    assert refused.value.code == "OFF_PLATFORM"
     with pytest.raises(InputError, match="layer_height") as refused:
         plan(SPHERE, layer_height=71.0)
     assert refused.value.code == "LAYER_HEIGHT"

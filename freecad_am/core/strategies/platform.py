@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the platform is under a wall of revolution, and whether the wall stands on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.profile import Array, RevolvedWall
+from ..issues import InputError
+
+UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
+TOUCH = 1e-6  # mm
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A disc about the axis of the wall: radius mm, 0 without a platform, and height mm in the feature frame."""
+
+    radius: float
+    height: float = 0.0
+
+
+def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
+    """The platform as seen from the wall.
+
+    diameter: mm, 0 for none. frame: (4, 4) pose of the platform in part coordinates; None when the feature frame sits on
+    it. A disc whose middle is off the axis counts as a larger one about the axis, which is on the safe side. Raises
+    InputError 'OFF_PLATFORM' when the axis or the base of the wall misses the platform.
+    """
+    centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    if frame is not None:
+        centre = wall.frame[:3, :3].T @ (frame[:3, 3] - wall.frame[:3, 3])
+        normal = wall.frame[:3, :3].T @ frame[:3, 2]
+    if diameter <= 0.0:
+        return Platform(0.0)
+    off, height, radius = float(np.hypot(centre[0], centre[1])), float(centre[2]), 0.5 * diameter
+    if normal[2] < 0.0 or np.hypot(normal[0], normal[1]) > UPRIGHT:
+        angle = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), normal[2]))
+        raise _off(f"the axis of {wall.label} is {angle:.4g} deg off the normal of the platform", "use mount: feature")
+    if off > radius:
+        raise _off(
+            f"the axis of {wall.label} is {off:.6g} mm off the middle of the platform and misses it",
+            "use mount: feature, or move the part",
+        )
+    if off + float(wall.meridian.points[0, 0]) > radius + TOUCH:
+        raise _off(
+            f"the base of {wall.label} has a diameter of {2.0 * wall.meridian.points[0, 0]:.6g} mm and reaches over the "
+            f"platform of {diameter:.6g} mm", "give the right diameter, or 0 for none",
+        )
+    if height > TOUCH:
+        raise _off(f"the base of {wall.label} is {height:.6g} mm below the platform", "use mount: feature, or move the part")
+    return Platform(radius + off, height)
+
+
+def _off(what: str, remedy: str) -> InputError:
+    return InputError("OFF_PLATFORM", "cell.platform_diameter", f"{what}; {remedy}")

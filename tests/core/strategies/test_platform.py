@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A wall that does not stand on the platform, and the platform's place under one that does."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.sampling import line
+from freecad_am.core.issues import InputError
+from freecad_am.core.strategies import platform
+
+FRAME = np.array([[0.0, -1.0, 0.0, 30.0], [1.0, 0.0, 0.0, 40.0], [0.0, 0.0, 1.0, 5.0], [0.0, 0.0, 0.0, 1.0]])
+WALL = RevolvedWall(Meridian.chained([line((20.0, 0.0), (20.0, 10.0))]), FRAME, label="Cup")
+
+
+def at(x, y, z, lean=0.0):
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    c, s = np.cos(lean), np.sin(lean)
+    pose[:3, :3] = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]
+    return pose
+
+
+def test_under_the_feature_frame_the_disc_is_at_its_origin():
+    assert platform.under(WALL, 50.0, None) == platform.Platform(25.0, 0.0)
+    assert platform.under(WALL, 50.0, FRAME) == platform.Platform(25.0, 0.0)
+    assert platform.under(WALL, 0.0, at(900.0, 0.0, 0.0, 1.0)).radius == 0.0
+
+
+def test_a_disc_below_and_beside_is_taken_on_the_safe_side():
+    seen = platform.under(WALL, 200.0, at(0.0, 0.0, 0.0))
+    assert seen.radius == pytest.approx(150.0)
+    assert seen.height == pytest.approx(-5.0)
+
+
+@pytest.mark.parametrize(("diameter", "frame", "said"), [
+    (30.0, None, "40 mm.*30 mm"), (90.0, at(0.0, 0.0, 0.0), "50 mm off the middle"),
+    (130.0, at(0.0, 0.0, 0.0), "reaches over"),
+    (300.0, at(0.0, 0.0, 6.0), "1 mm below"),
+    (300.0, at(30.0, 40.0, 5.0, 0.1), r"5\.73 deg"), (300.0, at(30, 40, 5, np.pi), "180 deg"),
+])
+def test_what_misses_the_platform_is_refused(diameter, frame, said):
+    with pytest.raises(InputError, match=said) as refused:
+        platform.under(WALL, diameter, frame)
+    assert refused.value.code == "OFF_PLATFORM"
+    assert "Cup" in refused.value.message
