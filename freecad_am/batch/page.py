@@ -35,10 +35,11 @@ header{display:flex;align-items:center;gap:14px;flex-wrap:wrap}.sub{color:var(--
 .status.infeasible,.status.failed{background:var(--bad)}@media(prefers-color-scheme:dark){.status{color:#11151c}}
 .cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(125px,1fr));gap:10px;margin:0 0 16px}
 .card,figure,.table{background:var(--paper);border:1px solid var(--line);border-radius:10px}
-.card{padding:10px 12px}.card b{display:block;font-size:18px;white-space:nowrap;font-weight:600}
+.card{padding:10px 12px}.card b{display:block;font-size:17px;white-space:nowrap;font-weight:600}
 .card span{color:var(--soft);font-size:13px}
 figure{margin:0;padding:8px}.grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(400px,100%),1fr));gap:10px}
-figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}.table{overflow-x:auto}.findings{max-height:340px;overflow-y:auto}
+figcaption{color:var(--soft);font-size:13px;padding:2px 8px 4px}
+.table{overflow-x:auto}.findings{max-height:340px;overflow-y:auto}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
 th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
 tr:first-child>*{border-top:0}th{color:var(--soft);font-weight:500}th:first-child,td:first-child{text-align:left}
