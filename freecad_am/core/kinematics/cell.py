@@ -52,6 +52,7 @@ class Cell:
     mount: Array
     branch: int | None
     nozzle: NozzleParameters = field(default_factory=NozzleParameters)
+    platform_diameter: float = 0.0
 
     def pose_frames(self, position: Array, tool: Array) -> PoseFrames:
         """What is constant in the flange poses of n points while the rotation varies.
@@ -187,4 +188,5 @@ def resolve(
         mount=np.array(feature_frame) if mount == "feature" else np.eye(4),
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
+        platform_diameter=parameters.platform_diameter,
     )

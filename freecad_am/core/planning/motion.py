@@ -15,6 +15,7 @@ from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from .joint_path import BeadPath, JointPath
+from .rapids import collisions
 
 Array = NDArray[np.float64]
 
@@ -63,7 +64,8 @@ def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> t
     last = joint_path.beads[-1]
     if lift > 0.0:
         parts.append(_retract(last, _lifted(last, -1, cell, branch, lift), lift))
-    return _joined(parts, cell, process), tuple(issues)
+    motion = _joined(parts, cell, process)
+    return motion, (*issues, *collisions(motion, cell))
 
 
 def _lifted(path: BeadPath, index: int, cell: Cell, branch: int, lift: float) -> Array:

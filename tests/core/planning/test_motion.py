@@ -84,6 +84,23 @@ def test_overlap_runs_on_over_the_beginning_and_survives_the_read_back(planned, 
     assert not has_errors(checked.issues), checked.issues
 
 
+def test_a_rapid_through_the_part_is_refused(planned):
+    """The same rapids with the deposit moved up in front of the nozzle: every travel of the upper layers meets it."""
+    import dataclasses
+
+    from freecad_am.core.planning.rapids import collisions
+
+    _, cell, _, motion = planned()
+    assert collisions(motion, cell) == []
+    raised = motion.position + np.where(motion.deposit, 25.0, 0.0)[:, None] * [0.0, 0.0, 1.0]
+    found = collisions(dataclasses.replace(motion, position=raised), cell)
+    assert found and all(issue.code == "RAPID_COLLISION" and issue.layer is not None for issue in found)
+    only_platform = dataclasses.replace(motion, position=motion.position + [0.0, 0.0, -500.0])
+    assert collisions(only_platform, cell) == []
+    wide = dataclasses.replace(cell, platform_diameter=600.0, nozzle=dataclasses.replace(cell.nozzle, length=300.0))
+    assert collisions(only_platform, wide)
+
+
 def test_what_happens_between_layers(planned):
     between = BetweenLayersParameters(lift=20.0, wait=3.0, input=7, call="CLEAN")
     process = ProcessParameters(between_layers=between, lead_on=0.5, lead_off=0.25)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Looks whether the nozzle stays clear of deposit and platform on the rapid moves between beads.
+
+While depositing, clearance is settled before the joints are planned. A rapid runs straight in the joints, so where the
+nozzle goes is known only now: it is driven through in small steps, against everything deposited by then.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import ERROR, Issue
+from ..kinematics.cell import Cell
+from ..motion import Motion
+
+Array = NDArray[np.float64]
+
+# largest turn of an axis between two looks, rad, and the distance between neighbouring obstacle points, mm
+STEP = np.radians(5.0)
+GRAIN = 1.5
+PLATFORM_GRAIN = 4.0
+# how deep a point must be inside the nozzle to count: beads are followed to their chord error, mm
+TOUCH = 0.05
+
+
+def collisions(motion: Motion, cell: Cell) -> list[Issue]:
+    """An issue for every travel between two beads on which the nozzle would meet deposit or platform.
+
+    The withdrawal and the way down run along the tool axis, through room the nozzle itself keeps clear; their upper
+    ends belong to the travel and are looked at.
+    """
+    travels = np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1
+    # the way down onto a start is the last rapid row before the deposit: not a travel
+    down = np.append(motion.deposit[1:], False)
+    travels = travels[~down[travels]]
+    obstacles, laid = _obstacles(motion, cell)
+    found = []
+    for row in travels:
+        start, end = motion.joints[row - 1], motion.joints[row]
+        if np.isnan(start).any() or np.isnan(end).any():
+            continue
+        looks = 1 + int(np.ceil(np.abs(end - start).max() / STEP))
+        joints = start + np.linspace(0.0, 1.0, looks + 1)[:, None] * (end - start)
+        tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
+        if _met(tip, axis, obstacles[laid < row], cell):
+            found.append(Issue(
+                ERROR, "RAPID_COLLISION", "on its way from the bead before the nozzle would meet the deposit or the platform; "
+                "raise process.between_layers.lift", int(motion.layer[row]), int(motion.bead[row]),
+            ))
+    return found
+
+
+def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, NDArray[np.int64]]:
+    """Points (m, 3) of deposit and platform in part coordinates, and the row (m,) from which each is there."""
+    rows = np.flatnonzero(motion.deposit)
+    along = np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0, prepend=motion.position[rows[:1]]), axis=1))
+    kept = np.append(True, np.diff(np.floor(along / GRAIN)) > 0)
+    radius = 0.5 * cell.platform_diameter
+    grid = np.arange(-radius, radius + PLATFORM_GRAIN, PLATFORM_GRAIN)
+    x, y = (values.ravel() for values in np.meshgrid(grid, grid))
+    inside = np.hypot(x, y) <= radius
+    disc = np.stack([x, y, np.zeros(len(x))], axis=1)[inside] @ cell.mount[:3, :3].T + cell.mount[:3, 3]
+    points = np.concatenate([disc, motion.position[rows[kept]]])
+    return points, np.concatenate([np.full(len(disc), -1), rows[kept]])
+
+
+def _met(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
+    """Whether any obstacle point is inside the nozzle at any of the looks."""
+    nozzle = cell.nozzle
+    for point, direction in zip(tip, axis):
+        off = obstacles - point
+        height = off @ direction
+        across = np.sqrt(np.maximum((off * off).sum(axis=1) - height * height, 0.0))
+        inside = (height > TOUCH) & (height <= nozzle.length)
+        if (inside & (across < 0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - TOUCH)).any():
+            return True
+    below = (tip - cell.mount[:3, 3]) @ cell.mount[:3, 2] < -TOUCH
+    local = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :2]
+    return bool((below & (np.linalg.norm(local, axis=1) < 0.5 * cell.platform_diameter)).any())
