@@ -121,7 +121,7 @@ def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimens
     try:
         quantity = FreeCAD.Units.Quantity(text)
         length, _, time, _, _, _, _, angle = quantity.Unit.Signature
-    except (ValueError, ArithmeticError):
+    except (ValueError, ArithmeticError, RuntimeError):  # FreeCAD's versions differ in what they raise
         raise wrong from None
     if not math.isfinite(quantity.Value) or quantity.Unit.Signature[1] or any(quantity.Unit.Signature[3:7]):
         raise wrong
