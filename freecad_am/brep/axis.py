@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import FreeCAD  # noqa: F401  before Part, which crashes without
 import numpy as np
+import Part
 
 from ..core.geometry.profile import Array
 from .cylindrical import as_array, edge_points
@@ -102,8 +104,11 @@ def from_normals(faces: list[Any]) -> Axis | None:
         u0, u1, v0, v1 = face.ParameterRange
         for u in np.linspace(u0, u1, 9)[1:-1]:
             for v in np.linspace(v0, v1, 9)[1:-1]:
+                try:
+                    normals.append(face.Surface.normal(u, v))
+                except (RuntimeError, Part.OCCError):
+                    continue  # where the surface is degenerate
                 points.append(face.Surface.value(u, v))
-                normals.append(face.Surface.normal(u, v))
     p, n = as_array(points), as_array(normals)
     good = np.isfinite(n).all(axis=1)
     p, n = p[good], n[good]

@@ -48,8 +48,8 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
         return Patch(name, (), 0.0)
     try:
         curves = _meridian(face, frame)
-    except ValueError:
-        curves = None  # a line that stands still is no meridian
+    except (ValueError, RuntimeError, Part.OCCError):
+        curves = None  # a line that stands still is no meridian, and the kernel gives up on some surfaces
     if curves is None:
         return Patch(name, (), _spread(face, frame), "it does not turn about the axis")
     deviation = _deviation(face, frame, curves)
