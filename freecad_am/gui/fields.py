@@ -129,17 +129,29 @@ def _quantity(shown: float, unit: str, name: str) -> tuple[Any, Callable[[], flo
     quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
     box.setProperty("value", quantity)
     box.setMinimumWidth(70)
-    box.findChild(QtGui.QLineEdit).setCursorPosition(0)
-    first = box.property("rawValue")
+    line = box.findChild(QtGui.QLineEdit)
+    line.setCursorPosition(0)
+    first, first_text = box.property("rawValue"), line.text()
 
     def read() -> float:
-        if not box.property("acceptableInput"):
-            text = box.findChild(QtGui.QLineEdit).text()
-            raise InputError("BAD_VALUE", name, f"{text!r} is not understood; give a quantity in {unit}")
-        now = box.property("rawValue")
-        return shown if now == first else float(now)
+        text, now = line.text(), float(box.property("rawValue"))
+        if text == first_text:
+            return shown
+        if box.property("acceptableInput") and (now != first or _means(text, quantity)):
+            return now
+        raise InputError("BAD_VALUE", name, f"{text!r} is not understood; give a quantity in {unit}")
 
     return box, read
+
+
+def _means(text: str, quantity: Any) -> bool:
+    """Whether a text stands for the quantity: newer versions of the field pass over a wrong unit without a word."""
+    try:
+        typed = App.Units.Quantity(text)
+    except (ValueError, TypeError, ArithmeticError):
+        return False
+    right = typed.Unit in (quantity.Unit, App.Units.Unit())
+    return bool(right and abs(typed.Value - quantity.Value) <= 1e-9 * max(1.0, abs(quantity.Value)))
 
 
 def _pose(row: Row, shown: tuple[float, ...]) -> Field:

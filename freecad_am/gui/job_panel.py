@@ -46,10 +46,6 @@ class JobPanel:
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
-    def getStandardButtons(self) -> int:
-        """OK and Cancel."""
-        return int(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
-
     def accept(self) -> bool:
         """Make all stages; True closes the panel, an error is shown in it."""
         QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))

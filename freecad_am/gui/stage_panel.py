@@ -113,10 +113,6 @@ class StagePanel:
 
     # ---- called by FreeCAD
 
-    def getStandardButtons(self) -> int:
-        """OK and Cancel."""
-        return int(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
-
     def accept(self) -> bool:
         """Make or change the stage; True closes the panel, an error is shown in it."""
         self.say("")
