@@ -131,27 +131,25 @@ def _quantity(shown: float, unit: str, name: str) -> tuple[Any, Callable[[], flo
     box.setMinimumWidth(70)
     line = box.findChild(QtGui.QLineEdit)
     line.setCursorPosition(0)
-    first, first_text = box.property("rawValue"), line.text()
+    first_text = line.text()
 
     def read() -> float:
-        text, now = line.text(), float(box.property("rawValue"))
+        text = line.text()
         if text == first_text:
             return shown
-        if box.property("acceptableInput") and (now != first or _means(text, quantity)):
-            return now
-        raise InputError("BAD_VALUE", name, f"{text!r} is not understood; give a quantity in {unit}")
+        if not box.property("acceptableInput") or _of_another_unit(text, quantity.Unit):
+            raise InputError("BAD_VALUE", name, f"{text!r} is not understood; give a quantity in {unit}")
+        return float(box.property("rawValue"))
 
     return box, read
 
 
-def _means(text: str, quantity: Any) -> bool:
-    """Whether a text stands for the quantity: newer versions of the field pass over a wrong unit without a word."""
+def _of_another_unit(text: str, unit: Any) -> bool:
+    """Whether a text has a unit that does not belong here: newer versions of the field take '3 deg' for 3 mm."""
     try:
-        typed = App.Units.Quantity(text)
+        return App.Units.Quantity(text).Unit not in (unit, App.Units.Unit())
     except (ValueError, TypeError, ArithmeticError):
         return False
-    right = typed.Unit in (quantity.Unit, App.Units.Unit())
-    return bool(right and abs(typed.Value - quantity.Value) <= 1e-9 * max(1.0, abs(quantity.Value)))
 
 
 def _pose(row: Row, shown: tuple[float, ...]) -> Field:
