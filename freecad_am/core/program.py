@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+Six = tuple[float, float, float, float, float, float]
+
 DEPOSIT, RAPID = "deposit", "rapid"
 
 
@@ -23,8 +25,9 @@ class Moves:
 
     kind: 'deposit' or 'rapid'. layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
     values, rad. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the deposition
-    point on that move. position (n, 3) mm and rotation (n, 3, 3) of the tool in the user frame with
-    configuration, one (shoulder, elbow, wrist) per point, only where motion is Cartesian.
+    point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3) of the tool in the
+    user frame or, with the part on the robot, of the deposition point on the flange; and configuration, one
+    (shoulder, elbow, wrist) per point.
     """
 
     kind: str
@@ -93,6 +96,9 @@ class Program:
     name: as the user named the job; a post derives its own file names or refuses. machine: title of the machine.
     endless: for each axis, whether it turns without end (continuous turn). remarks: lines a post writes as
     comments. motion: 'joint' or 'cartesian'. deposit points run at constant speed at the deposition point.
+    max_speed: rad/s of each axis, infinite where not known. station, carried: X Y Z mm, RX RY RZ rad of the deposition
+    point (part on robot) or the platform (tool on robot) in the maker's base frame, and of the platform or the
+    nozzle's tip on the flange.
     """
 
     name: str
@@ -108,6 +114,9 @@ class Program:
     deposit_output: int = 1
     dry_run: bool = False
     remarks: tuple[str, ...] = ()
+    max_speed: tuple[float, ...] = ()
+    station: Six | None = None
+    carried: Six | None = None
 
     @property
     def moves(self) -> tuple[Moves, ...]:
@@ -119,11 +128,15 @@ class Program:
 class ReadMoves:
     """What a post's reader found in a program's text, all moves in the order of execution.
 
-    joints: (n, axes) controller values, rad, exactly as many digits as the text has (None for Cartesian texts).
-    digits: half of the last digit of the joint values, rad. duration: (n,) s, NaN where the text gives a speed.
-    deposit: (n,) bool, whether the deposit is on during the move that ends at the point. position, rotation,
-    position_digits (mm), rotation_digits (rad): the same for Cartesian texts. speed: (n,) mm/s at the deposition
-    point, NaN where the text gives a time or a percentage.
+    joints: (n, axes) controller values, rad, exactly as many digits as the text has; rows told in Cartesian positions
+    are NaN, None when all are. digits: half of the last digit of the joint values, rad. duration: (n,) s, NaN where
+    the text gives a speed. deposit: (n,) bool, whether the deposit is on during the move that ends at the point.
+    position, rotation, position_digits (mm), rotation_digits (rad): the same for Cartesian texts.
+    speed: (n,) mm/s at the deposition point, NaN where the text gives a time or a percentage; speed_digits: mm/s.
+    share: (n,) of the axes' largest speeds that the fastest axis runs at, NaN where the text gives a time or a path
+    speed; share_digits: half of its last digit.
+    Where the text holds its own frames: frame (4, 4), in the maker's base frame, is what `position` is seen in;
+    tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. All mm.
     """
 
     joints: Array | None
@@ -135,3 +148,8 @@ class ReadMoves:
     position_digits: float = 0.0
     rotation_digits: float = 0.0
     speed: Array | None = None
+    speed_digits: float = 0.05
+    share: Array | None = None
+    share_digits: float = 0.0
+    frame: Array | None = None
+    tool: Array | None = None

@@ -23,6 +23,7 @@ from ..program import (
     LayerStart,
     Moves,
     Program,
+    Six,
     Wait,
     WaitInput,
 )
@@ -34,17 +35,7 @@ FIRST_APPROACH = 10.0
 
 
 def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str) -> Program:
-    """The program of a motion.
-
-    The part on the robot can only be told in joint values; Cartesian motion (InputError REMOTE_TCP) would need the
-    remote TCP. A start past the last bead is InputError START_AT.
-    """
-    if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
-        raise InputError(
-            "REMOTE_TCP", "program.motion",
-            "with the part on the robot Cartesian motion means remote TCP, whose position records are not understood well "
-            "enough to be written; use motion: joint",
-        )
+    """The program of a motion. A start past the last bead is InputError START_AT."""
     return Program(
         name=name,
         machine=cell.machine.title,
@@ -59,6 +50,9 @@ def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: Pr
         deposit_output=parameters.deposit_output,
         dry_run=parameters.dry_run,
         remarks=_remarks(cell, process),
+        max_speed=tuple(cell.machine.max_speed.tolist()),
+        station=_six(_station(cell)),
+        carried=_six(cell.carried),
     )
 
 
@@ -146,7 +140,11 @@ def _moves(
     position = rotation = None
     configuration = None
     if parameters.motion == "cartesian":
-        seen = frames.inverse(cell.station) @ cell.machine.chain.forward(motion.joints[rows]) @ cell.carried
+        flange = cell.machine.chain.forward(motion.joints[rows])
+        if cell.setup == PART_ON_ROBOT:
+            seen = frames.inverse(flange) @ cell.station
+        else:
+            seen = frames.inverse(cell.station) @ flange @ cell.carried
         position, rotation = seen[:, :3, 3], seen[:, :3, :3]
         arm = cell.machine.opw
         assert arm is not None
@@ -158,10 +156,19 @@ def _moves(
     )
 
 
+def _station(cell: Cell) -> Array:
+    return frames.inverse(cell.machine.base) @ cell.station
+
+
+def _six(pose: Array) -> Six:
+    x, y, z = pose[:3, 3].tolist()
+    rx, ry, rz = frames.to_bryant(pose[:3, :3]).tolist()
+    return (x, y, z, rx, ry, rz)
+
+
 def _remarks(cell: Cell, process: ProcessParameters) -> tuple[str, ...]:
-    point = frames.inverse(cell.machine.base) @ cell.station
-    x, y, z = point[:3, 3]
-    rx, ry, rz = np.degrees(frames.to_bryant(point[:3, :3])) + 0.0
+    x, y, z, *angles = _six(_station(cell))
+    rx, ry, rz = np.degrees(angles) + 0.0
     where = "Deposition point" if cell.setup == PART_ON_ROBOT else "Platform"
     return (
         cell.machine.title,
