@@ -20,7 +20,8 @@ from ..parameters.cell import NozzleParameters
 from .platform import Platform
 
 ROUNDING = 1e-9  # mm^2 of depth that is rounding
-AZIMUTHS = 240  # samples of the general case before its minimum is refined
+AZIMUTHS = 24  # samples of the general case before its minima are refined
+CHUNK = 1_000_000  # values worked on at once, so that large parts need no more memory than small ones
 
 
 @dataclass(frozen=True)
@@ -39,22 +40,25 @@ class Deposit:
         azimuths from the tip to the two ends of the beads.
         """
         symmetric = (np.abs(tool[:, 1]) < 1e-15) & (np.abs(reach.sum(axis=1)) < 1e-12)
-        result = np.ones(len(bead), dtype=bool)
-        for rows, depth in ((symmetric, self._depth_symmetric), (~symmetric, self._depth_general)):
-            if rows.any():
-                free = depth(bead[rows], tool[rows], reach[rows]) >= -ROUNDING
-                later = np.arange(len(self.radius))[None, :] > bead[rows, None]
-                result[rows] = (free | later).all(axis=1)
-        return result & self._over_platform(bead, tool)
+        result = self._over_platform(bead, tool)
+        for kind, depth, width in ((symmetric, self._depth_symmetric, 1), (~symmetric, self._depth_general, AZIMUTHS)):
+            rows = np.flatnonzero(kind & result)
+            step = max(1, CHUNK // (width * len(self.radius)))
+            for some in (rows[i : i + step] for i in range(0, len(rows), step)):
+                earlier = np.arange(bead[some].max() + 1)
+                free = depth(bead[some], tool[some], reach[some], len(earlier)) >= -ROUNDING
+                result[some] = (free | (earlier[None, :] > bead[some, None])).all(axis=1)
+        return result
 
-    def _depth_symmetric(self, bead: NDArray[np.intp], tool: Array, reach: Array) -> Array:
-        """Least value of |Q - P|^2 - x^2 - (a + k x)^2 over each arc (k, m); positive where no point can touch.
+    def _depth_symmetric(self, bead: NDArray[np.intp], tool: Array, reach: Array, count: int) -> Array:
+        """Least value of |Q - P|^2 - x^2 - (a + k x)^2 over each of the first `count` arcs, (k, count); positive
+        where no point can touch.
 
         It is a concave quadratic in the cosine of the azimuth, x being linear in it, so the least is at an end of the
         cosines that matter: those of the arc, over the tip plane, below the nozzle's end, outside the bead being laid.
         """
         r0, z0 = self.radius[bead][:, None], self.height[bead][:, None]
-        across, rise = self.radius[None, :], self.height[None, :] - z0
+        across, rise = self.radius[None, :count], self.height[None, :count] - z0
         slope = tool[:, :1] * across
         level = tool[:, 2:] * rise - tool[:, :1] * r0
         apart, swing = across**2 + r0**2 + rise**2, 2.0 * r0 * across
@@ -81,25 +85,34 @@ class Deposit:
         a, k = 0.5 * self.nozzle.diameter, np.tan(self.nozzle.half_angle)
         return np.asarray(square - x * x - (a + k * x) ** 2)
 
-    def _depth_general(self, bead: NDArray[np.intp], tool: Array, reach: Array) -> Array:
-        """The same with a tool axis out of the plane of the axis, or an arc seen from within: a trigonometric
-        polynomial of second order in the azimuth, its least value looked for among samples, refined by Newton's
-        method, and at the ends of the stretches that matter.
-        """
-        r0, z0 = self.radius[bead][:, None, None], self.height[bead][:, None, None]
-        across, rise = self.radius[None, :, None], self.height[None, :, None] - z0
-        slope_c, slope_s = tool[:, 0, None, None] * across, tool[:, 1, None, None] * across
-        level = tool[:, 2, None, None] * rise - tool[:, 0, None, None] * r0
-        apart, swing = across**2 + r0**2 + rise**2, 2.0 * r0 * across
-        first, last = reach[:, 0, None, None], reach[:, 1, None, None]
+    def _depth_general(self, bead: NDArray[np.intp], tool: Array, reach: Array, count: int) -> Array:
+        """The same with a tool axis out of the plane of the axis, or an arc seen from within.
 
-        def value(azimuth: Array) -> Array:
+        A trigonometric polynomial of second order in the azimuth: it has at most two local minima, found among samples and
+        refined by Newton's method; the least is at one of them or at an end of the stretches that matter.
+        """
+        result = np.full((len(bead), count), np.inf)
+        rise = self.height[None, :count] - self.height[bead][:, None]
+        lateral = np.hypot(tool[:, :1], tool[:, 1:2]) * self.radius[None, :count]
+        highest = tool[:, 2:] * rise - tool[:, :1] * self.radius[bead][:, None] + lateral
+        # an arc wholly behind the tip plane cannot be touched, nor one not yet laid
+        case, ring = np.nonzero((highest > 0.0) & (np.arange(count)[None, :] <= bead[:, None]))
+        if len(case):
+            result[case, ring] = self._depth_pairs(bead[case], ring, tool[case], reach[case])
+        return result
+
+    def _depth_pairs(self, bead: NDArray[np.intp], ring: NDArray[np.intp], tool: Array, reach: Array) -> Array:
+        r0, across = self.radius[bead][:, None], self.radius[ring][:, None]
+        rise = (self.height[ring] - self.height[bead])[:, None]
+        slope_c, slope_s = tool[:, :1] * across, tool[:, 1:2] * across
+        level = tool[:, 2:] * rise - tool[:, :1] * r0
+        apart, swing = across**2 + r0**2 + rise**2, 2.0 * r0 * across
+        first, last = reach[:, :1], reach[:, 1:]
+
+        def depth(azimuth: Array) -> tuple[Array, Array, Array]:
             c, s = np.cos(azimuth), np.sin(azimuth)
             x, square = slope_c * c + slope_s * s + level, apart - swing * c
-            counts = (x > 0.0) & (x <= self.nozzle.length * (1.0 + 1e-12))
-            counts &= square >= self.nozzle.diameter**2 * (1.0 - 1e-12)
-            counts &= (azimuth >= first - 1e-12) & (azimuth <= last + 1e-12)
-            return np.where(counts, self._depth(square, x), np.inf)
+            return self._depth(square, x), x, square
 
         def newton(azimuth: Array) -> Array:
             c, s = np.cos(azimuth), np.sin(azimuth)
@@ -108,25 +121,27 @@ class Deposit:
             steep = 2.0 * ((1.0 + k * k) * x + a * k)
             d = swing * s - steep * dx
             dd = swing * c - steep * ddx - 2.0 * (1.0 + k * k) * dx * dx
-            return azimuth - np.where(dd > 1e-12, np.clip(d / np.where(dd > 1e-12, dd, 1.0), -0.05, 0.05), 0.0)
+            return azimuth - np.where(dd > 1e-12, np.clip(d / np.where(dd > 1e-12, dd, 1.0), -0.2, 0.2), 0.0)
 
-        grid = first + (last - first) * np.linspace(0.0, 1.0, AZIMUTHS + 1)
-        grid = np.broadcast_to(grid, (len(bead), len(self.radius), AZIMUTHS + 1))
-        sampled = value(grid)
-        least = sampled.min(axis=2)
-        best = np.take_along_axis(grid, sampled.argmin(axis=2)[..., None], axis=2)
-        for _ in range(5):
-            best = newton(best)
+        around = np.linspace(-np.pi, np.pi, AZIMUTHS, endpoint=False)
+        sampled = depth(around[None, :])[0]
+        lowest = (sampled <= np.roll(sampled, 1, axis=1)) & (sampled <= np.roll(sampled, -1, axis=1))
+        minima = around[np.argsort(np.where(lowest, sampled, np.inf), axis=1)[:, :2]]
+        for _ in range(6):
+            minima = newton(minima)
         with np.errstate(divide="ignore", invalid="ignore"):
             ball = np.arccos((apart - self.nozzle.diameter**2) / swing)
             middle, over = np.arctan2(slope_s, slope_c), np.hypot(slope_c, slope_s)
             end = np.arccos((self.nozzle.length - level) / over)
-        spread = [np.broadcast_to(edge, best.shape) for edge in (ball, -ball, middle + end, middle - end)]
-        turns = [edge + turn for edge in spread[2:] for turn in (-2.0 * np.pi, 2.0 * np.pi)]
-        for candidate in [best, *spread, *turns]:
-            found = value(np.where(np.isfinite(candidate), candidate, last + 1.0))[..., 0]
-            least = np.minimum(least, found)
-        return np.asarray(least)
+        places = np.hstack([minima, ball, -ball, middle + end, middle - end])
+        places = np.hstack([places - 2.0 * np.pi, places, places + 2.0 * np.pi, first, last])
+        known = np.isfinite(places) & (places >= first - 1e-12) & (places <= last + 1e-12)
+        found, x, square = depth(np.where(known, places, 0.0))
+        # an end of a stretch meets its own condition up to rounding only
+        counts = known & (x > 0.0) & (x <= self.nozzle.length + 1e-10 * (1.0 + over))
+        counts &= square >= self.nozzle.diameter**2 - 1e-12 * apart
+        least: Array = np.where(counts, found, np.inf).min(axis=1)
+        return least
 
     def _over_platform(self, bead: NDArray[np.intp], tool: Array) -> NDArray[np.bool_]:
         """Whether the nozzle stays clear of the platform's disc, (k,).

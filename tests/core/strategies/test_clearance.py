@@ -11,6 +11,8 @@ from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.strategies import revolution
+from freecad_am.core.strategies.clearance import Deposit
+from freecad_am.core.strategies.platform import Platform
 
 DOME = Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)])
 SMALL_DOME = Meridian.chained([arc((0.0, 0.0), 12.0, 0.0, np.pi / 2)])
@@ -183,3 +185,29 @@ def test_a_spiral_is_clear_of_all_its_earlier_turns():
     bead = toolpath.layers[0].beads[0]
     for i in range(10, len(bead), 97):
         assert depth_of_points(bead.points[i], bead.tool[i], bead.points[:i], USUAL).max() < 1e-6
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_any_tool_over_any_arcs_is_judged_as_by_brute_force(seed):
+    random = np.random.default_rng(seed)
+    radius, height = random.uniform(1.0, 60.0, 12), np.sort(random.uniform(0.0, 60.0, 12))
+    nozzle = NozzleParameters(
+        half_angle=random.uniform(0.0, 1.2), diameter=random.uniform(0.1, 4.0), length=random.uniform(5.0, 80.0)
+    )
+    bead = random.integers(0, 12, 60)
+    tool = random.normal(size=(60, 3))
+    tool[:20, 1] = 0.0  # some in the plane of the axis
+    tool /= np.linalg.norm(tool, axis=1, keepdims=True)
+    reach = np.where(random.random((60, 1)) < 0.5, [[-np.pi, np.pi]], random.uniform(0.0, 3.0, (60, 2)) * [-1.0, 1.0])
+    clear = Deposit(radius, height, nozzle, Platform(0.0)).clear(bead, tool, reach)
+    assert 0 < clear.sum() < 60
+    for i in range(60):
+        tip = np.array([radius[bead[i]], 0.0, height[bead[i]]])
+        curves = []
+        for j in range(bead[i] + 1):
+            def curve(at, r=radius[j], h=height[j]):
+                return np.stack([r * np.cos(at), r * np.sin(at), np.full(len(at), h)], axis=1)
+
+            curves.append((curve, *reach[i]))
+        deepest = depth(tip, tool[i], curves, nozzle)
+        assert deepest < 1e-6 if clear[i] else deepest > -1e-3
