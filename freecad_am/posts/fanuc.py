@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +29,8 @@ from ..core.program import (
 from . import fanuc_listing as text
 from . import fanuc_numbers as numbers
 from .fanuc_read import read
+from .parts import Piece, Run, grouped, packed
+from .refusals import DEVICES, refuse_incomplete
 
 __all__ = ["read", "write"]
 
@@ -44,29 +45,11 @@ MOST_LINES = 9999
 # tenth of the full speed.
 _FIRST_MOVE = "10%"
 
-# names that files cannot have on the computers programs pass through, and words of the listing's own language
-_RESERVED = frozenset(
-    ("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10)))
-    + ("ABORT", "CALL", "DI", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "FOR", "IF", "JMP", "LBL", "MESSAGE", "MONITOR")
+# words of the listing's own language
+_RESERVED = DEVICES | frozenset(
+    ("ABORT", "CALL", "DI", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "FOR", "IF", "JMP", "LBL", "MESSAGE", "MONITOR")
     + ("PAUSE", "RUN", "SELECT", "THEN", "WAIT", "WHEN")
 )
-
-
-@dataclass(frozen=True)
-class _Run:
-    """The moves start .. stop of a block with the speed word of each; every word is written as it stands."""
-
-    moves: Moves
-    speeds: Sequence[str]
-    start: int
-    stop: int
-
-    def __len__(self) -> int:
-        return self.stop - self.start
-
-
-# what a file is made of: runs of moves, and instructions as they stand
-_Piece = _Run | list[str]
 
 
 def write(program: Program) -> dict[str, bytes]:
@@ -82,8 +65,8 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
     head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
-    groups = list(_groups(program))
-    parts = _parts(groups, program.max_points, MOST_LINES - len(head) - len(remarks))
+    groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), _cut)
     if len(parts) == 1:
         _refuse_calls_of_own(program, {name})
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
@@ -126,22 +109,21 @@ def _bad_name(name: str, where: str, why: str) -> InputError:
     )
 
 
-def _refuse(program: Program) -> None:
-    moves = program.moves
-    if not sum(len(run) for run in moves):
-        raise InputError("NOTHING_TO_WRITE", "program", "the program holds no moves; check where it starts")
-    if program.motion == "cartesian" and program.setup == "part-on-robot":
+def refuse_setup(motion: str, setup: str) -> None:
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
             "REMOTE_TCP", "program.motion",
             "Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves"
             " (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`",
         )
-    if program.setup not in ("part-on-robot", "tool-on-robot"):
-        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {program.setup}")
-    if any(run.joints.shape[1] != AXES for run in moves) or len(program.endless) != AXES:
-        raise InputError("UNSUPPORTED_AXES", "program.post", f"the post fanuc writes {AXES} axes; use another post")
-    if not all(np.isfinite(run.joints).all() for run in moves):
-        raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
+    if setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {setup}")
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_incomplete(program, "fanuc", AXES)
     for block in program.blocks:
         if isinstance(block, Call):
             program_name(block.program, "process.between_layers.call")
@@ -181,33 +163,20 @@ def _own_remarks(program: Program) -> Iterator[str]:
         yield "dry run: no deposit"
 
 
-def _groups(program: Program) -> Iterator[list[_Piece]]:
-    """The blocks as pieces, in groups that belong to one bead each: what may be cut apart with the deposit off."""
-    group: list[_Piece] = []
-    bead: tuple[int, int] | None = None
-    on, first = False, True
-    for block in program.blocks:
-        if isinstance(block, Moves):
-            if not len(block):
-                continue
-            # a linear move that only turns the tool has no path speed, so rapids go by time in either case
-            timed = program.motion == "joint" or block.kind == RAPID
-            speeds = numbers.time_words(block) if timed else numbers.speed_words(block)
-            if first:
-                speeds[0], first = _FIRST_MOVE, False
-            piece: _Piece = _Run(block, speeds, 0, len(block))
-            starts = block.kind == RAPID and not on and bead not in (None, (block.layer, block.bead))
-            bead = (block.layer, block.bead)
-        else:
-            on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
-            piece = _instructions(program, block)
-            starts = isinstance(block, LayerStart) and not on and bead is not None and bead[0] != block.layer
-            bead = None if starts else bead
-        if starts and group:
-            yield group
-            group = []
-        group.append(piece)
-    yield group
+def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
+    """The speed words of each block, asked for in the order of motion."""
+    first = True
+
+    def words(moves: Moves) -> Sequence[str]:
+        nonlocal first
+        # a linear move that only turns the tool has no path speed, so rapids go by time in either case
+        timed = program.motion == "joint" or moves.kind == RAPID
+        speeds = numbers.time_words(moves) if timed else numbers.speed_words(moves)
+        if first:
+            speeds[0], first = _FIRST_MOVE, False
+        return speeds
+
+    return words
 
 
 def _instructions(program: Program, block: Block) -> list[str]:
@@ -227,38 +196,12 @@ def _instructions(program: Program, block: Block) -> list[str]:
     raise TypeError(f"no instruction for {block!r}")
 
 
-def _parts(groups: Sequence[list[_Piece]], most_points: int, most_lines: int) -> list[list[_Piece]]:
-    """The groups packed into files of at most so many points and lines, in order."""
-    everything = [piece for group in groups for piece in group]
-    points, lines = _size(everything)
-    if points <= most_points and lines <= most_lines:
-        return [everything]
-    parts: list[list[_Piece]] = []
-    room = (0, 0)
-    for group in groups:
-        points, lines = _size(group)
-        fits = points <= most_points and lines <= most_lines
-        chunks = [group] if fits else list(_cut(group, most_points, most_lines))
-        for chunk in chunks:
-            points, lines = _size(chunk)
-            if points > room[0] or lines > room[1] or len(chunks) > 1:
-                parts.append([])
-                room = (most_points, most_lines)
-            parts[-1].extend(chunk)
-            room = (room[0] - points, room[1] - lines)
-    return parts
-
-
-def _size(pieces: Sequence[_Piece]) -> tuple[int, int]:
-    return sum(len(piece) for piece in pieces if isinstance(piece, _Run)), sum(len(piece) for piece in pieces)
-
-
-def _cut(group: list[_Piece], most_points: int, most_lines: int) -> Iterator[list[_Piece]]:
+def _cut(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
     """One bead too long for a file, cut inside its moves, which says so at both sides of the cut."""
     going_on, resumed = text.remark("bead goes on in the next part"), text.remark("bead goes on here")
     events = sum(len(piece) for piece in group if isinstance(piece, list))
     most = min(most_points, most_lines - events - len(going_on) - len(resumed))
-    chunk: list[_Piece] = []
+    chunk: list[Piece] = []
     room = most
     for piece in group:
         if isinstance(piece, list):
@@ -267,19 +210,19 @@ def _cut(group: list[_Piece], most_points: int, most_lines: int) -> Iterator[lis
         start = piece.start
         while piece.stop - start > room:
             if room:
-                chunk.append(_Run(piece.moves, piece.speeds, start, start + room))
+                chunk.append(Run(piece.moves, piece.words, start, start + room))
             yield [*chunk, going_on]
             start, chunk, room = start + room, [resumed], most
-        chunk.append(_Run(piece.moves, piece.speeds, start, piece.stop))
+        chunk.append(Run(piece.moves, piece.words, start, piece.stop))
         room -= piece.stop - start
     yield chunk
 
 
-def _file(program: Program, name: str, comment: str, head: list[str], pieces: Sequence[_Piece]) -> bytes:
+def _file(program: Program, name: str, comment: str, head: list[str], pieces: Sequence[Piece]) -> bytes:
     lines, point = list(head), 0
-    runs = [piece for piece in pieces if isinstance(piece, _Run)]
+    runs = [piece for piece in pieces if isinstance(piece, Run)]
     for piece in pieces:
-        if isinstance(piece, _Run):
+        if isinstance(piece, Run):
             lines += _motion_lines(program, piece, point)
             point += len(piece)
         else:
@@ -287,9 +230,9 @@ def _file(program: Program, name: str, comment: str, head: list[str], pieces: Se
     return text.listing(name, comment, lines, _record_text(program, runs))
 
 
-def _motion_lines(program: Program, run: _Run, points_before: int) -> list[str]:
+def _motion_lines(program: Program, run: Run, points_before: int) -> list[str]:
     """Lines through all points of a run; the block's own last point is a stop."""
-    speeds = run.speeds[run.start : run.stop]
+    speeds = run.words[run.start : run.stop]
     points = range(points_before + 1, points_before + 1 + len(run))
     letter = "J" if program.motion == "joint" else "L"
     lines = [f"{letter} P[{n}] {speed} CNT{program.blend}    ;" for n, speed in zip(points, speeds, strict=True)]
@@ -300,7 +243,7 @@ def _motion_lines(program: Program, run: _Run, points_before: int) -> list[str]:
     return lines
 
 
-def _record_text(program: Program, runs: Sequence[_Run]) -> str:
+def _record_text(program: Program, runs: Sequence[Run]) -> str:
     if not runs:
         return ""
     if program.motion == "joint":

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cuts a program into files of bounded size: what posts have in common, whatever they write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ..core.program import RAPID, Block, DepositOff, DepositOn, LayerStart, Moves, Program
+
+
+@dataclass(frozen=True)
+class Run:
+    """The moves start .. stop of a block with the words of each about its speed; every word is written as it stands."""
+
+    moves: Moves
+    words: Sequence[str]
+    start: int
+    stop: int
+
+    def __len__(self) -> int:
+        return self.stop - self.start
+
+
+# what a file is made of: runs of moves, and instructions as they stand
+Piece = Run | list[str]
+
+
+def grouped(
+    program: Program, words: Callable[[Moves], Sequence[str]], instructions: Callable[[Block], list[str]]
+) -> Iterator[list[Piece]]:
+    """The blocks as pieces, in groups that belong to one bead each: what may be cut apart with the deposit off.
+
+    words: of the moves of each block, asked for in the order of motion. instructions: the lines of every other block.
+    """
+    group: list[Piece] = []
+    bead: tuple[int, int] | None = None
+    on = False
+    for block in program.blocks:
+        if isinstance(block, Moves):
+            if not len(block):
+                continue
+            piece: Piece = Run(block, words(block), 0, len(block))
+            starts = block.kind == RAPID and not on and bead not in (None, (block.layer, block.bead))
+            bead = (block.layer, block.bead)
+        else:
+            on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
+            piece = instructions(block)
+            starts = isinstance(block, LayerStart) and not on and bead is not None and bead[0] != block.layer
+            bead = None if starts else bead
+        if starts and group:
+            yield group
+            group = []
+        group.append(piece)
+    yield group
+
+
+def packed(
+    groups: Sequence[list[Piece]], most_points: int, most_lines: int,
+    cut: Callable[[list[Piece], int, int], Iterator[list[Piece]]],
+) -> list[list[Piece]]:
+    """The groups in files of at most so many points and lines, in order. cut: what becomes of a group too large."""
+    everything = [piece for group in groups for piece in group]
+    points, lines = size(everything)
+    if points <= most_points and lines <= most_lines:
+        return [everything]
+    parts: list[list[Piece]] = []
+    room = (0, 0)
+    for group in groups:
+        points, lines = size(group)
+        fits = points <= most_points and lines <= most_lines
+        chunks = [group] if fits else list(cut(group, most_points, most_lines))
+        for chunk in chunks:
+            points, lines = size(chunk)
+            if points > room[0] or lines > room[1] or len(chunks) > 1:
+                parts.append([])
+                room = (most_points, most_lines)
+            parts[-1].extend(chunk)
+            room = (room[0] - points, room[1] - lines)
+    return parts
+
+
+def size(pieces: Sequence[Piece]) -> tuple[int, int]:
+    """How many points the pieces have, and how many lines a file with one line per move takes for them."""
+    return sum(len(piece) for piece in pieces if isinstance(piece, Run)), sum(len(piece) for piece in pieces)
