@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from ..issues import ERROR, Issue
+from ..issues import ERROR, NOTE, Issue
 from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..motion import Motion
@@ -23,6 +23,8 @@ TURN = 2.0 * np.pi
 # share of an axis's largest speed a rapid move may ask for, and the shortest time of one
 RAPID_SHARE = 0.8
 SHORTEST = 0.05
+# how many times the lift is tried where the nozzle would meet the deposit
+HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 
 
 @dataclass(frozen=True)
@@ -45,27 +47,75 @@ def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> t
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
     Between two beads the tool is withdrawn along its axis by `between_layers.lift`, goes to the same height above the
-    next start and down onto it.
+    next start and down onto it. Where the nozzle would meet the deposit on its way it is withdrawn further, as far as it
+    takes; where no height does, or the robot cannot reach it, that is an issue.
     """
+    lift = process.between_layers.lift
+    lifts = np.full(len(joint_path.beads), lift)
+    motion = _with_rapids(joint_path, cell, process, lifts)
+    met = collisions(motion, cell)
+    for factor in HIGHER if lift > 0.0 else ():
+        if not met:
+            break
+        higher = lifts.copy()
+        higher[_numbers(joint_path, met)] = factor * lift
+        tried = _with_rapids(joint_path, cell, process, higher)
+        lost = ~tried.reachable & ~tried.deposit
+        # a height out of reach is no help: those beads stay as they were
+        for number in np.flatnonzero(higher != lifts):
+            path = joint_path.beads[number]
+            if lost[(tried.layer == path.layer) & (tried.bead == path.index)].any():
+                higher[number] = lifts[number]
+        lifts = higher
+        motion = _with_rapids(joint_path, cell, process, lifts)
+        met = collisions(motion, cell, {(int(i.layer or 0), int(i.bead or 0)) for i in met})
+    return motion, (*met, *_out_of_reach(joint_path, motion), *_lift_notes(joint_path, lifts, lift))
+
+
+def _numbers(joint_path: JointPath, met: Sequence[Issue]) -> list[int]:
+    """Which beads of the path the issues are about."""
+    places = {(issue.layer, issue.bead) for issue in met}
+    return [k for k, path in enumerate(joint_path.beads) if (path.layer, path.index) in places]
+
+
+def _out_of_reach(joint_path: JointPath, motion: Motion) -> list[Issue]:
+    reachable = {(path.layer, path.index) for path in joint_path.beads if path.reachable}
+    lost = np.flatnonzero(~motion.deposit & ~motion.reachable)
+    places = dict.fromkeys((int(motion.layer[row]), int(motion.bead[row])) for row in lost)
+    return [
+        Issue(ERROR, "RAPID_UNREACHABLE", "the lifted points before or after the bead cannot be reached; lower "
+              "process.between_layers.lift", layer, bead)
+        for layer, bead in places if (layer, bead) in reachable
+    ]
+
+
+def _lift_notes(joint_path: JointPath, lifts: Array, lift: float) -> list[Issue]:
+    raised = np.flatnonzero(lifts > lift)
+    if not len(raised):
+        return []
+    text = (f"before {len(raised)} beads the tool is withdrawn by up to {lifts.max():g} mm instead of {lift:g} mm to pass "
+            f"clear of the deposit")
+    return [Issue(NOTE, "RAPID_LIFTED", text, joint_path.beads[raised[0]].layer)]
+
+
+def _with_rapids(joint_path: JointPath, cell: Cell, process: ProcessParameters, lifts: Array) -> Motion:
+    """The motion with the tool withdrawn by lifts (beads,) mm before each bead, and by the first of them at the end."""
+    branch = opw.branch_index(joint_path.branch)
     parts: list[_Rows] = []
-    issues: list[Issue] = []
-    before: Array | None = None
-    lift, branch = process.between_layers.lift, opw.branch_index(joint_path.branch)
-    for path in joint_path.beads:
-        above = _lifted(path, 0, cell, branch, lift)
-        if lift > 0.0 and path.reachable and np.isnan(above).any():
-            issues.append(Issue(ERROR, "RAPID_UNREACHABLE", f"the point {lift:g} mm above the start of the bead cannot be "
-                                "reached; lower process.between_layers.lift", path.layer, path.index))
-        waypoints = [] if before is None or lift == 0.0 else [before]
-        waypoints += [above, path.joints[0]] if lift > 0.0 else [path.joints[0]]
+    before: BeadPath | None = None
+    for path, lift in zip(joint_path.beads, lifts):
+        waypoints = [path.joints[0]]
+        if lift > 0.0:
+            waypoints.insert(0, _lifted(path, 0, cell, branch, lift))
+            if before is not None:
+                waypoints.insert(0, _lifted(before, -1, cell, branch, lift))
         parts.append(_rapid(path, waypoints, cell, lift))
         parts.append(_deposit(path))
-        before = _lifted(path, -1, cell, branch, lift)
-    last = joint_path.beads[-1]
-    if lift > 0.0:
-        parts.append(_retract(last, _lifted(last, -1, cell, branch, lift), lift))
-    motion = _joined(parts, cell, process)
-    return motion, (*issues, *collisions(motion, cell))
+        before = path
+    if before is not None and process.between_layers.lift > 0.0:
+        lift = process.between_layers.lift
+        parts.append(_retract(before, _lifted(before, -1, cell, branch, lift), lift))
+    return _joined(parts, cell, process)
 
 
 def _lifted(path: BeadPath, index: int, cell: Cell, branch: int, lift: float) -> Array:

@@ -7,6 +7,8 @@ nozzle goes is known only now: it is driven through in small steps, against ever
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,8 +26,10 @@ PLATFORM_GRAIN = 4.0
 TOUCH = 0.05
 
 
-def collisions(motion: Motion, cell: Cell) -> list[Issue]:
+def collisions(motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | None = None) -> list[Issue]:
     """An issue for every travel between two beads on which the nozzle would meet deposit or platform.
+
+    Only the travels to the beads `among` (layer, bead) are looked at, where they are given.
 
     The withdrawal and the way down run along the tool axis, through room the nozzle itself keeps clear; their upper
     ends belong to the travel and are looked at.
@@ -34,6 +38,8 @@ def collisions(motion: Motion, cell: Cell) -> list[Issue]:
     # the way down onto a start is the last rapid row before the deposit: not a travel
     down = np.append(motion.deposit[1:], False)
     travels = travels[~down[travels]]
+    if among is not None:
+        travels = [row for row in travels if (int(motion.layer[row]), int(motion.bead[row])) in among]
     obstacles, laid = _obstacles(motion, cell)
     found = []
     for row in travels:
@@ -45,8 +51,9 @@ def collisions(motion: Motion, cell: Cell) -> list[Issue]:
         tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
         if _met(tip, axis, obstacles[laid < row], cell):
             found.append(Issue(
-                ERROR, "RAPID_COLLISION", "on its way from the bead before the nozzle would meet the deposit or the platform; "
-                "raise process.between_layers.lift", int(motion.layer[row]), int(motion.bead[row]),
+                ERROR, "RAPID_COLLISION",
+                "on its way from the bead before the nozzle would meet the deposit or the platform; raise "
+                "process.between_layers.lift", int(motion.layer[row]), int(motion.bead[row]),
             ))
     return found
 
@@ -66,15 +73,17 @@ def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, NDArray[np.int64]]:
 
 
 def _met(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
-    """Whether any obstacle point is inside the nozzle at any of the looks."""
+    """Whether any obstacle point (m, 3) is inside the nozzle at any of the looks: tip and tool axis (k, 3)."""
     nozzle = cell.nozzle
-    for point, direction in zip(tip, axis):
-        off = obstacles - point
-        height = off @ direction
-        across = np.sqrt(np.maximum((off * off).sum(axis=1) - height * height, 0.0))
-        inside = (height > TOUCH) & (height <= nozzle.length)
-        if (inside & (across < 0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - TOUCH)).any():
-            return True
+    # heights over the tip plane and squared distances from the tip, (m, k), as products of matrices
+    height = obstacles @ axis.T - (tip * axis).sum(axis=1)
+    centre = obstacles.mean(axis=0)
+    local, seat = obstacles - centre, tip - centre
+    square = (local * local).sum(axis=1)[:, None] - 2.0 * local @ seat.T + (seat * seat).sum(axis=1)
+    room = np.maximum(0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - TOUCH, 0.0)
+    inside = (height > TOUCH) & (height <= nozzle.length)
+    if (inside & (square - height * height < room * room)).any():
+        return True
     below = (tip - cell.mount[:3, 3]) @ cell.mount[:3, 2] < -TOUCH
-    local = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :2]
-    return bool((below & (np.linalg.norm(local, axis=1) < 0.5 * cell.platform_diameter)).any())
+    across = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :2]
+    return bool((below & (np.linalg.norm(across, axis=1) < 0.5 * cell.platform_diameter)).any())

@@ -60,8 +60,9 @@ def put_in(
         lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
         if lost and turns.turning_axis(task, path.joints) is not None:
             issues.append(Issue(
-                ERROR, "SPIRAL_LIMITED", "a spiral turns an axis without end, and this set of limits ends it; use path: layers, "
-                "or a limit set with an endless axis", layer=path.layer,
+                ERROR, "SPIRAL_LIMITED",
+                "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
+                "an endless axis", layer=path.layer,
             ))
     moved = sorted({found[0].layer for found in helped.values() if len(found) == 1})
     split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
