@@ -128,7 +128,8 @@ def proposed_name(text: str) -> str:
 def change(obj: Any, **values: Any) -> Any:
     """Change parameters or inputs of a stage as its `make_...` takes them, and renew it and what follows; the object.
 
-    `am.change(doc.Feature, layer_height=2)`. An error of what follows is told in its own Status.
+    `am.change(doc.Feature, layer_height=2)`. An error of what follows is told in its own Status. An error of the stage
+    itself is raised and takes the change back, in documents that keep undo steps (those of the window do).
     """
     proxy = _stage(obj)
     with _one_step(obj.Document, f"Edit {obj.Label}"):

@@ -200,8 +200,8 @@ class Stage:
             App.Console.PrintError(error.line() + "\n")
 
     def mustExecute(self, obj: Any) -> bool:
-        """A stale stage is due at the next recompute, whatever made it stale."""
-        return bool(obj.Status == STALE)
+        """A stale stage is due at the next recompute, whatever made it stale; a failed one is tried again."""
+        return obj.Status in (STALE, FAILED)
 
     def onChanged(self, obj: Any, name: str) -> None:
         """Mark what follows as stale at once."""

@@ -189,8 +189,9 @@ class Person:
 
     def console(self):
         """The text of the report view."""
-        views = self.window.findChildren(self.widgets.QTextEdit)
-        return "\n".join(view.toPlainText() for view in views if view.objectName() == "Report view")
+        view = self.window.findChild(self.widgets.QTextEdit, "Report view")
+        assert view is not None, "there is no report view to watch"
+        return view.toPlainText()
 
 
 @pytest.fixture
@@ -205,13 +206,17 @@ def hemisphere():
 
 
 @pytest.fixture
-def person(tmp_path):
+def person(tmp_path, capfd, request):
     someone = Person(tmp_path)
     watch = ModalWatch(someone.core, someone.widgets)
     someone.open_workbench()
+    mark = f"watching {request.node.name}"
+    App.Console.PrintError(mark + "\n")
+    someone.until(lambda: mark in someone.console(), "the report view to show errors", 5)
     yield someone
     watch.timer.stop()
-    text = someone.console()
+    captured = capfd.readouterr()
+    text = someone.console().rpartition(mark)[2] + captured.out + captured.err
     if someone.gui.Control.activeDialog():
         someone.gui.Control.closeDialog()
     for name in list(App.listDocuments()):

@@ -239,3 +239,42 @@ def test_a_line_turned_about_an_axis_by_clicks(person):
     person.press("Ok")
     person.panel_closed()
     assert doc.Feature.Status == "up to date" and doc.Feature.Axis == (axis, ["Edge1"])
+
+
+def test_errors_of_a_recompute_are_one_line_each_in_the_report_view(person, hemisphere):
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=10)
+    api.make_toolpath(doc, feature)
+    feature.LayerHeight = 0
+    person.gui.runCommand("Std_Refresh")
+    person.idle()
+    assert [obj.Status for obj in api.stages_of(doc)] == ["failed", "failed"]
+    lines = [line for line in person.console().splitlines() if "error[BAD_VALUE] Feature.LayerHeight" in line]
+    assert len(lines) == 1
+    feature.LayerHeight = 20
+    person.gui.runCommand("Std_Refresh")
+    assert [obj.Status for obj in api.stages_of(doc)] == ["up to date", "up to date"]
+
+
+def test_the_program_is_exported_from_its_window(person, hemisphere, tmp_path, monkeypatch):
+    doc = hemisphere.Document
+    program = api.make_all(doc, hemisphere, name="CUP")[-1]
+    folder = tmp_path / "Dossier d'été"
+    monkeypatch.setattr(person.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(folder))
+    person.double_click(program)
+    window = person.panel("RoboticAM_ProgramText")
+    for name in sorted(program.Files):
+        person.choose(window, "file", name)
+        assert person.field(window, "text").toPlainText().startswith("/PROG  " + name.removesuffix(".LS"))
+    assert person.field(window, "text").isReadOnly()
+    person.field(window, "export").click()
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == api.result(program).files
+    assert str(folder) in person.field(window, "state").text()
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(person.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path / "file"))
+    person.field(window, "export").click()
+    assert "choose a folder" in person.field(window, "state").text()
+    App.closeDocument(doc.Name)
+    person.field(window, "export").click()
+    assert "document is closed" in person.field(window, "state").text()
+    person.field(window, "close").click()

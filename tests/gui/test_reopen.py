@@ -91,3 +91,19 @@ def test_directions_and_infeasible_points_are_drawn_on_demand(person, hemisphere
     assert joint_path.Status == "infeasible" and joint_path.Message
     assert pixels((230, 26, 51)) > 20
     person.screenshot("infeasible")
+
+
+def test_a_copy_is_drawn_too(person, hemisphere):
+    document = hemisphere.Document
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5))
+    document.openTransaction("Copy")
+    copy = document.copyObject(toolpath, False)
+    document.commitTransaction()
+    document.Feature.ViewObject.Visibility = toolpath.ViewObject.Visibility = False
+    assert copy.Status == "up to date" and copy.ViewObject.Visibility
+    blue, yellow = person.path_pixels()
+    assert blue > 200 and yellow > 100, (blue, yellow)
+    person.double_click(copy)
+    person.panel("RoboticAM_Toolpath")
+    person.press("Cancel")
+    person.panel_closed()

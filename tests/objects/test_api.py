@@ -196,3 +196,16 @@ def test_a_wire_turned_about_a_line(doc):
     doc.recompute()
     with pytest.raises(InputError, match="no straight line"):
         api.make_feature(doc, wire, axis=(box, "Face1"))
+
+
+def test_a_sketch_turned_about_its_own_axis(doc):
+    import Sketcher  # noqa: F401  (makes the type known)
+
+    sketch = doc.addObject("Sketcher::SketchObject", "Sketch")
+    sketch.addGeometry(Part.LineSegment(App.Vector(20, 0, 0), App.Vector(30, 40, 0)))
+    sketch.Placement = App.Placement(App.Vector(1, 2, 3), App.Rotation(App.Vector(1, 0, 0), 90))
+    doc.recompute()
+    feature = api.make_feature(doc, sketch, axis=(sketch, "V_Axis"), layer_height=10)
+    frame = api.result(feature).frame
+    assert frame[:3, 3] == pytest.approx([1, 2, 3]) and frame[:3, 2] == pytest.approx([0, 0, 1])
+    assert feature.WallLength.Value == pytest.approx(math.hypot(10, 40))

@@ -162,3 +162,25 @@ def test_a_link_to_the_wrong_kind_is_told(job):
     job.toolpath.Feature = job.cell
     job.doc.recompute()
     assert job.toolpath.Status == FAILED and job.toolpath.Message == "Toolpath.Feature: Cell is no feature; choose one"
+
+
+def test_what_failed_is_tried_again_at_the_next_recompute(job, root, tmp_path):
+    machine = tmp_path / "robot.json"
+    job.cell.Machine = str(machine)
+    job.doc.recompute()
+    assert job.cell.Status == FAILED
+    machine.write_bytes((root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_bytes())
+    job.doc.recompute()
+    assert statuses(job) == [OK] * 5
+
+
+def test_a_changed_machine_file_is_noticed_by_a_recompute(job, root, tmp_path):
+    machine = tmp_path / "robot.json"
+    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    machine.write_text(text, encoding="utf-8")
+    job.cell.Machine = str(machine)
+    job.doc.recompute()
+    key = job.program.Key
+    machine.write_text(text + "\n", encoding="utf-8")
+    api.recompute(job.doc)
+    assert job.program.Key != key and statuses(job) == [OK] * 5
