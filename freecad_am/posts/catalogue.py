@@ -8,20 +8,26 @@ from typing import Protocol
 
 from ..core.issues import InputError
 from ..core.program import Program, ReadMoves
-from . import fanuc
+from . import fanuc, staubli
 
 
 class Post(Protocol):
     """What a post module offers."""
 
+    def program_name(self, name: str, where: str) -> str:
+        """The program's name on the controller; raises InputError PROGRAM_NAME, at `where`, for one it refuses."""
+
     def write(self, program: Program) -> dict[str, bytes]:
         """The controller's files, name -> content; raises InputError for what the controller would refuse."""
+
+    def refuse_setup(self, motion: str, setup: str) -> None:
+        """Raises InputError, saying why, when this motion of this set-up cannot be said to the controller."""
 
     def read(self, files: dict[str, bytes]) -> ReadMoves:
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
 
 
-_POSTS: dict[str, ModuleType] = {"fanuc": fanuc}
+_POSTS: dict[str, ModuleType] = {"fanuc": fanuc, "staubli": staubli}
 
 NAMES = tuple(_POSTS)
 

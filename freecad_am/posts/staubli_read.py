@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads VAL 3 applications back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain instructions a path needs and refuses every other one, so
+that no motion can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.program import ReadMoves
+from .staubli_files import AXES, POSE, Application, Data, applications, numbers, poses, rotations, unreadable
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_INDEX = r"(?:\[(\d+|l_nI(?:[+-]\d+)?)\])?"
+_MOVE = re.compile(rf"move([jl])\((\w+){_INDEX},(\w+){_INDEX},(\w+){_INDEX}\)$")
+_FOR = re.compile(r"for l_nI=(\d+) to (\d+)$")
+_OUTPUT = re.compile(r"(\w+)=(true|false)$")
+_CALL = re.compile(r"call (?:(\w+):)?(\w+)\(\)$")
+_LOAD = re.compile(r'if (\w+):libLoad\("\./(\w+)"\)!=0$')
+_HARMLESS = re.compile(r"delay\(\d+\.?\d*\)$|wait\((\w+)==(?:true|false)\)$")
+_UNLIMITED = 99999.0
+
+
+@dataclass(frozen=True)
+class _Step:
+    """Moves of one statement: letter j or l, and the rows of the arrays they take."""
+
+    app: Application
+    where: str
+    linear: bool
+    names: tuple[str, str, str]
+    point: Indices
+    tool: Indices
+    speed: Indices
+    deposit: bool
+
+
+@dataclass
+class _Run:
+    """What happened so far while the programs are followed."""
+
+    found: dict[str, Application]
+    steps: list[_Step] = field(default_factory=list)
+    loaded: dict[tuple[str, str], str] = field(default_factory=dict)
+    output: str = ""
+    on: bool = False
+    moving: bool = False
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with `start` of the outermost application.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    found = applications(files)
+    outer = [folder for folder in found if not any(folder.startswith(f"{other}/") for other in found)]
+    if len(outer) != 1:
+        raise unreadable("program", f"there are {len(outer)} applications, expected one with its parts")
+    run = _Run(found)
+    _follow(found[outer[0]], "start", run, ())
+    if not run.steps:
+        raise unreadable("program", "there are no moves")
+    if run.moving:
+        raise unreadable("program", "it ends before the last move does")
+    return _moves(run.steps)
+
+
+def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
+    """Carry out the statements of a program in order, and of those it calls."""
+    here = (app.folder, name)
+    if name not in app.programs or here in callers:
+        raise unreadable(app.folder, f"{name} is no program of it, or calls itself")
+    statements = iter(app.programs[name])
+    for number, line in statements:
+        where = f"{app.folder}/{name}.pgx line {number}"
+        if loop := _FOR.match(line):
+            (_, inside), (_, end) = next(statements, (0, "")), next(statements, (0, ""))
+            if not _MOVE.match(inside) or end != "endFor" or int(loop[1]) > int(loop[2]):
+                raise unreadable(where, "only a loop over one move is understood")
+            _move(app, inside, np.arange(int(loop[1]), int(loop[2]) + 1), run, where)
+        elif _MOVE.match(line):
+            _move(app, line, np.zeros(0, np.int64), run, where)
+        elif line == "waitEndMove()":
+            run.moving = False
+        elif run.moving:
+            raise unreadable(where, f"{line!r} does not wait for the moves before it")
+        elif load := _LOAD.match(line):
+            _load(app, load[1], load[2], statements, run, where)
+        elif call := _CALL.match(line):
+            called = app if call[1] is None else _library(app, call[1], run, where)
+            if called is not None:
+                _follow(called, call[2], run, (*callers, here))
+        else:
+            _other(app, line, run, where)
+
+
+def _load(
+    app: Application, alias: str, part: str, statements: Iterator[tuple[int, str]], run: _Run, where: str
+) -> None:
+    """Loading a part stops the program where it fails; the robot must not deposit meanwhile."""
+    rest = [next(statements, (0, ""))[1] for _ in range(3)]
+    if not rest[0].startswith("popUpMsg(") or rest[1:] != ["return", "endIf"]:
+        raise unreadable(where, "a part is loaded without stopping where it cannot be")
+    if run.on or f"{app.folder}/{part}" not in run.found or alias not in app.libraries:
+        raise unreadable(where, f"{part} is loaded while depositing, is not there, or {alias} is no library")
+    run.loaded[app.folder, alias] = f"{app.folder}/{part}"
+
+
+def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
+    """The application behind an alias; None for one that stands elsewhere on the controller."""
+    if alias not in app.libraries:
+        raise unreadable(where, f"{alias} is no library of the project")
+    if (app.folder, alias) in run.loaded:
+        return run.found[run.loaded[app.folder, alias]]
+    if not app.libraries[alias].startswith("Disk://"):
+        raise unreadable(where, f"{alias} is called before it is loaded")
+    return None
+
+
+def _other(app: Application, line: str, run: _Run, where: str) -> None:
+    if output := _OUTPUT.match(line):
+        link = _link(app, output[1], "Q", where)
+        if run.output not in ("", link):
+            raise unreadable(where, "a second output is switched")
+        run.output, run.on = link, output[2] == "true"
+    elif harmless := _HARMLESS.match(line):
+        if harmless[1]:
+            _link(app, harmless[1], "I", where)
+    else:
+        raise unreadable(where, f"the instruction {line!r} is not understood")
+
+
+def _link(app: Application, name: str, letter: str, where: str) -> str:
+    data = app.data.get(name, Data("", ()))
+    if data.kind != "dio" or len(data.values) != 1 or f"%{letter}" not in data.values[0].get("link", ""):
+        raise unreadable(where, f"{name} is no digital {'output' if letter == 'Q' else 'input'} of the project")
+    return data.values[0]["link"]
+
+
+def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) -> None:
+    match = _MOVE.match(line)
+    assert match is not None
+    letter, *arguments = match.groups()
+    names, kinds = arguments[0::2], ("pointRx" if letter == "l" else "jointRx", "tool", "mdesc")
+    rows = []
+    for name, kind, index in zip(names, kinds, arguments[1::2], strict=True):
+        data = app.data.get(name, Data("", ()))
+        taken = _indices(index, counter)
+        if data.kind != kind or taken is None or taken.min() < 0 or taken.max() >= len(data.values):
+            raise unreadable(where, f"{name} is not {kind} data of the project, or has not so many values")
+        rows.append(taken)
+    run.moving = True
+    run.steps.append(_Step(app, where, letter == "l", (names[0], names[1], names[2]), rows[0], rows[1], rows[2], run.on))
+
+
+def _indices(index: str | None, counter: Indices) -> Indices | None:
+    """The rows an index takes for each value of the counter; None for a counter outside its loop."""
+    if index is None or index.isdigit():
+        return np.full(max(len(counter), 1), int(index or 0))
+    return counter + int(index[4:] or 0) if len(counter) else None
+
+
+class _Values:
+    """What the arrays say, each read once."""
+
+    def __init__(self) -> None:
+        self._read: dict[tuple[str, str, tuple[str, ...]], tuple[Array, float]] = {}
+        self._fathers: dict[tuple[str, str], set[str]] = {}
+        self.digits: dict[tuple[str, ...], float] = {}
+
+    def __call__(self, app: Application, name: str, columns: tuple[str, ...]) -> Array:
+        key = (app.folder, name, columns)
+        if key not in self._read:
+            self._read[key] = numbers(app.data[name], columns, f"{app.folder}: {name}")
+            self.digits[columns] = max(self.digits.get(columns, 0.0), self._read[key][1])
+        return self._read[key][0]
+
+    def six(self, app: Application, name: str) -> Array:
+        """(n, 6) x y z rx ry rz, mm and degrees."""
+        return np.hstack((self(app, name, _LENGTHS), self(app, name, _ANGLES)))
+
+    def father(self, app: Application, name: str) -> str:
+        """What all values of an array stand on; '' when they differ."""
+        key = (app.folder, name)
+        if key not in self._fathers:
+            self._fathers[key] = {value.get("fatherId", "") for value in app.data[name].values}
+        return next(iter(self._fathers[key])) if len(self._fathers[key]) == 1 else ""
+
+    def frame(self, app: Application, name: str, where: str) -> Array:
+        """(4, 4) the frame that the points of an array are in; it must stand in the world."""
+        match = re.fullmatch(r"(\w+)\[0\]", self.father(app, name))
+        data = app.data.get(match[1], Data("", ())) if match else Data("", ())
+        if match is None or data.kind != "frame" or len(data.values) != 1 or self.father(app, match[1]) != "world[0]":
+            raise unreadable(where, f"the points of {name} are not all in one frame that stands in the world")
+        frame: Array = poses(self.six(app, match[1]))[0]
+        return frame
+
+
+_LENGTHS, _ANGLES = POSE[:3], POSE[3:]
+
+
+def _moves(steps: list[_Step]) -> ReadMoves:
+    total = sum(len(step.point) for step in steps)
+    values = _Values()
+    joints, point, tools = np.full((total, 6), np.nan), np.full((total, 6), np.nan), np.zeros((total, 6))
+    share, speed, deposit = np.full(total, np.nan), np.full(total, np.nan), np.zeros(total, dtype=bool)
+    frame: Array | None = None
+    row = 0
+    for step in steps:
+        rows = slice(row, row + len(step.point))
+        row = rows.stop
+        app, (target, tool, descriptor) = step.app, step.names
+        deposit[rows] = step.deposit
+        percent = values(app, descriptor, _SHARE)[step.speed, 0]
+        most, most_turn = values(app, descriptor, _SPEEDS)[step.speed].T
+        if step.linear:
+            own = values.frame(app, target, step.where)
+            if frame is not None and not np.array_equal(own, frame):
+                raise unreadable(step.where, "positions of more than one frame are mixed")
+            frame = own
+            point[rows], tools[rows] = values.six(app, target)[step.point], values.six(app, tool)[step.tool]
+            speed[rows] = most
+            known = (percent == 100.0) & (most > 0.0) & (most_turn >= _UNLIMITED)
+        else:
+            joints[rows], share[rows] = values(app, target, AXES)[step.point], percent / 100.0
+            known = (percent > 0.0) & (percent <= 100.0) & (most >= _UNLIMITED) & (most_turn >= _UNLIMITED)
+        if not known.all() or values.father(app, tool) != "flange[0]":
+            raise unreadable(step.where, "its speed is limited, or its tool fixed, in a way that is not understood")
+    linear = bool(np.isfinite(speed).any())
+    return ReadMoves(
+        np.radians(joints) if np.isfinite(share).any() else None, float(np.radians(values.digits.get(AXES, 0.0))),
+        np.full(total, np.nan), deposit,
+        position=point[:, :3] if linear else None, rotation=rotations(point[:, 3:]) if linear else None,
+        position_digits=values.digits.get(_LENGTHS, 0.0),
+        rotation_digits=float(np.radians(values.digits.get(_ANGLES, 0.0))),
+        speed=speed, speed_digits=values.digits[_SPEEDS], share=share, share_digits=values.digits[_SHARE] / 100.0,
+        frame=frame, tool=poses(tools) if linear else None,
+    )
+
+
+_SHARE, _SPEEDS = ("vel",), ("tmax", "rmax")
