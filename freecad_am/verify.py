@@ -30,8 +30,8 @@ COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 # s: the step of a time in milliseconds and in tenths of a second, and where the second begins
 MILLISECOND, TENTH, LONGEST_MSEC = 0.001, 0.05, 32.0
-# mm/s, half of the last digit of a path speed
-SPEED_DIGIT = 0.05
+# rad: a rapid that turns no axis farther than this has no time to speak of
+STILL = 2e-5
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,10 @@ def verify(
         message = f"the text has {len(read.deposit)} moves, planned are {len(rows)}"
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
     planned = _Planned(motion, rows)
-    issues = _deposit_issues(planned, read, program) + _time_issues(planned, read)
-    if read.joints is not None:
+    issues = _deposit_issues(planned, read, program) + _time_issues(cell, planned, read)
+    if read.position is None:
         return _verify_joints(cell, planned, program, read, chord_error, issues)
-    return _verify_poses(cell, planned, program, read, issues)
+    return _verify_poses(cell, planned, program, read, chord_error, issues)
 
 
 class _Planned:
@@ -88,6 +88,8 @@ class _Planned:
         self.position, self.tool = motion.position[rows], motion.tool[rows]
         self.duration, self.speed = motion.duration[rows], motion.speed[rows]
         self.joints = motion.joints[rows]
+        ends = np.flatnonzero(self.deposit)
+        self.ends = ends[ends > 0]
 
     def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
         """An error at the first wrong move, none when there is none; the message says how many there are."""
@@ -103,7 +105,7 @@ def _deposit_issues(planned: _Planned, read: ReadMoves, program: Program) -> lis
     return planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
 
 
-def _time_issues(planned: _Planned, read: ReadMoves) -> list[Issue]:
+def _time_issues(cell: Cell, planned: _Planned, read: ReadMoves) -> list[Issue]:
     """Times against the planned speed: each move to what its digits allow, and each bead as a whole.
 
     The first move of all starts from a place the program does not know; it has no time.
@@ -115,22 +117,42 @@ def _time_issues(planned: _Planned, read: ReadMoves) -> list[Issue]:
         wanted = np.where(planned.deposit, step / planned.speed, planned.duration)
     given = np.full(len(timed), np.nan) if read.speed is None else read.speed
     by_speed = np.isfinite(given)
-    wrong = by_speed & ~(np.abs(given - planned.speed) <= SPEED_DIGIT + 1e-9)
+    wrong = by_speed & ~(np.abs(given - planned.speed) <= read.speed_digits + 1e-9)
     issues = planned.issue("VERIFY_SPEED", wrong, "the speed in the text is not the planned one")
     timed &= ~by_speed
     allowed = np.where(wanted < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
+    taken, coarse = read.duration, allowed > TENTH
     short = timed & ~planned.deposit & (wanted < MILLISECOND)  # written as 1 ms, the shortest there is
-    wrong = timed & ~short & ~(np.abs(read.duration - wanted) <= allowed)
+    if read.share is not None:
+        times, times_allowed, turned = _share_times(cell, planned, read, read.share)
+        by_share = np.isfinite(read.share)
+        taken, allowed = np.where(by_share, times, taken), np.where(by_share, times_allowed, allowed)
+        coarse |= by_share
+        short |= timed & ~planned.deposit & by_share & (turned < STILL)
+    wrong = timed & ~short & ~(np.abs(taken - wanted) <= allowed)
     issues += planned.issue("VERIFY_TIME", wrong, "the time in the text does not give the planned speed")
     beads = np.flatnonzero(np.diff(planned.deposit, prepend=False) & planned.deposit)
     if len(beads) and not issues:
-        off = np.where(planned.deposit & timed, read.duration - wanted, 0.0)
-        coarse = np.where(planned.deposit & (allowed > TENTH), TENTH, 0.0)
-        excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(coarse, beads)
+        off = np.where(planned.deposit & timed, taken - wanted, 0.0)
+        rounded = np.where(planned.deposit & coarse, allowed, 0.0)
+        excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(rounded, beads)
         wrong = np.zeros(len(timed), dtype=bool)
         wrong[beads[excess]] = True
         issues += planned.issue("VERIFY_TIME", wrong, "the times of a bead do not add up to the planned one")
     return issues
+
+
+def _share_times(cell: Cell, planned: _Planned, read: ReadMoves, share: Array) -> tuple[Array, Array, Array]:
+    """(n,) s of moves in which the fastest axis runs at a share of its largest speed, what the digits allow, and the
+    largest angle of an axis; from the joint values of the text, where it has them."""
+    shown = cell.machine.to_controller(planned.joints)
+    if read.joints is not None:
+        shown = np.where(np.isnan(read.joints), shown, read.joints)
+    turned = np.abs(np.diff(shown, axis=0, prepend=shown[:1]))
+    times = (turned / cell.machine.max_speed).max(axis=1) / share
+    # a move that begins where the text has no joint values is off by the digits of both its ends
+    ends = 2.0 * read.digits / cell.machine.max_speed.min() / share
+    return times, times * read.share_digits / share + ends + COMPUTED_AXIS, turned.max(axis=1)
 
 
 def _verify_joints(
@@ -156,6 +178,7 @@ def _joint_issues(cell: Cell, planned: _Planned, read: ReadMoves, endless: Mask)
     assert read.joints is not None
     apart = read.joints - cell.machine.to_controller(planned.joints)
     apart[:, endless] -= 2.0 * np.pi * np.rint(apart[:, endless] / (2.0 * np.pi))
+    apart[np.isnan(read.joints).all(axis=1)] = 0.0  # told in Cartesian positions
     wrong = ~(np.abs(apart).max(axis=1) <= read.digits + COMPUTED_AXIS)
     message = f"a joint value is {np.degrees(np.abs(apart).max()):.3g} deg from the planned one"
     return planned.issue("VERIFY_JOINT", wrong, message)
@@ -192,14 +215,21 @@ def _point_issues(planned: _Planned, path: _Path) -> list[Issue]:
 
 def _between(cell: Cell, planned: _Planned, shown: Array, path: _Path, chord_error: float) -> tuple[float, Mask]:
     """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off."""
-    off = np.zeros(len(shown), dtype=bool)
-    ends = np.flatnonzero(planned.deposit)
-    ends = ends[ends > 0]
+    ends = planned.ends
     if not len(ends):
-        return 0.0, off
+        return 0.0, np.zeros(len(shown), dtype=bool)
     joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
     flange = cell.machine.chain.forward(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
-    tips = cell.tip_in_part(flange)[0].reshape(len(ends), len(BETWEEN), 3)
+    return _off_segments(planned, ends, cell.tip_in_part(flange)[0], path, chord_error)
+
+
+def _off_segments(
+    planned: _Planned, ends: NDArray[np.intp], tips: Array, path: _Path, chord_error: float
+) -> tuple[float, Mask]:
+    """Largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments that end at the rows `ends`,
+    and the moves (n,) that leave theirs by more than the chord error and the digits of their two points."""
+    off = np.zeros(len(planned.deposit), dtype=bool)
+    tips = tips.reshape(len(ends), len(BETWEEN), 3)
     start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
     away = tips - start[:, None]
     squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
@@ -222,25 +252,67 @@ def _second_opinion(cell: Cell, planned: _Planned, shown: Array, flange: Array) 
 
 
 def _verify_poses(
-    cell: Cell, planned: _Planned, program: Program, read: ReadMoves, issues: list[Issue]
+    cell: Cell, planned: _Planned, program: Program, read: ReadMoves, chord_error: float, issues: list[Issue]
 ) -> Verification:
-    """Cartesian moves run straight between the points, so the points are all there is to compare.
+    """Positions of the text against the planned points, and the flange they ask for against the planned joint values.
 
-    The user frame is the fixed platform; the planned joint values are checked to lead to the same points.
+    A linear move takes the tool it names straight to its target; with the part on the robot that tool is another one
+    at every point, so the way between two of them is looked at too.
     """
-    assert read.position is not None and read.rotation is not None
-    bound = np.full(len(read.deposit), np.sqrt(3.0) * read.position_digits + COMPUTED_MM)
-    # three rotations in a row, each by an angle that is off by half a digit
-    tool_bound = np.full(len(bound), 3.0 * read.rotation_digits + COMPUTED_AXIS)
-    in_part = cell.mount @ frames.pose(read.rotation, read.position)
-    issues += _point_issues(planned, _Path(in_part[:, :3, 3], -in_part[:, :3, 2], bound, tool_bound))
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = _joint_path(cell, joints, 0.0)
     issues += _point_issues(planned, path)
-    turned = frames.inverse(cell.station)[:3, :3] @ flange[:, :3, :3] @ cell.carried[:3, :3] - read.rotation
+    told, asked, tools = _text_path(cell, read)
+    if read.joints is not None:
+        issues += _joint_issues(cell, planned, read, np.array(program.endless))
+    issues += _point_issues(planned, told)
     # an angle of a shows as sqrt(2) a in the sum of squares of the nine entries
-    twisted = ~(np.linalg.norm(turned, axis=(1, 2)) <= np.sqrt(2.0) * tool_bound)
+    twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * told.tool_bound
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
+    between = 0.0
+    if read.tool is not None and len(planned.ends):  # a tool that stays the same goes straight from point to point
+        start, end = asked[planned.ends - 1] @ tools[planned.ends], asked[planned.ends] @ tools[planned.ends]
+        ways = _straight(start, end) @ frames.inverse(tools[planned.ends])[:, None]
+        between, off = _off_segments(
+            planned, planned.ends, cell.tip_in_part(ways.reshape(-1, 4, 4))[0], told, chord_error
+        )
+        message = f"the path between two points leaves the straight line by {between:.3g} mm, more than the chord error"
+        issues += planned.issue("VERIFY_BETWEEN", off, message)
     solver_issues, solvers = _second_opinion(cell, planned, joints, flange)
-    at_points = float(np.linalg.norm(in_part[:, :3, 3] - planned.position, axis=1).max())
-    return Verification(tuple(issues + solver_issues), at_points, 0.0, float(bound.max()), solvers)
+    at_points = float(np.linalg.norm(told.position - planned.position, axis=1).max())
+    return Verification(tuple(issues + solver_issues), at_points, between, float(told.bound.max()), solvers)
+
+
+def _text_path(cell: Cell, read: ReadMoves) -> tuple[_Path, Array, Array]:
+    """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for.
+
+    Texts without frames of their own count on those of the cell. Every frame is off by half a digit: its origin by at
+    most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about itself has no lever.
+    """
+    assert read.position is not None and read.rotation is not None
+    count, lever = 1, np.zeros(len(read.position))
+    seen, tools = cell.station @ frames.pose(read.rotation, read.position), np.broadcast_to(cell.carried, (len(lever), 4, 4))
+    if read.frame is not None and read.tool is not None:
+        count, tools = 3, read.tool
+        seen = cell.machine.base @ read.frame @ frames.pose(read.rotation, read.position)
+        lever = np.linalg.norm(read.position, axis=1)
+    asked = seen @ frames.inverse(tools)
+    bound = count * np.sqrt(3.0) * read.position_digits + 3.0 * read.rotation_digits * lever + COMPUTED_MM
+    tool_bound = np.full(len(bound), 3.0 * count * read.rotation_digits + COMPUTED_AXIS)
+    position, tool = cell.tip_in_part(asked)
+    if read.joints is not None:
+        rows = np.isfinite(read.joints).all(axis=1)
+        path, asked[rows] = _joint_path(cell, read.joints[rows], read.digits)
+        position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
+    return _Path(position, tool, bound, tool_bound), asked, tools
+
+
+def _straight(start: Array, end: Array) -> Array:
+    """(n, len(BETWEEN), 4, 4) the poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
+    turn = np.swapaxes(start[:, :3, :3], 1, 2) @ end[:, :3, :3]
+    axis = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    sine = np.linalg.norm(axis, axis=1)
+    angle = np.arctan2(sine, 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0))
+    axis = np.where(sine[:, None] > 1e-12, axis / np.maximum(sine, 1e-12)[:, None], [0.0, 0.0, 1.0])
+    spun = start[:, None, :3, :3] @ frames.rotation_about(axis[:, None], BETWEEN * angle[:, None])
+    return frames.pose(spun, start[:, None, :3, 3] + BETWEEN[:, None] * (end - start)[:, None, :3, 3])
