@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motion and program: rows, times, rapids, overlap, resuming; what comes out survives the read-back."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from freecad_am import verify
 from freecad_am.core.issues import InputError, has_errors
-from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics import machine, opw
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import FIRST_APPROACH, build
+from freecad_am.core.planning.program import FIRST_APPROACH, build, check_controller
+from freecad_am.core.planning.rapids import collisions
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
@@ -86,10 +89,6 @@ def test_overlap_runs_on_over_the_beginning_and_survives_the_read_back(planned, 
 
 def test_a_rapid_through_the_part_is_refused(planned):
     """The same rapids with the deposit moved up in front of the nozzle: every travel of the upper layers meets it."""
-    import dataclasses
-
-    from freecad_am.core.planning.rapids import collisions
-
     _, cell, _, motion = planned()
     assert collisions(motion, cell) == []
     raised = motion.position + np.where(motion.deposit, 25.0, 0.0)[:, None] * [0.0, 0.0, 1.0]
@@ -178,6 +177,15 @@ def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposit
     in_part = position @ np.linalg.inv(cell.carried)[:3, :3].T + np.linalg.inv(cell.carried)[:3, 3]
     in_part = in_part @ cell.mount[:3, :3].T + cell.mount[:3, 3]
     np.testing.assert_allclose(in_part, motion.position[rows], atol=1e-6)
+
+
+def test_a_post_of_another_maker_is_refused(planned):
+    _, cell, _, motion = planned()
+    kuka = dataclasses.replace(cell, machine=machine.load("kuka-kr16-2"))
+    with pytest.raises(InputError) as error:
+        build(motion, kuka, ProcessParameters(), ProgramParameters(), "kuka")
+    assert error.value.code == "WRONG_CONTROLLER"
+    check_controller(dataclasses.replace(kuka.machine, posts=None), "fanuc")
 
 
 def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
