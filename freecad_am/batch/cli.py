@@ -15,7 +15,7 @@ DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = ("plan", "export", "batch", "machines")
 USAGE = """usage: freecad-am COMMAND
 
-  plan JOB.yaml [-o DIR]                            one job: part to programs; DIR is out/<name> beside the job file
+  plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
   export DOC.FCStd [-o DIR] [--object NAME ...]     recompute a saved document and write its programs
   batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys
   machines                                          list the machines known
@@ -92,6 +92,7 @@ def _parser(command: str) -> Any:
     parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")
     if command == "plan":
         parser.add_argument("job", metavar="JOB.yaml")
+        parser.add_argument("--no-page", action="store_true", help="leave report.html out")
     elif command == "export":
         parser.add_argument("document", metavar="DOC.FCStd")
         parser.add_argument("--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label")
@@ -114,7 +115,7 @@ def _plan(options: Any, session: Any) -> int:
     from freecad_am.batch import job, run
 
     read = job.read_job(options.job)
-    result = run.run(read, options.output or run.default_folder(read), session)
+    result = run.run(read, options.output or run.default_folder(read), session, page=not options.no_page)
     session.out("".join(f"{path}\n" for path in result.paths))
     return result.exit_status
 

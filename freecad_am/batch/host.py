@@ -39,7 +39,9 @@ def find_freecad() -> bool:
 def _add_shims(folder: str) -> None:
     # Debian's plain import takes the library's folder as FreeCAD's home: its Qt shim and Python modules stand elsewhere
     for share in ("/usr/share/freecad", os.path.dirname(folder)):
-        extra = [os.path.join(share, "Ext"), *sorted(glob.glob(os.path.join(share, "Mod", "*", "")))]
+        modules = os.path.join(share, "Mod")
+        # the folder of all modules too: PartDesign is a package there, and its objects are lost from a file without it
+        extra = [os.path.join(share, "Ext"), *sorted(glob.glob(os.path.join(modules, "*", ""))), modules]
         for path in (entry.rstrip("/") for entry in extra):
             if os.path.isdir(path) and path not in sys.path:
                 sys.path.append(path)

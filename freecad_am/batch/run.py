@@ -63,8 +63,9 @@ def import_all() -> None:
     from . import report  # noqa: F401
 
 
-def run(job: Job, folder: str, session: Any) -> Result:
-    """Plan a job and write its outputs into `folder`. `session` is told of progress and findings.
+def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
+    """Plan a job and write its outputs into `folder`, report.html only with `page`. `session` is told of progress and
+    findings.
 
     Raises InputError; then nothing is written. An infeasible job has a result, but no programs.
     """
@@ -79,7 +80,7 @@ def run(job: Job, folder: str, session: Any) -> Result:
             try:
                 document.Label, document.UndoMode = job.name, 0
                 stages = plan(job, document, session)
-                result = _write(job, stages, cell, files, session, started)
+                result = _write(job, stages, cell, files, session, started, page)
             finally:
                 FreeCAD.closeDocument(document.Name)
             session.issues(stages.issues)
@@ -106,7 +107,12 @@ def check(job: Job) -> Any:
 
     from freecad_am.core.kinematics import cell
 
-    return cell.resolve(job.cell, np.eye(4))
+    resolved = cell.resolve(job.cell, np.eye(4))
+    if job.program is not None:
+        from freecad_am.core.planning import program
+
+        program.check_controller(resolved.machine, job.program.post)
+    return resolved
 
 
 def plan(job: Job, document: Any, session: Any) -> Stages:
@@ -146,7 +152,9 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     return stages
 
 
-def _write(job: Job, stages: Stages, cell: Any, files: outputs.Outputs, session: Any, started: float) -> Result:
+def _write(
+    job: Job, stages: Stages, cell: Any, files: outputs.Outputs, session: Any, started: float, page: bool
+) -> Result:
     """Everything but the page, which is drawn last."""
     from freecad_am import api
     from freecad_am.core.process import spacing
@@ -174,8 +182,9 @@ def _write(job: Job, stages: Stages, cell: Any, files: outputs.Outputs, session:
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])
-    with stages.timed("page", session):
-        files.write(outputs.PAGE, [_page(job, content, toolpath, motion, distances, planned, cell)])
+    if page:
+        with stages.timed("page", session):
+            files.write(outputs.PAGE, [_page(job, content, toolpath, motion, distances, planned, cell)])
     written = files.publish(outputs.earlier_outputs(files.folder))
     return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,8 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..geometry.frames import Array
-
-ENDLESS_STROKE = 2.0 * math.pi
 
 
 class Smallest(NamedTuple):
@@ -48,13 +45,6 @@ class Limits:
     def axes(self) -> int:
         """The number of axes."""
         return len(self.lower)
-
-    @property
-    def stroke(self) -> Array:
-        """The strokes upper - lower (axes,), rad. An endless axis counts as one turn, 2 pi: a weight 1/stroke of
-        zero would leave it unpenalised (Chalvin 2020, eq. 17, with the errata)."""
-        width = self.upper - self.lower
-        return np.where(np.isfinite(width), width, ENDLESS_STROKE)
 
     @property
     def endless(self) -> NDArray[np.bool_]:

@@ -40,7 +40,8 @@ class Machine:
     `opw` is None where there is no closed form. `base` (4, 4) is the maker's base frame in base_link, the frame of
     the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
-    C q + c0; `controller_remark` says how well that is known.
+    C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
+    the file does not say.
     """
 
     id: str
@@ -54,6 +55,7 @@ class Machine:
     controller_matrix: Array
     controller_offset: Array
     controller_remark: str
+    posts: tuple[str, ...] | None
     sources: tuple[str, ...]
     remarks: tuple[str, ...]
 
@@ -125,7 +127,7 @@ def _parse(top: Node) -> Machine:
     if not joints:
         raise top["joints"].bad("there is no joint")
     count = len(joints)
-    controller = top["controller"].only("matrix", "offset", "remark")
+    controller = top["controller"].only("matrix", "offset", "remark", "posts")
     machine = Machine(
         id=top["id"].text(),
         title=top["title"].text(),
@@ -142,6 +144,7 @@ def _parse(top: Node) -> Machine:
         controller_matrix=controller["matrix"].matrix(count, count),
         controller_offset=np.radians(controller["offset"].numbers(count)),
         controller_remark=controller["remark"].text(),
+        posts=controller["posts"].texts() if controller.has("posts") else None,
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
     )

@@ -10,6 +10,7 @@ from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
 from ..kinematics.cell import PART_ON_ROBOT, Cell
+from ..kinematics.machine import Machine
 from ..motion import Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
@@ -35,7 +36,11 @@ FIRST_APPROACH = 10.0
 
 
 def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str) -> Program:
-    """The program of a motion. A start past the last bead is InputError START_AT."""
+    """The program of a motion.
+
+    Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read.
+    """
+    check_controller(cell.machine, parameters.post)
     return Program(
         name=name,
         machine=cell.machine.title,
@@ -54,6 +59,14 @@ def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: Pr
         station=_six(_station(cell)),
         carried=_six(cell.carried),
     )
+
+
+def check_controller(machine: Machine, post: str) -> None:
+    """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
+    if machine.posts is None or post in machine.posts:
+        return
+    known = f"use one of {', '.join(machine.posts)}" if machine.posts else "there is no post for it yet; leave the program out"
+    raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
 
 
 def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:

@@ -26,7 +26,8 @@ def test_all_built_in_machines_load():
         assert arm.opw is not None and arm.sources and arm.controller_remark
         assert np.isfinite(arm.max_speed).all() and (arm.max_speed > 0).all()
         assert "maker" in arm.limit_sets
-        assert all((limits.stroke > 0).all() for limits in arm.limit_sets.values())
+        assert all((limits.upper > limits.lower).all() for limits in arm.limit_sets.values())
+        assert arm.posts is not None
 
 
 def test_the_arc_mate_is_that_of_the_data():

@@ -109,7 +109,8 @@ def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):
     assert [issue.code for issue in issues] == ["RAPID_LIFTED"]
     nozzle = cell.nozzle
     for row in np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1:
-        share = np.linspace(0.0, 1.0, 2 + int(np.degrees(np.abs(motion.joints[row] - motion.joints[row - 1]).max())))[:, None]
+        looks = 2 + int(np.degrees(np.abs(motion.joints[row] - motion.joints[row - 1]).max()))
+        share = np.linspace(0.0, 1.0, looks)[:, None]
         joints = motion.joints[row - 1] + share * (motion.joints[row] - motion.joints[row - 1])
         tips, axes = cell.tip_in_part(cell.machine.chain.forward(joints))
         laid = motion.position[:row][motion.deposit[:row]]
