@@ -94,9 +94,10 @@ class Person:
         self.idle()
 
     def panel(self, name):
-        found = self.until(lambda: self.window.findChild(self.widgets.QWidget, name), f"the panel {name}", 5)
-        self.until(found.isVisible, f"the panel {name} to show", 5)
-        return found
+        def visible():
+            return [widget for widget in self.window.findChildren(self.widgets.QWidget, name) if widget.isVisible()]
+
+        return self.until(visible, f"the panel {name}", 5)[0]
 
     def field(self, panel, name):
         found = [widget for widget in panel.findChildren(self.widgets.QWidget) if widget.objectName() == name]
