@@ -195,7 +195,8 @@ def export(program: Any, folder: str) -> list[str]:
     try:
         os.makedirs(folder, exist_ok=True)
         for name, content in files.items():
-            path = os.path.join(folder, name)
+            path = os.path.join(folder, *name.split("/"))
+            os.makedirs(os.path.dirname(path), exist_ok=True)
             with open(path + ".part", "wb") as file:
                 file.write(content)
             os.replace(path + ".part", path)

@@ -84,8 +84,10 @@ class Outputs:
             if os.path.isdir(self._target(name)):
                 raise IsADirectoryError(21, "a folder stands where a file belongs", self._target(name))
             parent = os.path.dirname(self._target(name))
-            if os.path.lexists(parent) and not os.path.isdir(parent):
-                raise NotADirectoryError(20, "a file stands where a folder belongs", parent)
+            while parent != self.folder:
+                if os.path.lexists(parent) and not os.path.isdir(parent):
+                    raise NotADirectoryError(20, "a file stands where a folder belongs", parent)
+                parent = os.path.dirname(parent)
 
     def _unwritable(self, path: str, error: Exception) -> InputError:
         reason = getattr(error, "strerror", None) or str(error)
@@ -118,8 +120,9 @@ class Outputs:
         if os.path.isfile(path) or os.path.islink(path):
             os.remove(path)
         parent = os.path.dirname(path)
-        if parent != self.folder and os.path.isdir(parent) and not os.listdir(parent):
+        while parent != self.folder and os.path.isdir(parent) and not os.listdir(parent):
             os.rmdir(parent)
+            parent = os.path.dirname(parent)
 
 
 def earlier_programs(folder: str) -> set[str]:

@@ -9,9 +9,11 @@ from typing import Any
 from .. import verify as verification
 from ..core.issues import InfeasibleError, InputError, has_errors
 from ..core.kinematics import cell as cells
+from ..core.kinematics.cell import PART_ON_ROBOT
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
+from ..core.planning import moving_tool
 from ..core.planning import program as programs
 from ..posts import catalogue
 from .stage import Link, Outcome, Section, Stage
@@ -52,6 +54,9 @@ class Program(Stage):
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
         motion = joint_object.Proxy.value(joint_object).motion
         post = catalogue.load(parameters.post)
+        post.refuse_setup(parameters.motion, cell.setup)
+        if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
+            motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error)
         program = programs.build(motion, cell, process, parameters, obj.ProgramName)
         files = post.write(program)
         checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)
