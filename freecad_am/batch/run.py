@@ -112,6 +112,7 @@ def check(job: Job) -> Any:
         from freecad_am.core.planning import program
 
         program.check_controller(resolved.machine, job.program.post)
+        post.refuse_setup(job.program.motion, job.cell.setup)
     return resolved
 
 

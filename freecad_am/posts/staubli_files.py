@@ -19,7 +19,8 @@ _NAMESPACE = "{http://www.staubli.com/robotics/VAL3/"
 PROJECT, DATA, PROGRAM = (_NAMESPACE + space + "}" for space in ("Project/3", "Data/2", "Program/2"))
 AXES = ("j1", "j2", "j3", "j4", "j5", "j6")
 POSE = ("x", "y", "z", "rx", "ry", "rz")
-_DECIMALS = re.compile(r"-?\d+(?:\.(\d+))?$")
+_PLAIN = re.compile(r"(?:-?[0-9]+(?:\.[0-9]+)? )*")
+_DECIMALS = re.compile(r"\.([0-9]+) ")
 
 
 @dataclass(frozen=True)
@@ -107,11 +108,11 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
 
 def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]:
     """The attributes `names` of all values, (n, names), absent ones 0, and half of the last digit written."""
-    texts = [[value.get(name, "0") for name in names] for value in data.values]
-    matches = [[_DECIMALS.match(text) for text in row] for row in texts]
-    if not all(all(row) for row in matches):
+    texts = [value.get(name, "0") for value in data.values for name in names]
+    together = " ".join(texts) + " "
+    if texts and not _PLAIN.fullmatch(together):
         raise unreadable(where, "a value is no plain number")
-    decimals = max((len(match[1] or "") for row in matches for match in row if match), default=0)
+    decimals = max(map(len, _DECIMALS.findall(together)), default=0)
     return np.array(texts, dtype=np.float64).reshape(-1, len(names)), 0.5 * 10.0**-decimals
 
 
