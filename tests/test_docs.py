@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The pages in docs say what the code does: every key of a job with its default, and the table of imports."""
+
+import dataclasses
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from freecad_am.batch import job
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+SECTIONS = (
+    *(("strategy", parameters) for parameters in job.STRATEGIES.values()),
+    ("build_direction", BuildDirectionParameters),
+    ("cell", CellParameters),
+    ("joints", JointParameters),
+    ("process", ProcessParameters),
+    ("program", ProgramParameters),
+)
+# keys that are not fields of a parameters dataclass
+BY_HAND = {"version", "name", "part", "part.file", "part.object", "part.faces", "part.set", "substrate", "strategy.kind"}
+WORDS = {f.LENGTH: "length", f.ANGLE: "angle", f.SPEED: "speed", f.TIME: "time", f.RATIO: "percentage", f.NUMBER: "number",
+         f.COUNT: "whole number", f.TEXT: "text", f.POSE: "pose", f.ANGLE_RANGE: "two angles"}
+
+
+def parameters(prefix, cls):
+    """(dotted key, dataclass field) of a parameters dataclass and the groups in it."""
+    for field in dataclasses.fields(cls):
+        key = f"{prefix}.{field.name}"
+        if f.spec_of(field).kind == f.GROUP:
+            yield from parameters(key, field.default_factory)
+        else:
+            yield key, field
+
+
+FIELDS = [pair for prefix, cls in SECTIONS for pair in parameters(prefix, cls)]
+
+
+def default_text(spec, value):
+    """A default as a job file has it."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        if spec.kind == f.POSE:
+            value = [*value[:3], *(number / f.TO_INNER[f.ANGLE] for number in value[3:])]
+        texts = [f.outer_text(dataclasses.replace(spec, kind=f.ANGLE), v) if spec.kind == f.ANGLE_RANGE
+                 else v if isinstance(v, str) else f"{v:.9g}" for v in value]
+        return f"[{', '.join(texts)}]"
+    return f.outer_text(spec, value)
+
+
+def values_text(spec, type_text):
+    """What a key takes: words, or a kind with its range."""
+    if spec.kind == f.FLAG:
+        return "`true`, `false`"
+    if spec.kind == f.CHOICE:
+        return ", ".join(f"`{word}`" for word in spec.choices)
+    text = WORDS[spec.kind] + (" or pose" if spec.kind == f.LENGTH and "Pose" in type_text else "")
+    if spec.low is not None:
+        text += (" more than " if spec.open_low else " from ") + f.outer_text(spec, spec.low)
+    if spec.high is not None:
+        text += (" up to " if spec.open_low else " to ") + f.outer_text(spec, spec.high)
+    words = [*spec.words, *(["null"] if spec.optional else [])]
+    return text + "".join(f", or `{word}`" for word in words)
+
+
+def table_rows(page):
+    """Cells of every table row of a page whose first cell is a key."""
+    for line in page.read_text(encoding="utf-8").splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split(" | ")]
+        if line.startswith("| `") and len(cells) == 4:
+            yield cells
+
+
+JOB_ROWS = list(table_rows(DOCS / "job-file.md"))
+
+
+@pytest.mark.parametrize("key,field", FIELDS, ids=[key for key, _ in FIELDS])
+def test_every_key_of_a_job_is_documented(key, field):
+    spec = f.spec_of(field)
+    wanted = [f"`{key}`", f"`{default_text(spec, field.default)}`", values_text(spec, str(field.type))]
+    row = f"| {' | '.join(wanted)} | {spec.help} |"
+    assert wanted in [cells[:3] for cells in JOB_ROWS], f"docs/job-file.md lacks or contradicts the row\n{row}"
+
+
+def test_no_key_is_documented_that_a_job_does_not_have():
+    known = {key for key, _ in FIELDS} | BY_HAND
+    assert {cells[0].strip("`") for cells in JOB_ROWS} - known == set()
+    assert BY_HAND <= {cells[0].strip("`") for cells in JOB_ROWS}
+
+
+def test_sections_and_strategies_are_those_of_a_job():
+    tops = {cells[0].strip("`").split(".")[0] for cells in JOB_ROWS}
+    assert tops == set(job.SECTIONS)
+
+
+def test_jobs_shown_are_read(tmp_path):
+    """Every YAML block of README and job-file.md that has a part is a job the program accepts."""
+    blocks = [block for page in (ROOT / "README.md", DOCS / "job-file.md")
+              for block in re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)]
+    jobs = [block for block in blocks if re.search(r"^part:", block, re.MULTILINE)]
+    assert len(jobs) >= 2
+    for number, block in enumerate(jobs):
+        path = tmp_path / f"job{number}.yaml"
+        path.write_text(block, encoding="utf-8")
+        for name in re.findall(r"file: ([\w.-]+)", block):
+            (tmp_path / name).touch()
+        job.read_job(str(path))
+
+
+def imports_table():
+    """OURS and FOREIGN of tests/test_imports.py."""
+    spec = importlib.util.spec_from_file_location("imports_table", ROOT / "tests" / "test_imports.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.OURS, module.FOREIGN
+
+
+def listed(cell):
+    return set(re.findall(r"`([^`]+)`", cell))
+
+
+def test_architecture_has_the_table_of_imports():
+    ours, foreign = imports_table()
+    text = (DOCS / "architecture.md").read_text(encoding="utf-8")
+    section = text.split("## Who may import whom")[1].split("\n## ")[0]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]
+    shown = {cells[0].strip("`"): listed(cells[1]) for cells in rows if len(cells) == 3}
+    assert shown == ours
+    for cells in rows:
+        assert listed(cells[2]) == foreign[cells[0].strip("`").split("/")[0]], cells[0]
+
+
+def test_decisions_are_numbered_and_whole():
+    pages = sorted(path for path in (DOCS / "decisions").glob("*.md"))
+    assert [int(path.name[:4]) for path in pages] == list(range(1, len(pages) + 1))
+    for path in pages:
+        text = path.read_text(encoding="utf-8")
+        assert text.startswith(f"# {path.name[:4]} "), path.name
+        for heading in ("**Status**", "**Context**", "**Decision**", "**Consequences**"):
+            assert heading in text, f"{path.name} lacks {heading}"
+        assert f"decisions/{path.name}" in (DOCS / "architecture.md").read_text(encoding="utf-8"), path.name
