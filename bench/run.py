@@ -17,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
 PEERS = ("eaik",)
 BENCHMARKS = ("kinematics", "planning", "whole")
-ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def environment_python() -> Path | None:

@@ -39,7 +39,7 @@ def hand_over(missing, words):
     command = [others[0], script, *(["--"] if hosted else []), *words]
     if hosted:
         environment["FREECAD_AM_HOSTED"] = "1"
-    os.execvpe(others[0], command, environment)
+    return os.execvpe(others[0], command, environment)
 
 
 def run(words):

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.geometry import frames
 from ..core.kinematics.machine import Machine
 
 Array = NDArray[np.float64]
@@ -55,14 +56,16 @@ class KdlArm:
 
     def forward(self, q: ArrayLike) -> Array:
         """Flange poses (n, 4, 4) of joint angles `q` (n, axes)."""
-        result = np.zeros((len(np.asarray(q)), 4, 4))
-        result[:, 3, 3] = 1.0
-        frame = self.kdl.Frame()
-        for row, angles in zip(result, np.asarray(q, float), strict=True):
-            self._forward.JntToCart(self.angles(angles), frame)
-            row[:3, :3] = [[frame.M[i, k] for k in range(3)] for i in range(3)]
-            row[:3, 3] = [frame.p[i] for i in range(3)]
-        return result
+        seen = np.empty((len(np.asarray(q)), 7))
+        frame, angles, solve = self.kdl.Frame(), self.kdl.JntArray(self.axes), self._forward.JntToCart
+        # a quaternion is one call where a matrix is nine: these calls are most of the time of a read-back
+        for row, values in enumerate(np.asarray(q, float).tolist()):
+            for axis, value in enumerate(values):
+                angles[axis] = value
+            solve(angles, frame)
+            origin = frame.p
+            seen[row] = (origin.x(), origin.y(), origin.z(), *frame.M.GetQuaternion())
+        return frames.pose(_rotations(seen[:, 3:]), seen[:, :3])
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Geometric Jacobians (n, 6, axes) at the flange's origin in base_link: rows velocity, angular velocity."""
@@ -108,3 +111,15 @@ class KdlArm:
         """A pose (4, 4) as PyKDL's Frame."""
         rotation = self.kdl.Rotation(*(float(entry) for entry in pose[:3, :3].ravel()))
         return self.kdl.Frame(rotation, self.kdl.Vector(*(float(entry) for entry in pose[:3, 3])))
+
+
+def _rotations(quaternions: Array) -> Array:
+    """The rotations (n, 3, 3) of quaternions x y z w (n, 4)."""
+    x, y, z, w = quaternions.T
+    rows = (
+        1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
+        2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+        2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
+    )
+    result: Array = np.stack(rows, axis=1).reshape(-1, 3, 3)
+    return result

@@ -43,9 +43,11 @@ def plan(
     refined = refine.refine(task, full, threshold, start, wanted)
     progress(0.7, "settling")
     settled = valley.settle(task, coarse, coarse_threshold, refined.coefficients)
-    at_peak = judged(task, beads, places, full, threshold, settled, refined)
-    as_found = judged(task, beads, places, full, threshold, refined.coefficients, refined)
-    paths = [path if path.margin >= min(FITS, other.margin) else other for path, other in zip(at_peak, as_found)]
+    paths = judged(task, beads, places, full, threshold, settled, refined)
+    if any(path.margin < FITS for path in paths):
+        # settling looks at few points of a bead: where all of them say otherwise, the optimum stays as it was found
+        as_found = judged(task, beads, places, full, threshold, refined.coefficients, refined)
+        paths = [path if path.margin >= min(FITS, other.margin) else other for path, other in zip(paths, as_found)]
     late = [int(k) for k in each if paths[k].margin < FITS and k not in helped and k not in hopeless]
     helped.update({
         k: found for k, found in zip(late, room.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))

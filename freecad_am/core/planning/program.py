@@ -65,7 +65,7 @@ def check_controller(machine: Machine, post: str) -> None:
     """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
     if machine.posts is None or post in machine.posts:
         return
-    known = f"use one of {', '.join(machine.posts)}" if machine.posts else "there is no post for it yet; leave the program out"
+    known = f"use one of {', '.join(machine.posts)}" if machine.posts else "there is no post for it yet; leave program out"
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
 
 

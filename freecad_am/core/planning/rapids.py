@@ -39,7 +39,8 @@ def collisions(motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | 
     down = np.append(motion.deposit[1:], False)
     travels = travels[~down[travels]]
     if among is not None:
-        travels = [row for row in travels if (int(motion.layer[row]), int(motion.bead[row])) in among]
+        chosen = [(int(motion.layer[row]), int(motion.bead[row])) in among for row in travels]
+        travels = travels[np.array(chosen, dtype=bool)]
     obstacles, laid = _obstacles(motion, cell)
     found = []
     for row in travels:

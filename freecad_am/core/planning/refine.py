@@ -51,7 +51,7 @@ def refine(
     task: Task, points: Points, thresholds: Array, start: Array, wanted: NDArray[np.bool_] | None = None
 ) -> Refined:
     """Improve the coefficients (B, degree + 1) of every bead, or of the wanted (B,); points are all points of the beads."""
-    first = _state(task, points, thresholds, start)
+    first = _state(task, points, thresholds, start, slopes=False)
     tolerance = task.parameters.tolerance
     done = np.isfinite(first.objective) & (first.predicted <= tolerance) & (first.constraints >= 0.0).all(axis=1)
     if wanted is not None:
@@ -127,7 +127,8 @@ def _better(state, start: Array, end: Array) -> Array:  # type: ignore[no-untype
     return start
 
 
-def _state(task: Task, points: Points, thresholds: Array, coefficients: Array) -> _State:
+def _state(task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True) -> _State:
+    """The state at coefficients (B, degree + 1); without `slopes` the constraints' derivatives are left at 0."""
     phi, phi_rate = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
@@ -138,7 +139,9 @@ def _state(task: Task, points: Points, thresholds: Array, coefficients: Array) -
     objective = criteria.value(task, points, joints, matrix)
     slope = criteria.rate(task, points, joints, rates, matrix)
     gradient = points.total((slope[:, None] * powers).T).T
-    constraints, constraint_rates = _constraints(task, points, thresholds, phi, phi_rate, joints, rates, matrix, powers)
+    constraints, constraint_rates = _constraints(
+        task, points, thresholds, phi, phi_rate, joints, rates, matrix, powers, slopes
+    )
     predicted = _predicted(task, points, joints, rates, powers, gradient)
     return _State(objective, gradient, predicted, constraints, constraint_rates)
 
@@ -168,24 +171,29 @@ def _narrow(task: Task) -> int:
 
 def _constraints(
     task: Task, points: Points, thresholds: Array, phi: Array, phi_rate: Array, joints: Array, rates: Array,
-    matrix: Array, powers: Array,
+    matrix: Array, powers: Array, wanted: bool,
 ) -> tuple[Array, Array]:
     """Eqs. 18 and 19 as corrected, one value per limit and bead: (B, m + 1) and derivatives (B, m + 1, degree + 1)."""
     offset = task.rows.offset(joints)
-    values = [0.25 * (1.0 - offset.T**2)]
-    slopes = [-0.5 * offset.T * (rates @ task.rows.matrix.T / task.rows.half).T]
     ratio = jac.condition(matrix, task.parameters.characteristic_length)
-    values.append((ratio - thresholds * (1.0 + CONDITION_RESERVE))[None])
-    slopes.append(criteria.condition_rate(task, joints, rates, matrix)[None])
+    values = [0.25 * (1.0 - offset.T**2), (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None]]
+    low, high = task.parameters.rotation_range
+    half = 0.5 * (high - low)
+    share = (phi - (low + half)) / half
     if _narrow(task):
-        low, high = task.parameters.rotation_range
-        half = 0.5 * (high - low)
-        share = (phi - (low + half)) / half
         values.append(0.25 * (1.0 - share**2)[None])
-        slopes.append((-0.5 * share / half * phi_rate)[None])
-    value, slope = np.concatenate(values), np.concatenate(slopes)
+    value = np.concatenate(values)
     worst = points.worst(value)
-    at = np.stack([_where_worst(points, row, low) for row, low in zip(value, worst)])
+    if not wanted:
+        return worst.T, np.zeros((points.beads, len(value), powers.shape[1]))
+    slopes = [
+        -0.5 * offset.T * (rates @ task.rows.matrix.T / task.rows.half).T,
+        criteria.condition_rate(task, joints, rates, matrix)[None],
+    ]
+    if _narrow(task):
+        slopes.append((-0.5 * share / half * phi_rate)[None])
+    slope = np.concatenate(slopes)
+    at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
     rows = np.arange(len(value))[:, None]
     return worst.T, (slope[rows, at][:, :, None] * powers[at]).transpose(1, 0, 2)
 

@@ -114,7 +114,8 @@ class Task:
     def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
         """phi (T,) and d phi / d value (T,) for the variable of the job: the rotation itself, or RZ of the paper."""
         if self.parameters.parameter == "rotation":
-            return value, np.ones(len(value), dtype=np.float64)
+            ones: Array = np.ones(len(value))
+            return value, ones
         return self.cell.phi_of_rz(points.tool, value)
 
     def raw_joints(self, points: Points, phi: Array) -> Array:
@@ -186,7 +187,7 @@ class Task:
         twist = np.zeros((len(joints), 6, 1))
         twist[:, 3:, 0] = self.cell.spin_axis(flange)
         try:
-            rates = np.linalg.solve(matrix, twist)[:, :, 0]
+            rates: Array = np.linalg.solve(matrix, twist)[:, :, 0]
         except np.linalg.LinAlgError:
             rates = (np.linalg.pinv(matrix) @ twist)[:, :, 0]
         return rates, matrix

@@ -9,10 +9,10 @@ circular arc to sixth order in the angle it turns - and keeps corners as they ar
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ..toolpath import Array, Bead, Layer, Toolpath
 
@@ -78,6 +78,10 @@ def distance(points: Array, curve: Curve) -> Array:
     the longest segment can hold the nearest point of the chords; all of those are tried, and the foot found is
     moved along its cubic.
     """
+    if len(points) * len(curve.start) <= _CHUNK:
+        return _to_cubic(points, _nearest_of_all(points, curve), curve)
+    from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
+
     half = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max())
     middles = cKDTree(0.5 * (curve.start + curve.end))
     to_vertex = cKDTree(np.concatenate((curve.start, curve.end[-1:]))).query(points)[0]
@@ -88,13 +92,26 @@ def distance(points: Array, curve: Curve) -> Array:
     return _to_cubic(points, segment, curve)
 
 
-def _parts(middles: cKDTree, points: Array, radius: Array) -> int:
+def _nearest_of_all(points: Array, curve: Curve) -> NDArray[np.intp]:
+    """(n,) index of the segment whose chord is nearest to each point, every chord tried."""
+    centre = curve.start.mean(axis=0)
+    start, along, at = curve.start - centre, curve.end - curve.start, points - centre
+    length = (along * along).sum(axis=1)
+    forward = at @ along.T - (start * along).sum(axis=1)
+    share = np.clip(forward / np.maximum(length, 1e-300), 0.0, 1.0)
+    squared = (at * at).sum(axis=1)[:, None] - 2.0 * at @ start.T + (start * start).sum(axis=1)
+    squared += share * (share * length - 2.0 * forward)
+    nearest: NDArray[np.intp] = squared.argmin(axis=1)
+    return nearest
+
+
+def _parts(middles: Any, points: Array, radius: Array) -> int:
     sample = slice(None, None, max(1, len(points) // 16))
     per_point = float(np.mean(middles.query_ball_point(points[sample], radius[sample], return_length=True)))
     return min(len(points), 1 + int(per_point * len(points) / _CHUNK))
 
 
-def _nearest_chord(middles: cKDTree, points: Array, radius: Array, curve: Curve) -> NDArray[np.intp]:
+def _nearest_chord(middles: Any, points: Array, radius: Array, curve: Curve) -> NDArray[np.intp]:
     """(n,) index of the segment whose chord is nearest to each point."""
     found = middles.query_ball_point(points, radius, return_sorted=False)
     count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
