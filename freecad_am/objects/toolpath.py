@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import NozzleParameters
 from ..core.parameters.process import ProcessParameters
@@ -42,6 +44,7 @@ class Toolpath(Stage):
             self.parameters(obj, ProcessParameters),
             NozzleParameters() if carried is None else carried.nozzle,
             0.0 if carried is None else carried.platform_diameter,
+            np.eye(4) if carried is not None and carried.mount == "part" else None,
         )
         figures = (
             ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),

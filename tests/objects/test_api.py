@@ -209,3 +209,15 @@ def test_a_sketch_turned_about_its_own_axis(doc):
     frame = api.result(feature).frame
     assert frame[:3, 3] == pytest.approx([1, 2, 3]) and frame[:3, 2] == pytest.approx([0, 0, 1])
     assert feature.WallLength.Value == pytest.approx(math.hypot(10, 40))
+
+
+def test_with_the_part_mounted_by_its_own_frame_the_platform_is_there(doc, part):
+    """A wall that floats above the platform of its part's frame, or lies beside it, is seen where it is."""
+    part.Placement.Base = (200, 0, 0)
+    doc.recompute()
+    beside = api.make_cell(doc, limits="paper", mount="part")
+    feature = api.make_feature(doc, part, layer_height=10)
+    with pytest.raises(InputError) as error:
+        api.make_toolpath(doc, feature, beside)
+    assert error.value.code == "OFF_PLATFORM"
+    assert api.make_toolpath(doc, feature, api.make_cell(doc, limits="paper", mount="feature"))
