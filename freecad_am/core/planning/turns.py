@@ -34,11 +34,15 @@ def counted_on(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[
     result: list[BeadPath] = []
     back: dict[int, list[int]] = {}
     before: Array | None = None
-    for path in paths:
+    for path, following in zip(paths, [*paths[1:], None]):
         if before is not None and path.reachable:
             path = replace(path, joints=path.joints + _turns(task, path, before) * TURN)
             for axis in np.flatnonzero(np.abs(path.joints[0] - before) > TURNS_BACK):
                 back.setdefault(int(axis), []).append(path.layer)
+        elif path.reachable and following is not None and following.reachable:
+            # nothing comes before the first bead: it is turned towards the second
+            towards = following.joints[0] - (path.joints[-1] - path.joints[0])
+            path = replace(path, joints=path.joints + _turns(task, path, towards) * TURN)
         if path.reachable:
             before = path.joints[-1]
         result.append(path)

@@ -15,7 +15,7 @@ from freecad_am.core.parameters.program import ProgramParameters, StartParameter
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import FIRST_APPROACH, build, check_controller
-from freecad_am.core.planning.rapids import collisions
+from freecad_am.core.planning.rapids import _met, _obstacles, collisions
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
@@ -94,10 +94,25 @@ def test_a_rapid_through_the_part_is_refused(planned):
     raised = motion.position + np.where(motion.deposit, 25.0, 0.0)[:, None] * [0.0, 0.0, 1.0]
     found = collisions(dataclasses.replace(motion, position=raised), cell)
     assert found and all(issue.code == "RAPID_COLLISION" and issue.layer is not None for issue in found)
-    only_platform = dataclasses.replace(motion, position=motion.position + [0.0, 0.0, -500.0])
-    assert collisions(only_platform, cell) == []
-    wide = dataclasses.replace(cell, platform_diameter=600.0, nozzle=dataclasses.replace(cell.nozzle, length=300.0))
-    assert collisions(only_platform, wide)
+    assert collisions(dataclasses.replace(motion, position=motion.position + [0.0, 0.0, -500.0]), cell) == []
+
+
+@pytest.mark.parametrize(
+    ("tip", "axis", "met"),
+    [
+        ((0.0, 0.0, 30.0), (0.0, 0.0, 1.0), False),
+        ((0.0, 0.0, -5.0), (0.0, 0.0, 1.0), True),
+        ((90.0, 0.0, -5.0), (0.0, 0.0, 1.0), False),
+        ((0.0, 0.0, 15.0), (np.sin(1.4), 0.0, np.cos(1.4)), False),
+        ((0.0, 0.0, 15.0), (np.sin(1.9), 0.0, np.cos(1.9)), True),
+        ((0.0, 0.0, 60.0), (np.sin(1.9), 0.0, np.cos(1.9)), False),
+    ],
+)
+def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, met):
+    """Tips over, under and beside the platform, upright and laid over: 60 mm of nozzle, opening by 20 deg."""
+    _, cell, _, motion = planned()
+    disc, laid = _obstacles(motion, cell)
+    assert _met(np.array([tip]), np.array([axis]), disc[laid < 0], cell) is met
 
 
 def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):
