@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What README and docs point to exists, and the commands they show are ones the program takes."""
+
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from freecad_am.batch import cli
+from freecad_am.core.kinematics import machine
+from freecad_am.posts import catalogue
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+# handled by the launcher: what may follow
+LAUNCHED = {"demo": r"(-o \S+)?", "test": r"[\w/.]*", "bench": r"(kinematics|planning|whole)?"}
+
+
+def name_of(path):
+    return str(path.relative_to(ROOT))
+
+
+def anchors(page):
+    """The anchors a forge makes of the headings of a page."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+def commands(page):
+    """The words after ./freecad-am on each line of the page's shell blocks and in its inline code."""
+    text = page.read_text(encoding="utf-8")
+    for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL):
+        for line in block.splitlines():
+            if line.startswith("./freecad-am"):
+                yield shlex.split(line, comments=True)[1:]
+    for line in re.findall(r"`\./freecad-am ([^`]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+        yield shlex.split(line)
+
+
+SHOWN = [(name_of(page), words) for page in PAGES for words in commands(page)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_links_lead_somewhere(page):
+    for link in LINK.findall(page.read_text(encoding="utf-8")):
+        if re.match(r"https?://|mailto:", link):
+            continue
+        file, _, anchor = link.partition("#")
+        target = (page.parent / file).resolve() if file else page
+        assert target.exists(), f"{link} in {name_of(page)} leads nowhere"
+        assert target.is_relative_to(ROOT), f"{link} leads out of the project"
+        if anchor:
+            assert anchor in anchors(target), f"{link} in {name_of(page)}: there is no such heading"
+
+
+def test_commands_are_shown():
+    assert {words[0] for page, words in SHOWN if page == "README.md"} == {*cli.COMMANDS, *LAUNCHED}
+
+
+@pytest.mark.parametrize("page,words", SHOWN, ids=[f"{page}: {' '.join(words)}" for page, words in SHOWN])
+def test_commands_parse(page, words):
+    command, *rest = words
+    if command in LAUNCHED:
+        assert re.fullmatch(LAUNCHED[command], " ".join(rest)), words
+        return
+    assert command in cli.COMMANDS
+    if not rest:
+        return  # a command by its name alone
+    options = vars(cli._parser(command).parse_args(rest))
+    for value in options.values():
+        if isinstance(value, str) and value.startswith(("resources/", "docs/")):
+            assert (ROOT / value).is_file(), value
+
+
+def test_the_launcher_tells_of_the_same_commands():
+    usage = subprocess.run([ROOT / "freecad-am", "--help"], capture_output=True, text=True, check=True).stdout
+    assert {line.split()[0] for line in usage.splitlines() if line.startswith("  ") and line[2] != " "} == {
+        *cli.COMMANDS, *LAUNCHED
+    }
+
+
+def test_packages_are_those_the_launcher_installs():
+    launcher = (ROOT / "freecad-am").read_text(encoding="utf-8")
+    wanted = set(re.findall(r"_packages='(.+)'", launcher)[0].split())
+    wanted |= set(re.search(r'testing_packages="\$planning_packages (.+)"', launcher)[1].split())
+    paragraph = (ROOT / "README.md").read_text(encoding="utf-8").split("with `apt-get`")[1].split("Elsewhere")[0]
+    assert set(re.findall(r"`([\w-]+)`", paragraph)) == wanted
+
+
+def test_tools_have_the_names_of_the_toolbar():
+    source = (ROOT / "freecad_am" / "gui" / "commands.py").read_text(encoding="utf-8")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    tools = re.findall(r'Tool\("\w+", "([^"]+)"', source)
+    assert tools and all(f"**{tool}**" in readme for tool in tools)
+
+
+def test_posts_and_machines_are_told():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    plain = readme.lower().replace("ä", "a").replace("ü", "u")
+    assert all(f"**{post}**" in plain for post in catalogue.NAMES)
+    assert f"{len(machine.known())} robots" in readme
+
+
+def test_columns_of_waypoints_are_told():
+    from freecad_am.batch import waypoints
+
+    text = (ROOT / "docs" / "outputs.md").read_text(encoding="utf-8")
+    assert all(f"`{column}`" in text for column in waypoints.HEADER.split(","))
