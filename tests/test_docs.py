@@ -116,7 +116,8 @@ def test_jobs_shown_are_read(tmp_path):
     for number, block in enumerate(jobs):
         path = tmp_path / f"job{number}.yaml"
         path.write_text(block, encoding="utf-8")
-        for name in re.findall(r"file: ([\w.-]+)", block):
+        for name in re.findall(r"file: ([\w./-]+)", block):
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).touch()
         job.read_job(str(path))
 
