@@ -60,12 +60,16 @@ def run(words):
         sys.argv[:] = [os.path.join(ROOT, SCRIPTS[words[0]]), *words[1:]]
         runpy.run_path(sys.argv[0], run_name="__main__")
         return 0
-    if words[:1] == ["demo"]:
+    demo = words[:1] == ["demo"]
+    if demo:
         example = os.path.join(ROOT, "resources", "examples", "hemisphere.yaml")
         words = ["plan", example, "-o", os.path.join("out", "hemisphere"), *words[1:]]
     from freecad_am.batch import cli
 
-    return cli.main(words)
+    status = cli.main(words)
+    if demo and status == 0:
+        print(f"freecad-am: look at {words[3]}/report.html, and open {words[3]}/hemisphere.FCStd in FreeCAD", file=sys.stderr)
+    return status
 
 
 def main():

@@ -85,6 +85,7 @@ def render(content: Content) -> str:
         *_joints(content),
         _process(content),
         _comparison(report),
+        _criteria(report),
         _pairs("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
         _programs(report["programs"]),
     ]
@@ -152,6 +153,17 @@ def _process(content: Content) -> str:
     if content.spacing:
         plots.insert(0, figures.spacing_plot(content.spacing, content.toolpath.layer_height))
     return f'<h2>Layers and path</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
+
+
+def _criteria(report: dict[str, Any]) -> str:
+    """Every criterion a path can be judged by, whichever it was planned by; the smaller the better."""
+    if report["joints"] is None:
+        return ""
+    methods = [report["joints"], *report["comparison"]]
+    rows = [("", [entry["method"] for entry in methods])] + [
+        (name, [_figure(entry["criteria"][name]) for entry in methods]) for name in report["joints"]["criteria"]
+    ]
+    return f"<h2>Criteria</h2><p class=\"sub\">Whichever was optimised; smaller is better.</p>{_table(rows)}"
 
 
 def _comparison(report: dict[str, Any]) -> str:

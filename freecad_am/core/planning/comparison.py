@@ -8,7 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..parameters.joints import OBJECTIVES
+from . import criteria
 from .joint_path import BeadPath
+from .points import gather
 from .task import Task
 
 Array = NDArray[np.float64]
@@ -34,12 +37,31 @@ def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
         "limit_margin_deg": _degrees(margin),
         "condition_min": float(min(path.condition.min() for path in paths)),
         "objective_value": float(sum(path.objective for path in paths)) if len(ranges) == len(paths) else None,
-        "manipulability_min": None,
+        "criteria": criteria_values(task, paths),
         "speed_max_deg_s": _degrees(speed),
         "acceleration_max_deg_s2": _degrees(largest[1]),
         "jerk_max_deg_s3": _degrees(largest[2]),
         "speed_ratio_max": None if speed is None else [float(v) for v in speed / task.cell.machine.max_speed],
     }
+
+
+def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | None]:
+    """Every criterion an objective can be (criteria.py) for the whole path, whichever it was planned by.
+
+    Sums over steps for the displacement, the largest value for limits-klein, means over points for the others; None
+    where a point is unreachable.
+    """
+    if not all(path.reachable for path in paths):
+        return dict.fromkeys(OBJECTIVES)
+    points = gather([path.bead for path in paths], task.cell)
+    joints = np.concatenate([path.joints for path in paths])
+    matrix = task.jacobian(points, np.concatenate([path.phi for path in paths]), joints)
+    share = np.diff(np.append(points.first, len(points))) / len(points)
+    values = {name: measure(task, points, joints) for name, measure in criteria.JOINT_ONLY.items()}
+    values["manipulability"] = criteria.manipulability(task, points, joints, matrix)
+    values["condition"] = criteria.condition(task, points, joints, matrix)
+    whole = {"displacement": np.sum, "limits-klein": np.max}
+    return {name: float(whole.get(name, lambda v: (v * share).sum())(values[name])) for name in OBJECTIVES}
 
 
 def _rates(path: BeadPath) -> tuple[Array, Array, Array]:

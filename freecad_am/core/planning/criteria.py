@@ -39,7 +39,7 @@ def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -
 
 def limits_liegeois(task: Task, points: Points, joints: Array) -> Array:
     """Eq. 1: mean over points of the sum of ((q - mean) / (mean - max))^2; (..., B)."""
-    return _mean(points, (task.rows.offset(joints) ** 2).sum(axis=-1))
+    return _mean(points, (task.given_rows.offset(joints) ** 2).sum(axis=-1))
 
 
 def limits_fournier(task: Task, points: Points, joints: Array) -> Array:
@@ -49,19 +49,19 @@ def limits_fournier(task: Task, points: Points, joints: Array) -> Array:
 
 def limits_klein(task: Task, points: Points, joints: Array) -> Array:
     """Eq. 3: the largest |q - mean| / stroke of any axis at any point; (..., B)."""
-    return -points.worst(-0.5 * np.abs(task.rows.offset(joints)).max(axis=-1))
+    return -points.worst(-0.5 * np.abs(task.given_rows.offset(joints)).max(axis=-1))
 
 
 def _liegeois_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
-    slope = 2.0 * task.rows.offset(joints) / task.rows.half
-    return np.asarray(np.einsum("im,im->i", slope, rates @ task.rows.matrix.T) / _count(points))
+    slope = 2.0 * task.given_rows.offset(joints) / task.given_rows.half
+    return np.asarray(np.einsum("im,im->i", slope, rates @ task.given_rows.matrix.T) / _count(points))
 
 
 def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
-    offset = task.rows.offset(joints)
+    offset = task.given_rows.offset(joints)
     row = np.abs(offset).argmax(axis=1)
     at = np.arange(len(points))
-    slope = 0.5 * np.sign(offset[at, row]) / task.rows.half[row] * (rates @ task.rows.matrix.T)[at, row]
+    slope = 0.5 * np.sign(offset[at, row]) / task.given_rows.half[row] * (rates @ task.given_rows.matrix.T)[at, row]
     return np.where(_is_worst(points, -np.abs(offset[at, row])), slope, 0.0)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..issues import ERROR, Issue
 from .joint_path import BeadPath
-from .task import Task, limit_rows
+from .task import Task
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
 
 
 def _limit_findings(task: Task, path: BeadPath, place: dict[str, int]) -> list[Issue]:
-    rows = limit_rows(task.cell.limits)
+    rows = task.given_rows
     values = path.joints @ rows.matrix.T
     over = np.maximum(rows.lower - values, values - rows.upper)
     found = []

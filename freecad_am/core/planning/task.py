@@ -90,6 +90,11 @@ class Task:
         return limit_rows(self.cell.limits, RESERVE)
 
     @cached_property
+    def given_rows(self) -> LimitRows:
+        """The limits as rows, as they are given."""
+        return limit_rows(self.cell.limits)
+
+    @cached_property
     def endless(self) -> NDArray[np.bool_]:
         """(axes,) bool, axes without limits."""
         return ~(np.isfinite(self.cell.limits.lower) & np.isfinite(self.cell.limits.upper))

@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.kinematics import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
-from freecad_am.core.planning import constant, refine, search
+from freecad_am.core.planning import comparison, constant, refine, search
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.task import RESERVE, Task
@@ -132,6 +132,33 @@ def test_gradients_against_differences(sliced, cell_of, objective, parameter):
         checked += 1
     assert checked >= 3
     assert smooth >= 3 * checked * 5
+
+
+def test_all_criteria_are_reported_whatever_was_optimised(sliced, cell_of):
+    """Eqs. 1 to 6 (as corrected) and 17 written down again from the joint values, singular values by numpy."""
+    toolpath = sliced("sphere", 20.0)
+    cell = cell_of(toolpath, limits="maker")
+    found = plan_joints(toolpath, cell, JointParameters())
+    task = Task(cell, FLIP, JointParameters())
+    told = comparison.criteria_values(task, found.beads)
+    q, stroke = found.joints, cell.limits.upper - cell.limits.lower
+    shown = np.c_[q, q[:, 2] - q[:, 1]]
+    low, high = np.r_[cell.limits.lower, cell.limits.coupled_lower], np.r_[cell.limits.upper, cell.limits.coupled_upper]
+    off = np.abs(shown - (low + high) / 2) / (high - low)
+    assert told["limits-klein"] == pytest.approx(off.max())
+    assert told["limits-fournier"] == pytest.approx((off**2).sum(axis=1).mean())
+    assert told["limits-liegeois"] == pytest.approx(4 * (off**2).sum(axis=1).mean())
+    motion = sum((np.diff(path.joints, axis=0) ** 2 / stroke).sum() for path in found.beads)
+    assert told["displacement"] == pytest.approx(motion)
+    flange = cell.machine.chain.forward(q)
+    arm = kdl.KdlArm(cell.machine)
+    jacobian = arm.jacobian(q)
+    lever = cell.deposition_point(flange) - flange[:, :3, 3]
+    jacobian[:, :3] += np.cross(jacobian[:, 3:], lever[:, :, None], axis=1)
+    jacobian[:, :3] /= 1000.0
+    sigma = np.linalg.svd(jacobian, compute_uv=False)
+    assert told["condition"] == pytest.approx((sigma[:, 0] / sigma[:, -1]).mean())
+    assert told["manipulability"] == pytest.approx((1 / sigma.prod(axis=1)).mean())
 
 
 def test_an_unreachable_point_is_named(sliced, cell_of):
