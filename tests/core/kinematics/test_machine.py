@@ -198,7 +198,7 @@ def test_decimal_commas_of_a_locale_change_nothing(tmp_path, root):
     made = subprocess.run(
         ["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")], capture_output=True, check=False
     )
-    if not (tmp_path / "de_DE.UTF-8").is_dir():
+    if not (tmp_path / "de_DE.UTF-8" / "LC_NUMERIC").is_file():
         pytest.skip(f"the sources of de_DE are not installed: {made.stderr.decode(errors='replace')}")
     environment = {**os.environ, "LOCPATH": str(tmp_path), "PYTHONPATH": str(root)}
     run = subprocess.run(
