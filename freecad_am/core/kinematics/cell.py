@@ -130,6 +130,12 @@ class PoseFrames:
     sign: float
     right: Array
 
+    def of(self, chosen: slice | NDArray[np.int64]) -> PoseFrames:
+        """The frames of chosen points."""
+        left = self.left if len(self.left) == 1 else self.left[chosen]
+        right = self.right if len(self.right) == 1 else self.right[chosen]
+        return PoseFrames(left, self.sign, right)
+
     def at(self, phi: Array) -> Array:
         """(..., n, 4, 4) flange poses for rotations phi (..., n)."""
         cos, sin = np.cos(phi), self.sign * np.sin(phi)

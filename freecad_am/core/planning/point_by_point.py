@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import Issue
-from ..kinematics.cell import PoseFrames
 from ..toolpath import Bead
 from .constant import bead_paths
 from .joint_path import BeadPath
@@ -39,7 +38,7 @@ def plan(
     joints = np.full((len(points), len(task.weights)), np.nan)
     for number in range(counts.max()):
         index = points.first[counts > number] + number
-        at = _single(points, index)
+        at = points.each(index)
         if number == 0:
             phi[index], joints[index] = _searched(task, at, threshold[index], None)
             continue
@@ -50,16 +49,6 @@ def plan(
     return bead_paths(task, beads, places, points, threshold, phi, joints, "point by point"), []
 
 
-def _single(points: Points, index: NDArray[np.int64]) -> Points:
-    """Chosen points, each as a bead of its own."""
-    frames = points.frames
-    left = frames.left if len(frames.left) == 1 else frames.left[index]
-    right = frames.right if len(frames.right) == 1 else frames.right[index]
-    each = np.arange(len(index))
-    return Points(points.position[index], points.tool[index], points.parameter[index], each, each,
-                  PoseFrames(left, frames.sign, right))
-
-
 def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -> tuple[Array, Array]:
     phi = phi.copy()
     for _ in range(STEPS):
@@ -67,7 +56,7 @@ def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -
         good = np.isfinite(joints).all(axis=1)
         if not good.any():
             break
-        part = _single(at, np.flatnonzero(good))
+        part = at.each(np.flatnonzero(good))
         rates, _ = task.spin_rates(part, phi[good], joints[good])
         away = joints[good] - before[good]
         curvature = (rates * rates) @ task.weights
@@ -75,7 +64,7 @@ def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -
     joints = _near(task, at, phi, before)
     bad = _margin(task, at, phi, joints, threshold) < 0.0
     if bad.any():
-        phi[bad], joints[bad] = _searched(task, _single(at, np.flatnonzero(bad)), threshold[bad], before[bad])
+        phi[bad], joints[bad] = _searched(task, at.each(np.flatnonzero(bad)), threshold[bad], before[bad])
     return phi, joints
 
 

@@ -44,6 +44,23 @@ class Points:
         starts[self.first] = True
         return starts
 
+    def each(self, index: NDArray[np.int64]) -> Points:
+        """Chosen points, each as a bead of its own."""
+        alone = np.arange(len(index))
+        return Points(
+            self.position[index], self.tool[index], self.parameter[index], alone, alone, self.frames.of(index)
+        )
+
+    def only(self, bead: int) -> tuple[Points, slice]:
+        """The points of one bead alone, and where they stand among all."""
+        ends = np.append(self.first, len(self))
+        chosen = slice(int(ends[bead]), int(ends[bead + 1]))
+        none = np.zeros(chosen.stop - chosen.start, dtype=np.int64)
+        part = Points(
+            self.position[chosen], self.tool[chosen], self.parameter[chosen], none[:1], none, self.frames.of(chosen)
+        )
+        return part, chosen
+
     def powers(self, degree: int) -> Array:
         """(T, degree + 1) powers of the parameter, the constant first."""
         return np.vander(self.parameter, degree + 1, increasing=True)

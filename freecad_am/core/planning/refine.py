@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
-from ..kinematics.cell import PoseFrames
 from . import criteria
 from .points import Points
 from .task import Task
@@ -60,25 +59,10 @@ def refine(
     reasons = [STATIONARY] * points.beads
     iterations = [0] * points.beads
     for bead in np.flatnonzero(~done):
-        part, chosen = only_bead(points, int(bead))
+        part, chosen = points.only(int(bead))
         found, value, reasons[bead], iterations[bead] = _slsqp(task, part, thresholds[chosen], start[bead])
         coefficients[bead], objective[bead] = found, value
     return Refined(coefficients, objective, tuple(reasons), tuple(iterations))
-
-
-def only_bead(points: Points, bead: int) -> tuple[Points, slice]:
-    """The points of one bead alone, and where they stand among all."""
-    ends = np.append(points.first, len(points))
-    chosen = slice(int(ends[bead]), int(ends[bead + 1]))
-    frames = points.frames
-    left = frames.left if len(frames.left) == 1 else frames.left[chosen]
-    right = frames.right if len(frames.right) == 1 else frames.right[chosen]
-    count = chosen.stop - chosen.start
-    part = Points(
-        points.position[chosen], points.tool[chosen], points.parameter[chosen],
-        np.zeros(1, dtype=np.int64), np.zeros(count, dtype=np.int64), PoseFrames(left, frames.sign, right),
-    )
-    return part, chosen
 
 
 def _slsqp(task: Task, points: Points, thresholds: Array, start: Array) -> tuple[Array, float, str, int]:
@@ -157,7 +141,7 @@ def _partly_unreachable(task: Task, points: Points, thresholds: Array, coefficie
         return state
     lost = np.add.reduceat(np.isnan(joints).any(axis=1), points.first) > 0
     for bead in np.flatnonzero(~lost):
-        part, chosen = only_bead(points, int(bead))
+        part, chosen = points.only(int(bead))
         one = _state(task, part, thresholds[chosen], coefficients[bead : bead + 1])
         for name in ("objective", "gradient", "predicted", "constraints", "constraint_rates"):
             getattr(state, name)[bead] = getattr(one, name)[0]

@@ -133,7 +133,7 @@ def _screened_condition_margin(
     task: Task, points: Points, phi: Array, joints: Array, index: NDArray[np.int64], thresholds: Array
 ) -> Array:
     """Condition margins of chosen poses: exact near the threshold, by the bound where that settles the sign."""
-    flange = _at(points, phi, index)
+    flange = points.frames.of(index).at(phi)
     matrix = task.jacobian_at(flange, joints)
     length = task.parameters.characteristic_length
     bound = jac.condition_bound(matrix, length)
@@ -141,11 +141,3 @@ def _screened_condition_margin(
     undecided = (bound < threshold) & (BOUND_SPREAD * bound >= threshold)
     bound[undecided] = jac.condition(matrix[undecided], length)
     return condition_margin(bound, threshold)
-
-
-def _at(points: Points, phi: Array, index: NDArray[np.int64]) -> Array:
-    frames = points.frames
-    left = frames.left if len(frames.left) == 1 else frames.left[index]
-    right = frames.right if len(frames.right) == 1 else frames.right[index]
-    chosen = type(frames)(left, frames.sign, right)
-    return chosen.at(phi)

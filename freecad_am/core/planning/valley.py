@@ -79,13 +79,7 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
 
 def _joints_at(task: Task, points: Points, candidates: Array, index: NDArray[np.int64]) -> Array:
     """(C, B, axes) joints at one point of each bead, zero where unreachable."""
-    frames = points.frames
-    left = frames.left if len(frames.left) == 1 else frames.left[index]
-    right = frames.right if len(frames.right) == 1 else frames.right[index]
-    at = Points(
-        points.position[index], points.tool[index], points.parameter[index],
-        np.arange(points.beads), np.arange(points.beads), type(frames)(left, frames.sign, right),
-    )
+    at = points.each(index)
     value = np.stack([at.polynomial(row) for row in candidates])
     phi = np.stack([task.rotation(at, row)[0] for row in value])
     return np.nan_to_num(task.raw_joints(at, phi))
