@@ -60,8 +60,9 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
     values = {name: measure(task, points, joints) for name, measure in criteria.JOINT_ONLY.items()}
     values["manipulability"] = criteria.manipulability(task, points, joints, matrix)
     values["condition"] = criteria.condition(task, points, joints, matrix)
-    whole = {"displacement": np.sum, "limits-klein": np.max}
-    return {name: float(whole.get(name, lambda v: (v * share).sum())(values[name])) for name in OBJECTIVES}
+    whole = {name: float((value * share).sum()) for name, value in values.items()}
+    whole |= {"displacement": float(values["displacement"].sum()), "limits-klein": float(values["limits-klein"].max())}
+    return {name: whole[name] for name in OBJECTIVES}
 
 
 def _rates(path: BeadPath) -> tuple[Array, Array, Array]:

@@ -192,10 +192,10 @@ class Task:
         twist = np.zeros((len(joints), 6, 1))
         twist[:, 3:, 0] = self.cell.spin_axis(flange)
         try:
-            rates: Array = np.linalg.solve(matrix, twist)[:, :, 0]
+            rates = np.linalg.solve(matrix, twist)[:, :, 0]
         except np.linalg.LinAlgError:
             rates = (np.linalg.pinv(matrix) @ twist)[:, :, 0]
-        return rates, matrix
+        return np.asarray(rates, dtype=np.float64), matrix
 
 
 def condition_margin(condition: Array, threshold: Array) -> Array:
