@@ -68,7 +68,8 @@ def run(words):
 
     status = cli.main(words)
     if demo and status == 0:
-        print(f"freecad-am: look at {words[3]}/report.html, and open {words[3]}/hemisphere.FCStd in FreeCAD", file=sys.stderr)
+        folder = words[3]
+        print(f"freecad-am: look at {folder}/report.html, and open {folder}/hemisphere.FCStd in FreeCAD", file=sys.stderr)
     return status
 
 

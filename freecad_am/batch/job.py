@@ -17,7 +17,7 @@ from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 
-from . import fields, paths, quantity, tree
+from . import fields, quantity, tree
 
 STRATEGIES: dict[str, type] = {"revolution": RevolutionParameters}
 PLANNED_STRATEGIES = ("surface", "developable")  # names the interface promises; refused until they exist
@@ -181,8 +181,6 @@ def _cell(section: Any, path: str) -> CellParameters | None:
     machine = section.get("machine")
     if isinstance(machine, str) and (os.sep in machine or machine.lower().endswith((".json", ".urdf"))):
         section["machine"] = absolute(machine, path)
-    elif isinstance(machine, str) and machine:
-        section["machine"] = paths.machine_file(machine)
     cell = fields.build(CellParameters, section, "cell")
     if cell.setup in PLANNED_SETUPS:
         raise _not_yet("cell.setup", cell.setup, "part-on-robot or tool-on-robot")

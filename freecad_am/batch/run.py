@@ -106,8 +106,9 @@ def check(job: Job) -> Any:
     import numpy as np
 
     from freecad_am.core.kinematics import cell
+    from freecad_am.objects import user_machines
 
-    resolved = cell.resolve(job.cell, np.eye(4))
+    resolved = cell.resolve(job.cell, np.eye(4), folders=user_machines.folders())
     if job.program is not None:
         from freecad_am.core.planning import program
 

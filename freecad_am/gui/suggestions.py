@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..core.kinematics import machine
+from ..objects import user_machines
 from ..posts import catalogue
 
 
 def of(section: str, key: str) -> Callable[[], list[str]] | None:
     """A function that lists the texts for a parameter, None where anything goes."""
     return {
-        ("cell", "machine"): lambda: [name for name, _ in machine.known()],
+        ("cell", "machine"): lambda: [name for name, _ in machine.known(user_machines.folders())],
         ("cell", "limits"): lambda: ["maker", "paper"],
         ("cell", "branch"): _branches,
         ("program", "post"): lambda: [*catalogue.NAMES, "none"],

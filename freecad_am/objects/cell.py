@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from typing import Any
 
 import numpy as np
 
 from ..core.kinematics import cell as cells
 from ..core.parameters.cell import CellParameters
+from . import user_machines
 from .stage import Outcome, Section, Stage
 
 
@@ -23,11 +23,12 @@ class Cell(Stage):
 
     def compute(self, obj: Any) -> Outcome:
         parameters = self.parameters(obj, CellParameters)
-        resolved = cells.resolve(parameters, np.eye(4))
+        resolved = cells.resolve(parameters, np.eye(4), folders=user_machines.folders())
         return Outcome(parameters, figures=(("MachineTitle", resolved.machine.title),))
 
     def further_inputs(self, obj: Any) -> list[str]:
-        if not os.path.isfile(obj.Machine):
+        path = user_machines.file_of(obj.Machine)
+        if path is None:
             return []
-        with open(obj.Machine, "rb") as file:
+        with open(path, "rb") as file:
             return [hashlib.sha256(file.read()).hexdigest()]

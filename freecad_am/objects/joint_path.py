@@ -15,7 +15,7 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
-from . import progress
+from . import progress, user_machines
 from .stage import Link, Outcome, Section, Stage
 
 
@@ -45,7 +45,9 @@ class JointPath(Stage):
         linked = self.linked(obj)
         toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
         toolpath = toolpath_object.Proxy.value(toolpath_object)
-        cell = cells.resolve(cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family)
+        cell = cells.resolve(
+            cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family, user_machines.folders()
+        )
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
         joint_path = plan_joints(toolpath, cell, self.parameters(obj, JointParameters), progress.report)
         motion, rapid_issues = assemble(joint_path, cell, process)

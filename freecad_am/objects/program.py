@@ -16,6 +16,7 @@ from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
 from ..posts import catalogue
+from . import user_machines
 from .stage import Link, Outcome, Section, Stage
 
 
@@ -50,7 +51,9 @@ class Program(Stage):
         if parameters.post == "none":
             return Outcome(Written({}, None), figures=(("Files", []),))
         toolpath = toolpath_object.Proxy.value(toolpath_object)
-        cell = cells.resolve(cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family)
+        cell = cells.resolve(
+            cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family, user_machines.folders()
+        )
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
         motion = joint_object.Proxy.value(joint_object).motion
         post = catalogue.load(parameters.post)

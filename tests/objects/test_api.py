@@ -221,3 +221,22 @@ def test_with_the_part_mounted_by_its_own_frame_the_platform_is_there(doc, part)
         api.make_toolpath(doc, feature, beside)
     assert error.value.code == "OFF_PLATFORM"
     assert api.make_toolpath(doc, feature, api.make_cell(doc, limits="paper", mount="feature"))
+
+
+def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypatch, root):
+    """Its file lies in FreeCAD's folder of user data; a change of the file makes the cell stale at the next recompute."""
+    folder = tmp_path / "RoboticAM" / "machines"
+    folder.mkdir(parents=True)
+    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    own = folder / "our-arm.json"
+    own.write_text(text.replace('"id": "fanuc-arcmate120ic"', '"id": "our-arm"'), encoding="utf-8")
+    monkeypatch.setattr(App, "getUserAppDataDir", lambda: str(tmp_path) + os.sep)
+    cell = api.make_cell(doc, machine="our-arm", limits="paper")
+    feature = api.make_feature(doc, part, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature, cell)
+    joint_path = api.make_joint_path(doc, toolpath, cell)
+    assert api.result(joint_path).joint_path.feasible
+    key = cell.Key
+    own.write_text(own.read_text(encoding="utf-8").replace("(= M-20iA", "(ours, = M-20iA"), encoding="utf-8")
+    api.recompute(doc)
+    assert cell.Key != key and "ours" in cell.MachineTitle
