@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers of constant local distance against a straightforward bisection of every point against every segment below.
+
+The torus of 1 mm layers of Chalvin 2019 (R = 60, r = 15 on a pipe of 32 mm). The bisection is timed on a few layers and a
+part of their points and scaled up; its polyline below is refined four times, or its chord error would exceed the
+1e-4 mm asked for. Both are checked against each other first.
+"""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+
+from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.slicing import constant_distance
+from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.wall_layer import WallLayer, even_grid
+
+from rows import Row
+
+HEIGHT, POINTS, TOLERANCE, ROUNDS = 1.0, 360, 1e-4, 3
+SAMPLED, EVERY = (10, 40, 70), 6
+REFINED = 4
+
+
+def run() -> list[Row]:
+    """All comparisons of this file."""
+    torus = Torus(60.0, 15.0)
+    first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS))
+    times = []
+    for _ in range(ROUNDS):
+        start = perf_counter()
+        layers = constant_distance.layers(torus, first, HEIGHT, 0.5 * np.pi, POINTS)
+        times.append(perf_counter() - start)
+    peer = np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1)
+    name = f"constant distance, {len(layers)} layers of {POINTS} points, {TOLERANCE:g} mm, against bisection"
+    return [Row(name, float(np.median(times)), float(peer), "s", 50.0)]
+
+
+def _bisected(torus: Torus, below: WallLayer, above: WallLayer) -> float:
+    """Seconds that one layer takes by bisection."""
+    line = below.curve.at(below.curve.refined(REFINED))[0]
+    a, along = line[:-1], np.diff(line, axis=0)
+    square = (along * along).sum(axis=1)
+    v = above.v[:-1:EVERY]
+    base = np.interp(v, below.v, below.u)
+    found = np.empty(len(v))
+    start = perf_counter()
+    for i, (one, low) in enumerate(zip(v, base)):
+        high = low + 3.0 * HEIGHT / (torus.bend - torus.tube)
+        while (high - low) * (torus.bend + torus.tube) > 0.1 * TOLERANCE:
+            middle = 0.5 * (low + high)
+            gap = torus.point(middle, one) - a
+            t = np.clip((gap * along).sum(axis=1) / square, 0.0, 1.0)
+            rest = gap - t[:, None] * along
+            if (rest * rest).sum(axis=1).min() < HEIGHT * HEIGHT:
+                low = middle
+            else:
+                high = middle
+        found[i] = 0.5 * (low + high)
+    seconds = perf_counter() - start
+    apart = np.abs(found - above.u[:-1:EVERY]).max() * (torus.bend + torus.tube)
+    if apart > TOLERANCE:
+        raise RuntimeError(f"bisection differs by {apart:.2g} mm")
+    return seconds * (len(above.v) - 1) / len(v)

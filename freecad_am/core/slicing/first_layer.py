@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The first layer: where the wall leaves the substrate."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ..geometry.implicit import Implicit
+from ..geometry.surface import Surface, dot
+from ..issues import InputError
+from .refinement import ROUNDS, finer_grid
+from .wall_layer import WallLayer
+
+Array = NDArray[np.float64]
+
+SCAN = 200  # places along each line v = const at which inside and outside are told apart
+HALVINGS = 60
+SAME_POINT = 1e-6  # mm
+
+
+def on_implicit(
+    surface: Surface, substrate: Implicit, u_range: tuple[float, float], v: Array, label: str = "wall"
+) -> WallLayer:
+    """The curve in which the wall comes out of the substrate for good as u rises through `u_range`.
+
+    v: (m,) from one seam to the next; nodes are added where cubic arcs between them would not follow the curve.
+    Exact to rounding at the nodes. InputError NO_INTERSECTION where the wall does not touch the substrate.
+    """
+    for _ in range(ROUNDS):
+        u, slope = _crossing(surface, substrate, u_range, v, label)
+        layer = WallLayer.of(surface, v, u, slope, slope)
+        added = finer_grid(layer.curve)
+        if not len(added):
+            break
+        v = np.sort(np.r_[v, added])
+    return layer
+
+
+def _crossing(
+    surface: Surface, substrate: Implicit, u_range: tuple[float, float], v: Array, label: str
+) -> tuple[Array, Array]:
+    u = np.linspace(*u_range, SCAN)
+    outside = substrate.value(surface.point(*np.meshgrid(u, v, indexing="ij")))[0] > 0.0
+    leaves = outside[1:] & ~outside[:-1]
+    if not leaves.any(axis=0).all() or not outside[-1].all():
+        missing = v[np.flatnonzero(~(leaves.any(axis=0) & outside[-1]))[0]]
+        raise InputError(
+            "NO_INTERSECTION", label, f"the wall does not come out of the substrate everywhere (at v = {missing:.4g}, "
+            "for instance): let it reach into the substrate all around, or choose the edges it starts from",
+        )
+    last = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
+    low, high = u[last], u[last + 1]
+    at = 0.5 * (low + high)
+    for _ in range(HALVINGS):  # Newton, kept between the last places known inside and outside
+        points, along, _ = surface.derivatives(at, v)
+        value, gradient = substrate.value(points)
+        low, high = np.where(value > 0.0, low, at), np.where(value > 0.0, at, high)
+        pace = dot(gradient, along)
+        new = at - value / np.where(np.abs(pace) > 1e-12, pace, np.inf)
+        new = np.where((new < low) | (new > high), 0.5 * (low + high), new)
+        still = np.abs(new - at).max() < 1e-15 * max(1.0, np.abs(new).max())
+        at = new
+        if still:
+            break
+    points, along, around = surface.derivatives(at, v)
+    gradient = substrate.value(points)[1]
+    return at, -dot(gradient, around) / dot(gradient, along)
+
+
+def on_polyline(surface: Surface, points: Array, corner: float = np.radians(20.0), label: str = "wall") -> WallLayer:
+    """The layer through a closed chain of points (m, 3) on the wall, the first not repeated, in either direction.
+
+    Between the points smooth curves run through the corners, the places where the chain turns by more than `corner` (rad).
+    InputError NOT_AROUND where the chain does not run once around the wall without turning back in v.
+    """
+    if surface.period is None:
+        raise ValueError("a wall that is open in v has no closed layers")
+    points = points[np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1) > SAME_POINT]
+    u, v = surface.inverse(points)
+    steps = np.diff(np.r_[v, v[0]])
+    steps = np.mod(steps + 0.5 * surface.period, surface.period) - 0.5 * surface.period
+    if steps.sum() < 0.0:
+        points, u, v = points[::-1], u[::-1], v[::-1]
+        steps = -np.roll(steps[::-1], -1)
+    if len(points) < 4 or steps.min() <= 0.0 or abs(steps.sum() - surface.period) > 1e-6 * surface.period:
+        raise InputError(
+            "NOT_AROUND", label, "the first layer does not run once around the wall: choose one closed loop of edges that "
+            "crosses each line up the wall once",
+        )
+    before = points - np.roll(points, 1, axis=0)
+    after = np.roll(before, -1, axis=0)
+    turn = np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), dot(before, after))
+    breaks = np.flatnonzero(turn > corner)
+    start = int(breaks[0]) if len(breaks) else 0
+    v = v[start] + np.r_[0.0, np.cumsum(np.roll(steps, -start))]
+    v[-1] = v[0] + surface.period
+    u = np.r_[np.roll(u, -start), u[start]]
+    if not len(breaks):
+        slope = CubicSpline(v, u, bc_type="periodic")(v, 1)
+        return WallLayer.of(surface, v, u, slope, slope)
+    into, out = np.empty(len(v)), np.empty(len(v))
+    ends = np.r_[breaks - start, len(v) - 1]
+    for low, high in zip(ends[:-1], ends[1:]):
+        piece = slice(low, high + 1)
+        slope = CubicSpline(v[piece], u[piece])(v[piece], 1)
+        into[low + 1 : high + 1], out[low:high] = slope[1:], slope[:-1]
+    into[0], out[-1] = into[-1], out[0]
+    return WallLayer.of(surface, v, u, into, out)

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers at a constant distance along the lines v = const of the wall (Chalvin 2019, equation 2)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.surface import Surface, dot
+from ..issues import InputError
+from .refinement import ROUNDS, finer_grid
+from .wall_layer import WallLayer
+
+Array = NDArray[np.float64]
+
+STEPS = 40
+MOST = 20000  # layers; more is a mistake in the units
+
+
+def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "wall") -> WallLayer:
+    """The layer whose points lie at the chord `height` (mm) from those of the layer below with the same v.
+
+    The chord is measured in space, as in equation 2, whose closed form this is on a torus. InputError
+    LAYER_HEIGHT where the wall bends so much that no such point exists.
+    """
+    v, u, into, out = below.v, below.u, *_slopes(surface, below)
+    for _ in range(ROUNDS):
+        new, slopes = _stepped(surface, v, u, (into, out), height, label)
+        layer = WallLayer.of(surface, v, new, *slopes)
+        added = finer_grid(layer.curve)
+        if not len(added):
+            break
+        v = np.sort(np.r_[v, added])
+        u, into, out = _between(surface, below, v)
+    return layer
+
+
+def layers(
+    surface: Surface, first: WallLayer, height: float, u_end: float, label: str = "wall"
+) -> list[WallLayer]:
+    """All layers from the first to the first one wholly past u_end."""
+    done = [first]
+    while done[-1].u.min() < u_end:
+        if len(done) >= MOST:
+            raise InputError("LAYER_HEIGHT", label, f"more than {MOST} layers of {height:g} mm: use a larger layer height")
+        done.append(next_layer(surface, done[-1], height, label))
+    return done
+
+
+def _stepped(
+    surface: Surface, v: Array, u: Array, slopes: tuple[Array, Array], height: float, label: str
+) -> tuple[Array, tuple[Array, Array]]:
+    """New u (m,) and its slopes on either side, from the implicit derivative of the chord."""
+    base, along, around = surface.derivatives(u, v)
+    new = u + height / np.linalg.norm(along, axis=1)
+    for _ in range(STEPS):
+        point, rise, turn = surface.derivatives(new, v)
+        chord = point - base
+        pace = 2.0 * dot(chord, rise)
+        step = (dot(chord, chord) - height * height) / np.where(pace > 0.0, pace, np.inf)
+        new = new - step
+        if np.abs(step * np.linalg.norm(rise, axis=1)).max() < 1e-12 * max(1.0, height):
+            break
+    if not np.allclose(np.linalg.norm(surface.point(new, v) - base, axis=1), height, rtol=1e-9, atol=0.0):
+        raise InputError("LAYER_HEIGHT", label, f"a layer height of {height:g} mm is more than the wall's bend allows")
+    point, rise, turn = surface.derivatives(new, v)
+    chord = point - base
+    into, out = (
+        (dot(chord, around + slope[:, None] * along) - dot(chord, turn)) / dot(chord, rise) for slope in slopes
+    )
+    return new, (into, out)
+
+
+def _slopes(surface: Surface, layer: WallLayer) -> tuple[Array, Array]:
+    """du/dv on either side of each node."""
+    _, along, around = surface.derivatives(layer.u, layer.v)
+    pace = dot(along, along)
+    into = dot(layer.curve.into - around, along) / pace
+    out = dot(layer.curve.out - around, along) / pace
+    return into, out
+
+
+def _between(surface: Surface, layer: WallLayer, v: Array) -> tuple[Array, Array, Array]:
+    """u and its slopes on either side at other parameters, between the nodes as the curve has them."""
+    into, out = _slopes(surface, layer)
+    arc = np.clip(np.searchsorted(layer.v, v, side="right") - 1, 0, len(layer.v) - 2)
+    span = np.diff(layer.v)[arc]
+    t = (v - layer.v[arc]) / span
+    rise = layer.u[arc + 1] - layer.u[arc]
+    a, b = out[arc] * span, into[arc + 1] * span
+    u = layer.u[arc] + t * (a + t * (3.0 * rise - 2.0 * a - b + t * (a + b - 2.0 * rise)))
+    slope = (a + t * (2.0 * (3.0 * rise - 2.0 * a - b) + 3.0 * t * (a + b - 2.0 * rise))) / span
+    node = np.clip(np.searchsorted(layer.v, v), 0, len(layer.v) - 1)
+    same = layer.v[node] == v
+    return u, np.where(same, into[node], slope), np.where(same, out[node], slope)
