@@ -6,18 +6,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import FreeCAD as App
-import FreeCADGui as Gui
 from PySide import QtGui
 
 from ..core.issues import InputError
 from ..core.parameters import field as f
 from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row
+from .quantity import QuantityField
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
-_DIGITS = 10
 _LARGEST = 2_147_483_647
 
 
@@ -58,8 +56,8 @@ def make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None = Non
     if row.form == f.POSE:
         return _pose(row, shown)
     if row.form in _QUANTITIES:
-        box, read = _quantity(shown, row.unit, label_of(row))
-        return Field(row, box, read)
+        quantity = QuantityField(shown, row.unit, label_of(row))
+        return Field(row, quantity.box, quantity.read)
     if row.form == f.CHOICE:
         return _choice(row, shown)
     if row.form == f.FLAG:
@@ -111,6 +109,7 @@ def _suggested(row: Row, shown: str, texts: list[str]) -> Field:
     combo.addItems(texts)
     _shrink(combo)
     combo.setEditText(shown)
+    combo.lineEdit().setCursorPosition(0)
     return Field(row, combo, lambda: combo.currentText().strip())
 
 
@@ -120,38 +119,6 @@ def _shrink(combo: Any) -> None:
     combo.setMinimumContentsLength(8)
 
 
-def _quantity(shown: float, unit: str, name: str) -> tuple[Any, Callable[[], float]]:
-    """FreeCAD's own field for a number with a unit, and how to read it in that unit."""
-    box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
-    box.setProperty("unit", unit)
-    quantity = App.Units.Quantity(f"{shown!r} {unit}")
-    # the display would be cut to the decimals of the preferences, and the value with it
-    quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
-    box.setProperty("value", quantity)
-    box.setMinimumWidth(70)
-    line = box.findChild(QtGui.QLineEdit)
-    line.setCursorPosition(0)
-    first_text = line.text()
-
-    def read() -> float:
-        text = line.text()
-        if text == first_text:
-            return shown
-        if not box.property("acceptableInput") or _of_another_unit(text, quantity.Unit):
-            raise InputError("BAD_VALUE", name, f"{text!r} is not understood; give a quantity in {unit}")
-        return float(box.property("rawValue"))
-
-    return box, read
-
-
-def _of_another_unit(text: str, unit: Any) -> bool:
-    """Whether a text has a unit that does not belong here: newer versions of the field take '3 deg' for 3 mm."""
-    try:
-        return App.Units.Quantity(text).Unit not in (unit, App.Units.Unit())
-    except (ValueError, TypeError, ArithmeticError):
-        return False
-
-
 def _pose(row: Row, shown: tuple[float, ...]) -> Field:
     widget = QtGui.QWidget()
     grid = QtGui.QGridLayout(widget)
@@ -159,10 +126,10 @@ def _pose(row: Row, shown: tuple[float, ...]) -> Field:
     grid.setColumnStretch(1, 1)
     reads = []
     for index, (number, unit, name) in enumerate(zip(shown, _POSE_UNITS, _POSE_NAMES, strict=True)):
-        box, read = _quantity(number, unit, f"{label_of(row)} {name}")
-        box.setObjectName(f"{row.name}{name}")
-        box.setToolTip(f"{name}: {row.spec.help}")
+        quantity = QuantityField(number, unit, f"{label_of(row)} {name}")
+        quantity.box.setObjectName(f"{row.name}{name}")
+        quantity.box.setToolTip(f"{name}: {row.spec.help}")
         grid.addWidget(QtGui.QLabel(name), index, 0)
-        grid.addWidget(box, index, 1)
-        reads.append(read)
+        grid.addWidget(quantity.box, index, 1)
+        reads.append(quantity.read)
     return Field(row, widget, lambda: tuple(read() for read in reads))

@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
+WIDEST_LABEL = 96  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
 
 
@@ -29,7 +30,7 @@ class Fold:
         self.form = QtGui.QFormLayout(self.body)
         self.form.setContentsMargins(4, 0, 0, 4)
         self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
-        self.form.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        self.form.setRowWrapPolicy(QtGui.QFormLayout.DontWrapRows)
         column.addWidget(self.heading)
         column.addWidget(self.body)
         self.heading.toggled.connect(self._show)
@@ -44,6 +45,9 @@ class Fold:
             self.form.addRow(name)
             self.form.addRow(widget)
         else:
+            if name.sizeHint().width() > WIDEST_LABEL:
+                name.setWordWrap(True)
+                name.setFixedWidth(WIDEST_LABEL)
             self.form.addRow(name, widget)
 
     def _show(self, unfolded: bool) -> None:

@@ -34,11 +34,12 @@ class StageChoice(Input):
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, link.kind[0].upper() + link.kind[1:]
+        self.document = App.ActiveDocument
         self.widget = QtGui.QComboBox()
         self.widget.setObjectName(f"Input{link.name}")
         self.widget.setToolTip(link.help)
         names = []
-        for obj in App.ActiveDocument.Objects:
+        for obj in self.document.Objects:
             stage = stage_of(obj)
             if stage is not None and stage.kind == link.kind:
                 names.append(obj.Name)
@@ -57,7 +58,7 @@ class StageChoice(Input):
 
     def arguments(self) -> dict[str, str]:
         name = self.widget.currentData() if self.widget.count() else ""
-        return {self.link.key: recorded.reference(App.ActiveDocument.getObject(name)) if name else "None"}
+        return {self.link.key: recorded.reference(self.document.getObject(name)) if name else "None"}
 
 
 class ShapeChoice(Input):
@@ -65,6 +66,7 @@ class ShapeChoice(Input):
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
         self.link, self.label, self.present = link, link.name, present
+        self.document = App.ActiveDocument
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(link.help)
         row = QtGui.QHBoxLayout(self.widget)
@@ -85,7 +87,7 @@ class ShapeChoice(Input):
 
     def take(self, *_: Any) -> None:
         """Take what is selected now."""
-        for entry in Gui.Selection.getSelectionEx():
+        for entry in Gui.Selection.getSelectionEx(self.document.Name):
             obj, names = entry.Object, list(entry.SubElementNames)
             if self.link.name == "Axis":
                 self.present = (obj, names[:1])
@@ -97,7 +99,10 @@ class ShapeChoice(Input):
 
     def _show(self) -> None:
         if self.present is not None:
-            self.text.setText(" ".join([self.present[0].Label, *self.present[1]]))
+            text = " ".join([self.present[0].Label, *self.present[1]])
+            self.text.setText(text)
+            self.text.setCursorPosition(0)
+            self.text.setToolTip(text)
 
     @property
     def missing(self) -> str:

@@ -5,19 +5,22 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide import QtCore, QtGui
+import FreeCAD as App
+from PySide import QtGui
 
 from .. import api
 from ..core.issues import AmError
 from ..objects.feature import RevolutionFeature
 from . import icons, inputs, recorded
 from .fold import Fold
+from .stage_panel import CLOSED
 
 
 class JobPanel:
     """OK makes all stages in one step."""
 
     def __init__(self) -> None:
+        self.document = App.ActiveDocument
         self.form = QtGui.QWidget()
         self.form.setObjectName("RoboticAM_NewJob")
         self.form.setWindowTitle("New job")
@@ -48,15 +51,15 @@ class JobPanel:
 
     def accept(self) -> bool:
         """Make all stages; True closes the panel, an error is shown in it."""
-        QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))
         try:
-            recorded.make("make_all", {**self.source.arguments(), **self.name.arguments()})
+            recorded.make(self.document, "make_all", {**self.source.arguments(), **self.name.arguments()})
         except AmError as error:
             self.say(str(error))
-            return False
-        finally:
-            QtGui.QApplication.restoreOverrideCursor()
-        return True
+        except ReferenceError:
+            self.say(CLOSED)
+        else:
+            return True
+        return False
 
     def reject(self) -> Any:
         """Nothing was done."""

@@ -5,27 +5,40 @@ from __future__ import annotations
 
 from typing import Any
 
+import FreeCAD as App
 import FreeCADGui as Gui
+
+from .busy import busy
 
 IMPORT = "import freecad_am.api as am"
 
 
-def make(function: str, arguments: dict[str, str]) -> None:
-    """Call a function that makes something in the active document. Raises what it raises."""
-    _run(function, "App.ActiveDocument", arguments)
+def make(document: Any, function: str, arguments: dict[str, str]) -> None:
+    """Call a function that makes something in a document. Raises what it raises, ReferenceError when it is closed."""
+    _run(function, _document(document), arguments)
 
 
 def change(obj: Any, arguments: dict[str, str]) -> None:
-    """Change parameters and inputs of a stage. Raises what `api.change` raises."""
+    """Change parameters and inputs of a stage. Raises what `api.change` raises, ReferenceError when it is gone."""
     _run("change", reference(obj), arguments)
 
 
 def reference(obj: Any) -> str:
-    """The object as Python text."""
-    return f"App.ActiveDocument.getObject({obj.Name!r})"
+    """The object as Python text. ReferenceError when it is no longer there."""
+    try:
+        name = obj.Name
+    except RuntimeError:  # removed, but kept to be brought back by undo
+        raise ReferenceError("it is no longer part of a document") from None
+    return f"{_document(obj.Document)}.getObject({name!r})"
+
+
+def _document(document: Any) -> str:
+    # another one may have become the active one since a panel was opened
+    return "App.ActiveDocument" if document is App.ActiveDocument else f"App.getDocument({document.Name!r})"
 
 
 def _run(function: str, first: str, arguments: dict[str, str]) -> None:
     texts = [first, *(f"{key}={text}" for key, text in arguments.items())]
     Gui.doCommand(IMPORT)
-    Gui.doCommand(f"am.{function}({', '.join(texts)})")
+    with busy():
+        Gui.doCommand(f"am.{function}({', '.join(texts)})")

@@ -10,13 +10,14 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ..core.issues import AmError
+from ..core.issues import AmError, InputError
 from ..objects.rows import rows
 from ..objects.stage import Stage, issues_of
 from . import fields, icons, inputs, recorded, suggestions
 from .fold import Fold
 
 MOST_ISSUES = 6
+CLOSED = "The document or object of this panel is gone; cancel and open the panel again."
 
 
 class StagePanel:
@@ -24,6 +25,7 @@ class StagePanel:
 
     def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
         self.proxy, self.choices, self.obj = proxy, choices, obj
+        self.document = App.ActiveDocument
         self.form = QtGui.QWidget()
         self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
         self.form.setWindowTitle(title)
@@ -37,7 +39,8 @@ class StagePanel:
                 heading.add(choice.label, choice.widget)
             self.column.addWidget(heading.widget)
         self.first_inputs = self._inputs()
-        self.fields: list[fields.Field] = []
+        # by the name that errors give a parameter: its field, how the panel calls it, where it is
+        self.places: dict[str, tuple[fields.Field, str, Fold]] = {}
         for section in proxy.sections:
             self._add_section(section)
         self.findings = self._note("findings", "palette(text)")
@@ -72,7 +75,8 @@ class StagePanel:
             field = fields.make(row, value, suggestions.of(section.prefix, row.key))
             self._mark_driven(field)
             folds[title].add(field.label, field.widget)
-            self.fields.append(field)
+            name = field.label if title == section.group or row.spec.advanced else f"{title}, {field.label.lower()}"
+            self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
             self.column.addWidget(fold.widget)
 
@@ -97,7 +101,7 @@ class StagePanel:
             return
         found = issues_of(self.obj)
         lines = [self.obj.Message] if self.obj.Message and not found else []
-        lines += [f"{issue.level} {issue.where}: {issue.message}" for issue in found[:MOST_ISSUES]]
+        lines += [f"{' '.join(filter(None, (issue.level, issue.where)))}: {issue.message}" for issue in found[:MOST_ISSUES]]
         if len(found) > MOST_ISSUES:
             lines.append(f"and {len(found) - MOST_ISSUES} more")
         self.findings.setText("\n".join([f"Status: {self.obj.Status}", *lines]))
@@ -116,20 +120,40 @@ class StagePanel:
     def accept(self) -> bool:
         """Make or change the stage; True closes the panel, an error is shown in it."""
         self.say("")
-        QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))
         try:
             chosen = self._inputs()
-            changed = {field.row.key: repr(field.value) for field in self.fields if field.changed}
+            changed = self._changed()
             if self.obj is None:
-                recorded.make(f"make_{self.proxy.kind.replace(' ', '_')}", {**chosen, **changed})
+                recorded.make(self.document, f"make_{self.proxy.kind.replace(' ', '_')}", {**chosen, **changed})
             elif changed or chosen != self.first_inputs:
                 recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
         except AmError as error:
-            self.say(str(error))
-            return False
-        finally:
-            QtGui.QApplication.restoreOverrideCursor()
-        return True
+            self.say(self._told(error))
+        except ReferenceError:
+            self.say(CLOSED)
+        else:
+            return True
+        return False
+
+    def _changed(self) -> dict[str, str]:
+        """Arguments of what was changed by keyword. Raises InputError named as a parameter is, not as a field."""
+        found = {}
+        for place, (field, _, _) in self.places.items():
+            try:
+                if field.changed:
+                    found[field.row.key] = repr(field.value)
+            except InputError as error:
+                raise InputError(error.code, place, error.message) from None
+        return found
+
+    def _told(self, error: AmError) -> str:
+        """The error with the name the panel gives the field, which is unfolded."""
+        place = error.where.replace(".", "_")
+        if place not in self.places:
+            return str(error)
+        _, name, fold = self.places[place]
+        fold.heading.setChecked(True)
+        return f"{name}: {error.message}"
 
     def reject(self) -> bool:
         """Nothing was done, so nothing is taken back."""

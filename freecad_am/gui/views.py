@@ -5,6 +5,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore
+
 from .view_base import MODE, StageView
 from .view_cell import CellView
 from .view_feature import FeatureView
@@ -17,14 +21,31 @@ VIEWS: dict[str, type[StageView]] = {
     "program": ProgramView,
 }
 
+_to_be_seen: set[str] = set()
+
 
 def attach(obj: Any) -> None:
     """Show an object: with a new view provider when it has none (new, or made without a window), else redrawn."""
     vobj = obj.ViewObject
     if not getattr(vobj, "Proxy", None):
+        if obj.Document.Restoring and obj.Document.Name not in _to_be_seen:
+            _to_be_seen.add(obj.Document.Name)
+            QtCore.QTimer.singleShot(0, lambda name=obj.Document.Name: _show_all(name))
         VIEWS[obj.Proxy.kind](vobj)
         vobj.DisplayMode = MODE
         vobj.Visibility = True
     else:
         vobj.Proxy.complete(vobj)
     vobj.Proxy.refresh()
+
+
+def _show_all(name: str) -> None:
+    """Turn the camera to a document that was made without a window, and so has none."""
+    document = Gui.getDocument(name) if name in App.listDocuments() else None
+    if document is not None and document.Document.Restoring:
+        QtCore.QTimer.singleShot(100, lambda: _show_all(name))
+        return
+    _to_be_seen.discard(name)
+    for view in [] if document is None else document.mdiViewsOfType("Gui::View3DInventor"):
+        view.viewIsometric()
+        view.fitAll()

@@ -64,6 +64,8 @@ def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path)
     subprocess.run(["/usr/bin/python3", "-c", code], check=True, stdin=subprocess.DEVNULL)
     document = App.openDocument(path)
     person.idle(0.4)
+    height = person.gui.ActiveDocument.ActiveView.getCameraNode().height.getValue()
+    assert 90 < height < 600  # all is in sight before the camera is touched
     assert_shown(person, document)
     person.double_click(document.Feature)
     person.panel("RoboticAM_RevolutionFeature")

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is typed into a panel is what is used, or is refused; panels stay with the document they were opened in."""
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.gui.quantity import QuantityField
+
+
+def typed(person, field, text):
+    """Type over what stands in the field, key by key, and leave it."""
+    field.line.setFocus()
+    person.idle(0.05)
+    field.line.selectAll()
+    for letter in text:
+        for kind in (person.core.QEvent.KeyPress, person.core.QEvent.KeyRelease):
+            event = person.widgets.QKeyEvent(kind, 0, person.core.Qt.NoModifier, letter)
+            person.widgets.QApplication.sendEvent(field.box, event)
+    other = field.box.window().findChild(person.widgets.QLineEdit, "elsewhere")
+    other.setFocus()
+    person.idle(0.05)
+    assert not field.box.hasFocus()
+
+
+@pytest.fixture
+def window(person):
+    """A dialog with the focus, and a second field to go to."""
+    dialog = person.widgets.QDialog(person.window)
+    column = person.widgets.QVBoxLayout(dialog)
+    elsewhere = person.widgets.QLineEdit()
+    elsewhere.setObjectName("elsewhere")
+    column.addWidget(elsewhere)
+    dialog.show()
+    dialog.activateWindow()
+    person.until(dialog.isActiveWindow, "the dialog to be active", 5)
+    yield column
+    dialog.close()
+    dialog.deleteLater()
+    person.idle()
+
+
+def test_what_is_typed_is_what_is_read(person, window):
+    field = QuantityField(1.0, "mm", "Layer height")
+    window.addWidget(field.box)
+    assert field.read() == 1.0
+    for text, number in (("2", 2.0), ("0.5 cm", 5.0), ("1+1", 2.0), ("0.1234567891234 mm", 0.1234567891234), ("2", 2.0)):
+        typed(person, field, text)
+        assert field.read() == pytest.approx(number, rel=1e-14), text
+    field.box.setFocus()
+    person.idle(0.05)
+    field.box.stepUp()
+    assert field.read() == 3.0  # stepped from what was typed
+
+
+@pytest.mark.parametrize("text", ["1,5 mm", "1,000", "abc", "1 inch", "2 mm mm", " "])
+def test_what_the_field_would_change_unseen_is_refused_and_stays_to_be_seen(person, window, text):
+    field = QuantityField(1.0, "mm", "Layer height")
+    window.addWidget(field.box)
+    typed(person, field, text)
+    with pytest.raises(api.InputError, match="Layer height"):
+        field.read()
+    assert field.line.text() == text
+    typed(person, field, "3")
+    assert field.read() == 3.0
+
+
+def test_an_error_is_told_with_the_name_in_the_panel_and_its_group_opens(person, hemisphere):
+    api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    assert not person.field(panel, "SeamAngle").isVisible()
+    person.type(panel, "SeamAngle", "2 mm")
+    person.press("Ok")
+    assert person.panel_error(panel).startswith("Seam, angle: '2 mm' is not understood")
+    assert person.field(panel, "SeamAngle").isVisible()
+    person.type(panel, "SeamAngle", "0 deg")
+    person.type(panel, "TravelSpeed", "-1 mm/s")
+    person.press("Ok")
+    assert person.panel_error(panel).startswith("Travel speed: -1 mm/s is out of range")
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_a_panel_stays_with_its_document(person, hemisphere):
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=10)
+    other = App.newDocument("Other")
+    part = other.addObject("Part::Sphere", "Sphere")
+    other.recompute()
+    assert api.make_feature(other, part, layer_height=10).Name == feature.Name
+    App.setActiveDocument(doc.Name)
+    person.double_click(feature)
+    App.setActiveDocument(other.Name)
+    person.type(person.panel("RoboticAM_RevolutionFeature"), "LayerHeight", "5 mm")
+    person.press("Ok")
+    person.panel_closed()
+    assert (feature.LayerHeight.Value, other.Feature.LayerHeight.Value) == (5.0, 10.0)
+
+    App.setActiveDocument(doc.Name)
+    person.click("RoboticAM_Cell")
+    App.setActiveDocument(other.Name)
+    person.press("Ok")
+    person.panel_closed()
+    assert doc.getObject("Cell") is not None and other.getObject("Cell") is None
+
+
+def test_a_panel_whose_object_is_gone_says_so(person, hemisphere):
+    feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
+    person.double_click(feature)
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    person.type(panel, "LayerHeight", "5 mm")
+    hemisphere.Document.removeObject(feature.Name)
+    person.press("Ok")
+    assert "is gone" in person.panel_error(panel)
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_long_names_are_seen_from_their_start(person, hemisphere):
+    hemisphere.Label = "A part with a name that is far too long for its field"
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    source = person.field(person.panel("RoboticAM_NewJob"), "Source")
+    assert source.cursorPosition() == 0 and source.toolTip() == hemisphere.Label
+    person.press("Cancel")
+    person.panel_closed()
