@@ -247,7 +247,7 @@ class Offset:
         start = np.flatnonzero(good & np.r_[True, ~joined])
         stop = np.flatnonzero(good & np.r_[~joined, True])
         runs: list[Run] = []
-        for a, b in zip(start, stop):
+        for a, b in zip(start.tolist(), stop.tolist()):
             if b == a:
                 continue
             low = w[max(a - 1, 0)] if a and piece[a - 1] == piece[a] else w[a]
