@@ -18,7 +18,7 @@ def busy() -> Iterator[None]:
     bar = Gui.getMainWindow().statusBar()
 
     def tell(fraction: float, text: str) -> None:
-        bar.showMessage(f"{text} {fraction:.0%}")
+        bar.showMessage(f"{text[:1].upper()}{text[1:]}: {fraction:.0%}")
         bar.repaint()
 
     QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.WaitCursor))

@@ -42,7 +42,14 @@ class JobPanel:
         for widget in (self.error, fold.widget, hint):
             column.addWidget(widget)
         column.addStretch(1)
+        self.source.text.textChanged.connect(self._propose)
         self.say(self.source.missing)
+
+    def _propose(self, *_: Any) -> None:
+        """A shape was chosen now: its name, unless one was typed."""
+        self.say("")
+        if not self.name.widget.text():
+            self.name.widget.setText(api.proposed_name(self.source.present[0].Label))
 
     def say(self, text: str) -> None:
         """Show what is wrong."""

@@ -25,7 +25,8 @@ class RevolutionFeature(Stage):
     links = (
         Link("Source", "", "The shape to deposit, or some of its faces.", type_name="App::PropertyLinkSub"),
         Link(
-            "Axis", "", "A straight edge, sketch axis or datum line to turn about, where the shape has none.",
+            "Axis", "", "A straight edge, sketch axis or datum line to turn about, where the shape has none. "
+            "A sketch is turned about its vertical axis unless another one is chosen.",
             required=False, type_name="App::PropertyLinkSub",
         ),
     )
@@ -65,8 +66,11 @@ def global_shape(source: Any) -> Any:
 
 
 def axis_of(obj: Any) -> tuple[Any, Any] | None:
-    """Point and direction of the feature's Axis as vectors in document coordinates, None where none is chosen."""
+    """Point and direction of the axis to turn about as vectors in document coordinates: the feature's Axis, else the
+    vertical axis of a sketch (as PartDesign does), else None."""
     link = obj.Axis
+    if not link and obj.Source and obj.Source[0].isDerivedFrom("Sketcher::SketchObject"):
+        link = (obj.Source[0], ["V_Axis"])
     if not link:
         return None
     target, names = link

@@ -13,7 +13,7 @@ STATUSES = (UP_TO_DATE, STALE, FAILED, INFEASIBLE)
 # properties that are no inputs
 RESULTS = frozenset({
     "Status", "Message", "Issues", "Key", "Seconds", "ResultData", "ResultLayout", "SchemaVersion", "Proxy", "Label",
-    "Label2", "Visibility", "ExpressionEngine",
+    "Label2", "Visibility",
 })
 
 _observer: _Observer | None = None

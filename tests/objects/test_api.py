@@ -209,6 +209,9 @@ def test_a_sketch_turned_about_its_own_axis(doc):
     frame = api.result(feature).frame
     assert frame[:3, 3] == pytest.approx([1, 2, 3]) and frame[:3, 2] == pytest.approx([0, 0, 1])
     assert feature.WallLength.Value == pytest.approx(math.hypot(10, 40))
+    key = feature.Key
+    other = api.make_feature(doc, sketch, layer_height=10)  # the vertical axis goes without saying
+    assert other.Key == key and other.Axis is None
 
 
 def test_with_the_part_mounted_by_its_own_frame_the_platform_is_there(doc, part):

@@ -85,6 +85,7 @@ def test_parameters_follow_expressions(job):
     sheet.set("A1", "=5 mm")
     job.doc.recompute()
     job.feature.setExpression("LayerHeight", "Sheet.A1 * 2 + 5 mm")
+    assert job.feature.Status == job.program.Status == "stale"  # at once, before the expression is evaluated
     job.toolpath.setExpression("TravelSpeed", "Feature.LayerHeight / 5 s")
     job.doc.recompute()
     assert job.feature.LayerHeight.Value == 15 and job.toolpath.TravelSpeed.Value == pytest.approx(3)
