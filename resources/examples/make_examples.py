@@ -79,10 +79,11 @@ def _turned(edges: list[Any]) -> Any:
 
 
 def write(name: str, shape: Any) -> None:
-    """Write one part, without the date and the path that the exporter puts into the header."""
+    """Write one part: under its own name, which FreeCAD shows, and without the exporter's date and path."""
     path = HERE / f"{name}.step"
     shape.exportStep(str(path))
     text = re.sub(r"FILE_NAME\('[^']*','[^']*'", f"FILE_NAME('{name}','2020-01-01T00:00:00'", path.read_text())
+    text = re.sub(r"PRODUCT\('[^']*',\s*'[^']*'", f"PRODUCT('{name}','{name}'", text)
     path.write_text(text)
 
 
