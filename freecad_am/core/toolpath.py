@@ -35,7 +35,7 @@ class Bead:
 
     points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the
     deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the
-    unwrapped angle about the axis on parts of revolution, else the normalised arc length. speed: (n,) mm/s
+    unwrapped angle about the axis on parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s
     of the segment that ends at the point. width: (n,) mm, or None where no bead model was used.
     """
 

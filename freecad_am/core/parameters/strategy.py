@@ -37,3 +37,36 @@ class RevolutionParameters:
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")
+
+
+@dataclass(frozen=True)
+class SurfaceParameters:
+    """How a wall on an existing part is cut into layers (Chalvin 2019, section II). mm."""
+
+    layer_height: float = f.parameter(
+        1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True
+    )
+    chord_error: float = f.parameter(
+        0.01, f.LENGTH, "Largest distance between a bead and the straight segments that stand for it.",
+        low=1e-5, high=10.0,
+    )
+    spacing: str = f.parameter(
+        "constant-distance", f.CHOICE,
+        "Layers at the layer height from the nearest point of the one below (constant-distance), or along the lines up "
+        "the wall (iso-parameter).",
+        choices=("constant-distance", "smooth", "iso-parameter"),
+    )
+    band: float = f.parameter(
+        0.2, f.RATIO, "Share of the layer height by which the local distance may differ before there is a warning.",
+        low=0.0, high=1.0,
+    )
+    tolerance: float = f.parameter(
+        1e-4, f.LENGTH, "Largest error of the local distance of constant-distance layers.", low=1e-6, high=1.0
+    )
+    end: str = f.parameter(
+        "trim", f.CHOICE, "Last layers trimmed flush with the wall's upper edge, or whole layers alone.",
+        choices=("trim", "whole"),
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "strategy")

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points on a curve in space so that straight segments between them stay within a chord error."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.space_curve import SpaceCurve
+from ..geometry.surface import dot
+
+Array = NDArray[np.float64]
+
+CLOSER = 4  # places per arc of the curve at which its curvature is taken
+BETWEEN = np.arange(1, 8) / 8.0  # places of a segment at which its distance from the curve is measured
+MORE = 1.15  # times as many segments where the chord error is not met
+FEWEST = 24  # segments of a whole curve
+
+
+def within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float) -> Array:
+    """Parameters (n,) from low to high, rising, with every corner between; the chords are off by `chord_error` mm at most.
+
+    Segments are shorter where the curve bends more. On a closed curve high may lie beyond the last node.
+    """
+    corners = curve.w[curve.corners]
+    if curve.closed:
+        corners = np.concatenate([corners + turn * curve.period for turn in (-1, 0, 1, 2)])
+    inner = np.unique(corners[(corners > low + 1e-9 * curve.period) & (corners < high - 1e-9 * curve.period)])
+    breaks = np.r_[low, inner, high]
+    pieces = [_piece(curve, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
+    return np.concatenate([*pieces, [high]])
+
+
+def chord_errors(curve: SpaceCurve, w: Array) -> Array:
+    """Largest distance (n - 1,) mm of the curve from each chord, measured at places between."""
+    ends = curve.at(w)[0]
+    chord = np.diff(ends, axis=0)
+    places = w[:-1, None] + np.diff(w)[:, None] * BETWEEN
+    points = curve.at(places.ravel())[0].reshape(*places.shape, 3)
+    offset = points - ends[:-1, None]
+    share = np.clip(dot(offset, chord[:, None]) / np.maximum(dot(chord, chord), 1e-300)[:, None], 0.0, 1.0)
+    distance: Array = np.linalg.norm(offset - share[..., None] * chord[:, None], axis=-1).max(axis=1)
+    return distance
+
+
+def _piece(curve: SpaceCurve, low: float, high: float, chord_error: float) -> Array:
+    """A stretch without corners inside: places equally spread by what the curvature asks for."""
+    nodes = curve.refined(CLOSER)
+    if curve.closed:
+        nodes = np.concatenate([nodes[:-1] + turn * curve.period for turn in (-1, 0, 1, 2)])
+    w = np.r_[low, nodes[(nodes > low) & (nodes < high)], high]
+    _, slope, bend = curve.at(0.5 * (w[1:] + w[:-1]))
+    pace = np.linalg.norm(slope, axis=1)
+    curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / pace**3
+    length = pace * np.diff(w)
+    # where it hardly bends a share of the length still counts, so that segments do not get much longer than others
+    wanted = length * np.maximum(np.sqrt(curvature / (8.0 * chord_error)), FEWEST / curve.length)
+    total = np.r_[0.0, np.cumsum(wanted)]
+    count = max(1, int(np.ceil(total[-1])))
+    while True:
+        places: Array = np.interp(np.linspace(0.0, total[-1], count + 1), total, w)
+        if chord_errors(curve, places).max() <= chord_error:
+            return places
+        count = int(np.ceil(MORE * count)) + 1

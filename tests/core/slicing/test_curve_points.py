@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points on a curve within a chord error, measured by brute force."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.slicing import constant_distance
+from freecad_am.core.slicing.curve_points import within_chord
+from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
+from freecad_am.core.slicing.wall_layer import even_grid
+
+PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
+
+
+@pytest.fixture(scope="module")
+def fronts():
+    torus = Torus(60.0, 15.0)
+    first = on_implicit(torus, PIPE, (0.0, 1.5), even_grid(torus, 360))
+    return constant_distance.layers(torus, first, 5.0, 0.5 * np.pi)
+
+
+def worst(curve, w):
+    """Largest distance of a dense sampling of the curve from the polyline through w."""
+    ends = curve.at(w)[0]
+    found = 0.0
+    for a, b, low, high in zip(ends[:-1], ends[1:], w[:-1], w[1:]):
+        points = curve.at(np.linspace(low, high, 60))[0] - a
+        share = np.clip(points @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
+        found = max(found, np.linalg.norm(points - share[:, None] * (b - a), axis=1).max())
+    return found
+
+
+@pytest.mark.parametrize("error", [0.5, 0.01, 0.0005])
+@pytest.mark.parametrize("index", [0, 3, 9, 15])
+def test_chords_keep_the_error_and_corners_are_points(fronts, index, error):
+    curve = fronts[index].curve
+    low = curve.w[0] + 0.3
+    w = within_chord(curve, low, low + curve.period, error)
+    assert (np.diff(w) > 0.0).all()
+    assert w[0] == low and w[-1] == low + curve.period
+    assert worst(curve, w) <= error * (1.0 + 1e-3)
+    places = curve.wrapped(w)
+    for corner in curve.w[curve.corners]:
+        assert np.abs(places - corner).min() < 1e-9
+
+
+def test_no_more_points_than_a_circle_needs():
+    circle = ring().curve
+    w = within_chord(circle, circle.w[0], circle.w[-1], 0.01)
+    needed = np.pi / np.arccos(1.0 - 0.01 / 15.0)
+    assert needed <= len(w) - 1 <= needed + 2
+
+
+def ring():
+    """The circle of the torus's own radius."""
+    torus = Torus(60.0, 15.0)
+    v = 2.0 * np.pi * np.arange(360) / 360
+    return on_polyline(torus, torus.point(np.full(360, 0.1), v))

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The paper's bend on a pipe (R = 60, r = 15, Rc = 32, ERRATA) and a cylinder, as toolpaths."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.geometry.surface_wall import CONE, TORUS, SurfaceWall
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
+from freecad_am.core.parameters.strategy import SurfaceParameters
+from freecad_am.core.process.spacing import between_layers
+from freecad_am.core.strategies import surface
+
+BEND, TUBE, PIPE = 60.0, 15.0, 32.0
+TILTED = np.array([[0.36, 0.48, -0.8, 5.0], [-0.8, 0.6, 0.0, -7.0], [0.48, 0.64, 0.6, 11.0], [0, 0, 0, 1]])
+
+
+def bend(frame=None, end=0.5 * np.pi):
+    """The paper's wall; its first layer from the closed form of equation 3."""
+    frame = np.eye(4) if frame is None else frame
+    v = 2.0 * np.pi * np.arange(480) / 480
+    reach = BEND + TUBE * np.cos(v)
+    u = np.arccos((BEND**2 - PIPE**2 + reach**2) / (2.0 * BEND * reach))
+    first = Torus(BEND, TUBE).point(u, v) @ frame[:3, :3].T + frame[:3, 3]
+    return SurfaceWall(TORUS, (BEND, TUBE), frame, end, first, label="Bend")
+
+
+def tube(height=20.0):
+    v = 2.0 * np.pi * np.arange(480) / 480
+    first = np.column_stack([10.0 * np.cos(v), 10.0 * np.sin(v), 0.0 * v])
+    return SurfaceWall(CONE, (10.0, 0.0), np.eye(4), height, first, label="Tube")
+
+
+def planned(wall, mode="local", process=None, lead=0.0, tilt=0.0, max_tilt=np.pi, **strategy):
+    build = BuildDirectionParameters(mode, lead, tilt, max_tilt, "none")
+    return surface.plan(wall, SurfaceParameters(**{"layer_height": 5.0, **strategy}), build, process or ProcessParameters())
+
+
+def parameters(points, frame=None):
+    """u and v of points of the bend, by its equation alone."""
+    if frame is not None:
+        points = (points - frame[:3, 3]) @ frame[:3, :3]
+    x, y, z = points.T
+    return np.arctan2(z, x + BEND), np.arctan2(y, np.hypot(x + BEND, z) - BEND)
+
+
+def codes(toolpath):
+    return {issue.code: issue for issue in toolpath.issues}
+
+
+@pytest.mark.parametrize("frame", [None, TILTED], ids=["as the paper", "anywhere"])
+def test_layers_trimmed_at_the_end(frame):
+    toolpath = planned(bend(frame))
+    assert len(toolpath.layers) == 15  # 16 with the one wholly past the end (ERRATA)
+    for _, _, bead in toolpath:
+        u, _ = parameters(bead.points, frame)
+        reach = np.hypot(*(bead.points if frame is None else (bead.points - frame[:3, 3]) @ frame[:3, :3])[:, [0, 2]].T)
+        assert u.max() <= 0.5 * np.pi + 1e-7
+        assert reach.min() > 0.0
+        if not bead.closed:
+            assert u[[0, -1]] == pytest.approx(0.5 * np.pi, abs=1e-7)
+    distances = np.concatenate(between_layers(toolpath))
+    assert distances == pytest.approx(5.0, abs=1e-3)
+    assert np.linalg.norm(toolpath.frame - np.eye(4)) == 0.0
+
+
+def test_points_lie_on_the_wall_and_the_first_layer_on_the_pipe():
+    toolpath = planned(bend(), layer_height=2.0)
+    for _, _, bead in toolpath:
+        x, y, z = bead.points.T
+        assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-4)
+    x, _, z = toolpath.layers[0].beads[0].points.T
+    assert np.hypot(x, z) == pytest.approx(PIPE, abs=1e-4)
+
+
+def test_whole_layers_stop_below_the_end():
+    toolpath = planned(bend(), end="whole")
+    assert all(len(layer.beads) == 1 and layer.beads[0].closed for layer in toolpath.layers)
+    trimmed = planned(bend())
+    assert len(toolpath.layers) == sum(layer.beads[0].closed for layer in trimmed.layers) == 10
+    assert "REMAINDER" in codes(toolpath)
+
+
+def test_a_straight_tube_ends_at_its_end():
+    """Layers at 0, 5, 10, 15 and 20 mm of a tube of 20 mm, whichever way the end is treated."""
+    for end in ("trim", "whole"):
+        toolpath = planned(tube(), end=end)
+        heights = [layer.beads[0].points[:, 2] for layer in toolpath.layers]
+        assert len(heights) == 5
+        for index, height in enumerate(heights):
+            assert height == pytest.approx(5.0 * index, abs=1e-6)
+        assert "REMAINDER" not in codes(toolpath)
+
+
+def test_iso_parameter_layers_gather_and_say_so():
+    toolpath = planned(bend(), spacing="iso-parameter")
+    assert len(toolpath.layers) == 18  # 19 with the one wholly past the end
+    issue = codes(toolpath)["SPACING"]
+    assert issue.level == "warning" and "2.49" in issue.message
+    exact = codes(planned(bend()))["SPACING"]
+    assert exact.level == "note"
+
+
+def test_build_directions_are_tangent_to_the_wall_and_normal_to_the_bead():
+    for layer, _, bead in planned(bend(), chord_error=0.0005):
+        u, v = parameters(bead.points)
+        normal = np.column_stack([np.cos(v) * np.cos(u), np.sin(v), np.cos(v) * np.sin(u)])
+        rising = np.column_stack([-np.sin(u), 0 * u, np.cos(u)])
+        assert np.abs((bead.build * normal).sum(axis=1)).max() < 1e-6
+        assert (bead.build * rising).sum(axis=1).min() > 0.0
+        assert np.abs(bead.build - bead.tool).max() == 0.0
+        step = np.diff(bead.points, axis=0)
+        step /= np.linalg.norm(step, axis=1)[:, None]
+        smooth = (step[:-1] * step[1:]).sum(axis=1) > np.cos(0.1)
+        along = (step[:-1] + step[1:])[smooth] / 2.0
+        assert np.abs((along * bead.build[1:-1][smooth]).sum(axis=1)).max() < 0.02, layer
+
+
+def test_symmetry_plane_turns_the_tool_about_one_axis():
+    for frame in (None, TILTED):
+        normal = np.array([0.0, 1.0, 0.0]) if frame is None else frame[:3, 1]
+        for _, _, bead in planned(bend(frame), mode="symmetry-plane", lead=0.1):
+            for vectors in (bead.build, bead.tool):
+                assert np.abs(vectors @ normal).max() < 1e-12
+    with pytest.raises(InputError, match="plane of symmetry") as caught:
+        planned(tube(), mode="symmetry-plane")
+    assert caught.value.code == "NO_SYMMETRY_PLANE"
+
+
+def test_lead_turns_forward_and_tilt_outward():
+    ahead = planned(tube(), lead=0.2).layers[1].beads[0]
+    forward = np.diff(ahead.points, axis=0)
+    forward /= np.linalg.norm(forward, axis=1)[:, None]
+    assert (ahead.tool[:-1] * forward).sum(axis=1) == pytest.approx(np.sin(0.2), abs=1e-3)
+    assert ahead.tool[:, 2] == pytest.approx(np.cos(0.2), abs=1e-12)
+    aside = planned(tube(), tilt=0.3).layers[1].beads[0]
+    outward = aside.points[:, :2] / 10.0
+    assert (aside.tool[:, :2] * outward).sum(axis=1) == pytest.approx(np.sin(0.3), abs=1e-6)
+
+
+def test_fixed_layer_and_capped_directions():
+    assert all((bead.tool == [0, 0, 1]).all() for _, _, bead in planned(bend(), mode="fixed"))
+    for _, _, bead in planned(bend(), mode="layer"):
+        assert np.abs(bead.tool - bead.tool[0]).max() == 0.0
+    capped = planned(bend(), max_tilt=np.radians(60.0))
+    assert max(np.arccos(bead.tool[:, 2]).max() for _, _, bead in capped) == pytest.approx(np.radians(60.0), abs=1e-9)
+    assert "TILT_CAPPED" in codes(capped)
+
+
+def turning(bead):
+    """Positive where a bead runs counter-clockwise as seen from its tool."""
+    return np.cross(bead.points[:-1], bead.points[1:]).sum(axis=0) @ bead.build.mean(axis=0)
+
+
+def test_seams_and_directions():
+    process = ProcessParameters(seam=SeamParameters(np.radians(90.0), np.radians(30.0)))
+    for index, layer in enumerate(planned(tube(), process=process).layers):
+        x, y, _ = layer.beads[0].points[0]
+        assert np.arctan2(y, x) == pytest.approx(np.radians(90.0 + 30.0 * index) if index < 4 else np.radians(-150.0), abs=1e-9)
+    for direction, signs in (("counter-clockwise", [1, 1]), ("clockwise", [-1, -1]), ("alternate", [1, -1])):
+        layers = planned(bend(TILTED), process=ProcessParameters(direction=direction), end="whole").layers
+        assert [np.sign(turning(layer.beads[0])) for layer in layers[:2]] == signs
+
+
+def test_parameter_is_the_arc_length_of_a_turn():
+    for _, _, bead in planned(bend()):
+        length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
+        assert bead.parameter == pytest.approx(2.0 * np.pi * length / length[-1], abs=1e-12)
+
+
+@pytest.mark.parametrize("change, code", [
+    ({"spacing": "smooth"}, "NOT_YET"), ({"layer_height": 100.0}, "LAYER_HEIGHT"),
+])
+def test_refusals(change, code):
+    with pytest.raises(InputError) as caught:
+        planned(bend(), **change)
+    assert caught.value.code == code
+    with pytest.raises(InputError) as caught:
+        surface.plan(bend(), SurfaceParameters(), BuildDirectionParameters(), ProcessParameters())
+    assert (caught.value.code, caught.value.where) == ("NOT_YET", "build_direction.clearance")
+    with pytest.raises(InputError) as caught:
+        planned(bend(end=0.2))
+    assert caught.value.code == "TOO_LOW"
