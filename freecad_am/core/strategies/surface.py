@@ -201,8 +201,9 @@ def _corner_notes(fronts: list[WallLayer]) -> list[Issue]:
         return []
     turns = [float(front.curve.turns.max()) for front in fronts]
     return [Issue(
-        NOTE, "CORNERS", f"{len(cornered)} of {len(fronts)} fronts have corners, first layer {cornered[0]}; the sharpest turns "
-        f"by {np.degrees(max(turns)):.3g} deg. The robot slows down there", int(np.argmax(turns)),
+        NOTE, "CORNERS",
+        f"{len(cornered)} of {len(fronts)} fronts have corners, first layer {cornered[0]}; the sharpest turns by "
+        f"{np.degrees(max(turns)):.3g} deg. The robot slows down there", int(np.argmax(turns)),
     )]
 
 
