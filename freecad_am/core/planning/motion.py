@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
@@ -23,6 +24,8 @@ TURN = 2.0 * np.pi
 # share of an axis's largest speed a rapid move may ask for, and the shortest time of one
 RAPID_SHARE = 0.8
 SHORTEST = 0.05
+# largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
+LARGEST_TURN = np.radians(170.0)
 # how many times the lift is tried where the nozzle would meet the deposit
 HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 
@@ -47,8 +50,9 @@ def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> t
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
     Between two beads the tool is withdrawn along its axis by `between_layers.lift`, goes to the same height above the
-    next start and down onto it. Where the nozzle would meet the deposit on its way it is withdrawn further, as far as it
-    takes; where no height does, or the robot cannot reach it, that is an issue.
+    next start and down onto it; an endless axis that turns far on the way does so in several moves. Where the nozzle
+    would meet the deposit on its way it is withdrawn further, as far as it takes; where no height does, or the robot
+    cannot reach it, that is an issue.
     """
     lift = process.between_layers.lift
     lifts = np.full(len(joint_path.beads), lift)
@@ -109,6 +113,8 @@ def _with_rapids(joint_path: JointPath, cell: Cell, process: ProcessParameters, 
             waypoints.insert(0, _lifted(path, 0, cell, branch, lift))
             if before is not None:
                 waypoints.insert(0, _lifted(before, -1, cell, branch, lift))
+        if before is not None:
+            waypoints = _shorter_turns([before.joints[-1], *waypoints], cell.limits.endless)[1:]
         parts.append(_rapid(path, waypoints, cell, lift))
         parts.append(_deposit(path))
         before = path
@@ -128,6 +134,16 @@ def _lifted(path: BeadPath, index: int, cell: Cell, branch: int, lift: float) ->
     joints = arm.inverse_branch(flange, branch)[0]
     moved: Array = joints + TURN * np.round((path.joints[index] - joints) / TURN)
     return moved
+
+
+def _shorter_turns(waypoints: Sequence[Array], endless: NDArray[np.bool_]) -> list[Array]:
+    """The waypoints, with more on the straight way in the joints where an endless axis would turn too far at once."""
+    result = [waypoints[0]]
+    for start, end in zip(waypoints[:-1], waypoints[1:]):
+        turn = float(np.nan_to_num(np.abs(end - start)[endless]).max(initial=0.0))
+        moves = max(1, math.ceil(turn / LARGEST_TURN))
+        result += [start + (end - start) * (k / moves) for k in range(1, moves)] + [end]
+    return result
 
 
 def _rapid(path: BeadPath, waypoints: Sequence[Array], cell: Cell, lift: float) -> _Rows:

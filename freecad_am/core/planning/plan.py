@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..issues import ERROR, WARNING, Issue, has_errors
 from ..kinematics import opw
@@ -22,6 +23,7 @@ from .points import gather
 from .straight import kept_straight
 from .task import Task
 
+Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
@@ -84,7 +86,8 @@ def _planned(
     for path in paths:
         issues += findings(task, path)
     if not has_errors(issues):
-        issues += too_fast(task, paths)
+        paths, slowed = rings_slowed(task, paths, toolpath.layer_height)
+        issues += slowed + too_fast(task, paths)
     return paths, issues
 
 
@@ -105,12 +108,48 @@ def _compared(
     }
 
 
+def rings_slowed(
+    task: Task, paths: Sequence[BeadPath], layer_height: float
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths with the tightest turns at the speed the axes allow, and a warning that says so.
+
+    Where a wall closes, the last rings are as small as chance leaves them, and the axis that turns the part would have to
+    turn without bound. What runs at less than a layer from the axis of the part is slowed; the rest is not: that is for
+    the user to decide.
+    """
+    result, slowed = [], []
+    for path in paths:
+        bead, ratio = path.bead, (_axis_speeds(path) / task.cell.machine.max_speed).max(axis=1)
+        radius = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / np.abs(np.diff(bead.parameter))
+        tight = (ratio > 1.0) & (radius < layer_height)
+        if tight.any():
+            speed = bead.speed.copy()
+            speed[1:][tight] *= (1.0 - 1e-9) / ratio[tight]
+            path = dataclasses.replace(path, bead=dataclasses.replace(bead, speed=speed))
+            slowed.append(path)
+        result.append(path)
+    if not slowed:
+        return result, []
+    slowest = min(float(path.bead.speed.min()) for path in slowed)
+    return result, [Issue(
+        WARNING, "SLOWED",
+        f"{len(slowed)} bead(s) where the wall closes are run at down to {slowest:.3g} mm/s: the axes turn no faster",
+        slowed[0].layer, slowed[0].index,
+    )]
+
+
+def _axis_speeds(path: BeadPath) -> Array:
+    """(n - 1, axes) rad/s at which the axes turn along a bead."""
+    length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
+    speed: Array = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
+    return speed
+
+
 def too_fast(task: Task, paths: Sequence[BeadPath]) -> list[Issue]:
     """An issue for every bead on which an axis would have to turn faster than it can."""
     found = []
     for path in paths:
-        length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
-        speed = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
+        speed = _axis_speeds(path)
         ratio = speed / task.cell.machine.max_speed
         point, axis = np.unravel_index(int(ratio.argmax()), ratio.shape)
         if ratio[point, axis] > 1.0:

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 INSIDE = np.array([0.25, 0.5, 0.75])
 ROUNDS = 8
+# a bead that turns by more than this at a point has a corner there, rad
+CORNER = np.radians(35.0)
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
 
@@ -24,7 +26,7 @@ ROUNDING = 1e-6
 def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadPath, list[Issue]]:
     """The path with as many points added as it takes to stay within the chord error (mm) of the bead between them.
 
-    Points are added on the straight segments of the bead, which lie within its own chord error of the wall.
+    Points are added on the curve that the points of the bead outline, not on its chords; at corners on the segments.
     """
     for _ in range(ROUNDS):
         if not path.reachable:
@@ -53,6 +55,31 @@ def deviation(task: Task, bead: Bead, joints: Array) -> Array:
     return distance
 
 
+def middle_points(bead: Bead) -> Array:
+    """(n - 1, 3) the middle of the curve over each segment: exact to the fourth order in the turn on a circle.
+
+    The tangent at a point is that of the circle through it and its neighbours; a segment next to a corner is straight.
+    """
+    along = np.diff(bead.points, axis=0)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = along / np.maximum(length, 1e-12)
+    rounded = bead.closed and len(along) > 2
+    before = np.concatenate([along[-1:] if rounded else along[:1], along])
+    after = np.concatenate([along, along[:1] if rounded else along[-1:]])
+    far = np.concatenate([length[-1:] if rounded else length[:1], length])
+    near = np.concatenate([length, length[:1] if rounded else length[-1:]])
+    tangent = before * near + after * far
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-12)
+    if not rounded and len(along) > 1:  # at an end, the circle of the point next to it
+        tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
+        tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
+    corner = (before * after).sum(axis=1) < np.cos(CORNER)
+    bow = length / 8.0 * (tangent[:-1] - tangent[1:])
+    bow[corner[:-1] | corner[1:]] = 0.0
+    middle: Array = 0.5 * (bead.points[:-1] + bead.points[1:]) + bow
+    return middle
+
+
 def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath:
     """The path with a point in the middle of each of the segments."""
     at = segments + 1
@@ -66,7 +93,8 @@ def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath
 
     bead = path.bead
     finer = dataclasses.replace(
-        bead, points=middle(bead.points), build=middle_direction(bead.build), tool=middle_direction(bead.tool),
+        bead, points=np.insert(bead.points, at, middle_points(bead)[segments], axis=0),
+        build=middle_direction(bead.build), tool=middle_direction(bead.tool),
         parameter=middle(bead.parameter), speed=np.insert(bead.speed, at, bead.speed[at]),
         width=None if bead.width is None else middle(bead.width),
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.profile import Array, RevolvedWall
-from ..issues import InputError
+from ..issues import WARNING, InputError, Issue
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm
@@ -16,10 +16,14 @@ TOUCH = 1e-6  # mm
 
 @dataclass(frozen=True)
 class Platform:
-    """A disc about the axis of the wall: radius mm, 0 without a platform, and height mm in the feature frame."""
+    """A disc about the axis of the wall: radius mm, 0 without a platform, and height mm in the feature frame.
+
+    off: mm from the axis to the middle of the true disc, which `radius` includes.
+    """
 
     radius: float
     height: float = 0.0
+    off: float = 0.0
 
 
 def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
@@ -27,7 +31,7 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
 
     diameter: mm, 0 for none. frame: (4, 4) pose of the platform in part coordinates; None when the feature frame sits on
     it. A disc whose middle is off the axis counts as a larger one about the axis, which is on the safe side. Raises
-    InputError 'OFF_PLATFORM' when the axis or the base of the wall misses the platform.
+    InputError 'OFF_PLATFORM' when the axis of the wall misses the platform, or the wall starts below it.
     """
     centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
     if frame is not None:
@@ -44,14 +48,21 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
             f"the axis of {wall.label} is {off:.6g} mm off the middle of the platform and misses it",
             "use mount: feature, or move the part",
         )
-    if off + float(wall.meridian.points[0, 0]) > radius + TOUCH:
-        raise _off(
-            f"the base of {wall.label} has a diameter of {2.0 * wall.meridian.points[0, 0]:.6g} mm and reaches over the "
-            f"platform of {diameter:.6g} mm", "give the right diameter, or 0 for none",
-        )
     if height > TOUCH:
         raise _off(f"the base of {wall.label} is {height:.6g} mm below the platform", "use mount: feature, or move the part")
-    return Platform(radius + off, height)
+    return Platform(radius + off, height, off)
+
+
+def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
+    """A warning when the base of the wall reaches over the edge of the platform."""
+    base, edge = float(wall.meridian.points[0, 0]), platform.radius - 2.0 * platform.off
+    if platform.radius == 0.0 or base <= edge + TOUCH:
+        return []
+    return [Issue(
+        WARNING, "OVER_PLATFORM",
+        f"the base of {wall.label} has a diameter of {2.0 * base:.6g} mm and reaches over the platform; check "
+        "cell.platform_diameter (0 for none)", 0,
+    )]
 
 
 def _off(what: str, remedy: str) -> InputError:

@@ -51,16 +51,16 @@ def plan(
             "NOT_FOR_FAMILY", "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
-    tilting = Tilting(wall, build, nozzle, platform.under(wall, platform_diameter, platform_frame))
+    under = platform.under(wall, platform_diameter, platform_frame)
+    tilting = Tilting(wall, build, nozzle, under)
     issues: list[Issue] = []
     if strategy.path == "spiral":
         layers, found = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
         layers, found = _layers(wall, slices, strategy, process, tilting)
-    return Toolpath(
-        layers, wall.frame, strategy.layer_height, strategy.chord_error, (*wall.issues, *issues, *found), process.overlap
-    )
+    issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
+    return Toolpath(layers, wall.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap)
 
 
 def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:

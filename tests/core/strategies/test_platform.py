@@ -29,13 +29,12 @@ def test_under_the_feature_frame_the_disc_is_at_its_origin():
 
 def test_a_disc_below_and_beside_is_taken_on_the_safe_side():
     seen = platform.under(WALL, 200.0, at(0.0, 0.0, 0.0))
-    assert seen.radius == pytest.approx(150.0)
+    assert seen.radius == pytest.approx(150.0) and seen.off == pytest.approx(50.0)
     assert seen.height == pytest.approx(-5.0)
 
 
 @pytest.mark.parametrize(("diameter", "frame", "said"), [
-    (30.0, None, "40 mm.*30 mm"), (90.0, at(0.0, 0.0, 0.0), "50 mm off the middle"),
-    (130.0, at(0.0, 0.0, 0.0), "reaches over"),
+    (90.0, at(0.0, 0.0, 0.0), "50 mm off the middle"),
     (300.0, at(0.0, 0.0, 6.0), "1 mm below"),
     (300.0, at(30.0, 40.0, 5.0, 0.1), r"5\.73 deg"), (300.0, at(30, 40, 5, np.pi), "180 deg"),
 ])
@@ -44,3 +43,13 @@ def test_what_misses_the_platform_is_refused(diameter, frame, said):
         platform.under(WALL, diameter, frame)
     assert refused.value.code == "OFF_PLATFORM"
     assert "Cup" in refused.value.message
+
+
+@pytest.mark.parametrize(("diameter", "frame", "over"), [
+    (30.0, None, True), (40.0, None, False), (0.0, None, False),
+    (130.0, at(0.0, 0.0, 0.0), True), (140.0, at(0.0, 0.0, 0.0), False),
+])
+def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter, frame, over):
+    found = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
+    assert [(issue.level, issue.code) for issue in found] == ([("warning", "OVER_PLATFORM")] if over else [])
+    assert all("Cup has a diameter of 40 mm" in issue.message for issue in found)
