@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import FreeCAD as App
@@ -21,19 +22,18 @@ class ProgramWindow:
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
-        self.files = api.result(obj).files if obj.Key else {}
+        self.files: dict[str, bytes] = {}
         self.window = QtGui.QDialog(Gui.getMainWindow())
         self.window.setObjectName("RoboticAM_ProgramText")
         self.window.setWindowTitle(obj.Label)
         self.window.setWindowIcon(QtGui.QIcon(icons.path("program")))
         self.window.setAttribute(QtCore.Qt.WA_DeleteOnClose)
         self.window.resize(760, 620)
-        self.state = QtGui.QLabel(f"Status: {obj.Status}. {obj.Message}".rstrip(" "))
+        self.state = QtGui.QLabel()
         self.state.setObjectName("state")
         self.state.setWordWrap(True)
         self.choice = QtGui.QComboBox()
         self.choice.setObjectName("file")
-        self.choice.addItems(sorted(self.files))
         self.text = QtGui.QPlainTextEdit()
         self.text.setObjectName("text")
         self.text.setReadOnly(True)
@@ -41,28 +41,46 @@ class ProgramWindow:
         font = QtGui.QFont("monospace")
         font.setStyleHint(QtGui.QFont.TypeWriter)
         self.text.setFont(font)
+        self.export_button = _button("Export…", "export", "Writes all files of the program into a folder", self._export)
         self._lay_out()
+        self.load()
         self.choice.currentIndexChanged.connect(self._show)
+        self.window.finished.connect(lambda *_: _shown.remove(self))
+        _shown.append(self)
+
+    def load(self) -> None:
+        """Show what the object holds now."""
+        try:
+            self.files = api.result(self.obj).files if self.obj.Key else {}
+        except AmError:  # within undo the parts of a result come back one by one
+            return
+        names, chosen = sorted(self.files), self.choice.currentText()
+        self.choice.blockSignals(True)
+        self.choice.clear()
+        self.choice.addItems(names)
+        self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
+        self.choice.blockSignals(False)
+        self.export_button.setEnabled(bool(names))
+        self.state.setText(f"Status: {self.obj.Status}. {self.obj.Message}".rstrip(" "))
         self._show()
 
     def _lay_out(self) -> None:
         column, row = QtGui.QVBoxLayout(self.window), QtGui.QHBoxLayout()
-        export_button = _button("Export…", "export", "Writes all files of the program into a folder", self._export)
-        export_button.setEnabled(bool(self.files))
         row.addWidget(self.choice, 1)
-        row.addWidget(export_button)
+        row.addWidget(self.export_button)
         row.addWidget(_button("Close", "close", "Closes this window", lambda *_: self.window.close()))
         column.addLayout(row)
         column.addWidget(self.text, 1)
         column.addWidget(self.state)
 
     def _show(self, *_: Any) -> None:
-        content = self.files.get(self.choice.currentText(), b"")
-        self.text.setPlainText(content.decode("latin-1").replace("\r\n", "\n"))
+        text = self.files.get(self.choice.currentText(), b"").decode("latin-1").replace("\r\n", "\n")
+        if text != self.text.toPlainText():
+            self.text.setPlainText(text)
 
     def _export(self, *_: Any) -> None:
         try:
-            self.state.setText(export(self.obj))
+            self.state.setText(export(self.obj, self.window))
         except ReferenceError:
             self.state.setText("The document is closed; open it again to export.")
 
@@ -76,21 +94,32 @@ def _button(text: str, name: str, help: str, act: Any) -> Any:
     return button
 
 
+_shown: list[ProgramWindow] = []  # Python must keep them as long as they are open
+
+
 def show(obj: Any) -> None:
-    """Open the text of a program in a window that does not block the others."""
-    shown = ProgramWindow(obj)
+    """Open the text of a program in a window that does not block the others; the one that is open, if it is."""
+    shown = _of(obj) or ProgramWindow(obj)
     shown.window.show()
     shown.window.raise_()
-    # Python must keep the object as long as its window
-    shown.window.kept = shown
 
 
-def export(obj: Any) -> str:
-    """Ask for a folder and write the files of a program; says what came of it."""
+def renew(obj: Any) -> None:
+    """The program has changed: show it in its window, if that is open."""
+    shown = _of(obj)
+    if shown is not None:
+        shown.load()
+
+
+def _of(obj: Any) -> ProgramWindow | None:
+    return next((shown for shown in _shown if shown.obj is obj), None)
+
+
+def export(obj: Any, window: Any = None) -> str:
+    """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it."""
     preferences = App.ParamGet(_PREFERENCES)
-    folder = QtGui.QFileDialog.getExistingDirectory(
-        Gui.getMainWindow(), "Export program", preferences.GetString("ExportFolder", "")
-    )
+    first = preferences.GetString("ExportFolder", "") or os.path.dirname(obj.Document.FileName)
+    folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), "Export program", first)
     if not folder:
         return f"Status: {obj.Status}"
     try:

@@ -18,6 +18,14 @@ class ProgramView(StageView):
 
         show(obj)
 
+    def updateData(self, obj: Any, name: str) -> None:
+        """A property of the object has changed."""
+        super().updateData(obj, name)
+        if name in ("Key", "Status", "Message") and not obj.Document.Restoring:
+            from .program_panel import renew
+
+            renew(obj)
+
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
         """Entries of the context menu in the tree."""
         from . import program_panel, stage_panel

@@ -278,3 +278,25 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, tmp_path, m
     person.field(window, "export").click()
     assert "document is closed" in person.field(window, "state").text()
     person.field(window, "close").click()
+
+
+def test_the_open_window_of_a_program_follows_it(person, hemisphere):
+    doc = hemisphere.Document
+    program = api.make_all(doc, hemisphere, name="CUP")[-1]
+    person.double_click(program)
+    window = person.panel("RoboticAM_ProgramText")
+    assert person.field(window, "text").toPlainText().startswith("/PROG  CUP")
+    api.change(program, name="MUG")
+    assert person.field(window, "text").toPlainText().startswith("/PROG  MUG")
+    doc.Feature.LayerHeight = 2
+    assert "stale" in person.field(window, "state").text()
+    person.double_click(program)
+    windows = person.window.findChildren(person.widgets.QDialog, "RoboticAM_ProgramText")
+    assert len([one for one in windows if one.isVisible()]) == 1
+    person.gui.runCommand("Std_Undo")
+    person.idle()
+    assert person.field(window, "text").toPlainText().startswith("/PROG  CUP")
+    person.field(window, "close").click()
+    person.double_click(program)
+    window = person.panel("RoboticAM_ProgramText")
+    person.field(window, "close").click()
