@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 STEPS = 256
+WRONG = "#c0182b"  # of text that tells what is wrong
 
 # Oklab (B. Ottosson, 2020): linear sRGB -> LMS, cube root, -> L a b
 _LMS = np.array([

@@ -12,6 +12,7 @@ from .. import api
 from ..core.issues import AmError
 from ..objects.feature import RevolutionFeature
 from . import icons, inputs, recorded
+from .colours import WRONG
 from .fold import Fold
 from .stage_panel import CLOSED
 
@@ -29,7 +30,7 @@ class JobPanel:
         self.error = QtGui.QLabel()
         self.error.setObjectName("error")
         self.error.setWordWrap(True)
-        self.error.setStyleSheet("QLabel { color: #c0182b; }")
+        self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
         self.source = inputs.ShapeChoice(RevolutionFeature.links[0], None, take_now=True)
         name = "" if self.source.present is None else api.proposed_name(self.source.present[0].Label)
         self.name = inputs.NameChoice(name)

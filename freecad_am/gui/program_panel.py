@@ -12,7 +12,9 @@ from PySide import QtCore, QtGui
 
 from .. import api
 from ..core.issues import AmError
+from ..objects.staleness import UP_TO_DATE
 from . import icons
+from .colours import WRONG
 
 _PREFERENCES = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
 
@@ -61,7 +63,11 @@ class ProgramWindow:
         self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
         self.choice.blockSignals(False)
         self.export_button.setEnabled(bool(names))
-        self.state.setText(f"Status: {self.obj.Status}. {self.obj.Message}".rstrip(" "))
+        fits = self.obj.Status == UP_TO_DATE
+        warning = "" if fits or not names else "This text is of an earlier plan; do not run it. "
+        self.state.setText(f"{warning}Status: {self.obj.Status}. {self.obj.Message}".rstrip(" "))
+        self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
+        self.text.setStyleSheet("" if fits else "QPlainTextEdit { color: gray; }")
         self._show()
 
     def _lay_out(self) -> None:

@@ -8,6 +8,8 @@ from typing import Any
 import FreeCAD as App
 import FreeCADGui as Gui
 
+from .. import api
+from ..objects.staleness import FAILED, INFEASIBLE
 from .busy import busy
 
 IMPORT = "import freecad_am.api as am"
@@ -15,12 +17,13 @@ IMPORT = "import freecad_am.api as am"
 
 def make(document: Any, function: str, arguments: dict[str, str]) -> None:
     """Call a function that makes something in a document. Raises what it raises, ReferenceError when it is closed."""
-    _run(function, _document(document), arguments)
+    _run(document, function, _document(document), arguments)
 
 
 def change(obj: Any, arguments: dict[str, str]) -> None:
     """Change parameters and inputs of a stage. Raises what `api.change` raises, ReferenceError when it is gone."""
-    _run("change", reference(obj), arguments)
+    first = reference(obj)
+    _run(obj.Document, "change", first, arguments)
 
 
 def reference(obj: Any) -> str:
@@ -37,8 +40,18 @@ def _document(document: Any) -> str:
     return "App.ActiveDocument" if document is App.ActiveDocument else f"App.getDocument({document.Name!r})"
 
 
-def _run(function: str, first: str, arguments: dict[str, str]) -> None:
+def _run(document: Any, function: str, first: str, arguments: dict[str, str]) -> None:
     texts = [first, *(f"{key}={text}" for key, text in arguments.items())]
+    before = _wrong(document)
     Gui.doCommand(IMPORT)
     with busy():
         Gui.doCommand(f"am.{function}({', '.join(texts)})")
+    new = [told for told in _wrong(document) if told not in before]
+    for name, status, message in new[:1]:  # those that follow say it again
+        App.Console.PrintError(f"{name} is {status}: {message}\n")
+
+
+def _wrong(document: Any) -> list[tuple[str, str, str]]:
+    """Label, status and message of the stages that something is wrong with, inputs first."""
+    found = [(obj.Label, obj.Status, obj.Message) for obj in api.stages_of(document)]
+    return [told for told in found if told[1] in (FAILED, INFEASIBLE)]

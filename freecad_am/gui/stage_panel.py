@@ -14,6 +14,7 @@ from ..core.issues import AmError, InputError
 from ..objects.rows import rows
 from ..objects.stage import Stage, issues_of
 from . import fields, icons, inputs, recorded, suggestions
+from .colours import WRONG
 from .fold import Fold
 
 MOST_ISSUES = 6
@@ -32,7 +33,7 @@ class StagePanel:
         self.form.setWindowIcon(QtGui.QIcon(icons.path(proxy.kind.replace(" ", "_"))))
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
-        self.error = self._note("error", "#c0182b")
+        self.error = self._note("error", WRONG)
         if choices:
             heading = Fold("Inputs", obj is None)
             for choice in choices:

@@ -289,7 +289,7 @@ def test_the_open_window_of_a_program_follows_it(person, hemisphere):
     api.change(program, name="MUG")
     assert person.field(window, "text").toPlainText().startswith("/PROG  MUG")
     doc.Feature.LayerHeight = 2
-    assert "stale" in person.field(window, "state").text()
+    assert "do not run it. Status: stale" in person.field(window, "state").text()
     person.double_click(program)
     windows = person.window.findChildren(person.widgets.QDialog, "RoboticAM_ProgramText")
     assert len([one for one in windows if one.isVisible()]) == 1
@@ -300,3 +300,17 @@ def test_the_open_window_of_a_program_follows_it(person, hemisphere):
     person.double_click(program)
     window = person.panel("RoboticAM_ProgramText")
     person.field(window, "close").click()
+
+
+def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere):
+    doc = hemisphere.Document
+    api.make_all(doc, hemisphere)
+    person.double_click(doc.Cell)
+    panel = person.panel("RoboticAM_Cell")
+    said = len(person.console())
+    person.type(panel, "DepositionPointX", "3 m")
+    person.press("Ok")
+    person.panel_closed()
+    assert (doc.Cell.Status, doc.JointPath.Status, doc.Program.Status) == ("up to date", "infeasible", "infeasible")
+    lines = [line for line in person.console()[said:].splitlines() if " is infeasible: " in line]
+    assert len(lines) == 1 and "Joint path is infeasible: layer 0" in lines[0] and "cannot be reached" in lines[0]
