@@ -35,19 +35,21 @@ from .core.parameters.cell import CellParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
-from .core.parameters.strategy import RevolutionParameters
+from .core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from .objects import stage as stages
 from .objects.cell import Cell
 from .objects.feature import RevolutionFeature
 from .objects.joint_path import JointPath
 from .objects.program import Program, files_of
 from .objects.progress import told_to
+from .objects.revival import revive
 from .objects.settings import given
+from .objects.surface_feature import SurfaceFeature
 from .objects.toolpath import Toolpath
 
 __all__ = (
     "change", "export", "issues", "make_all", "make_cell", "make_feature", "make_joint_path", "make_program",
-    "make_toolpath", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
+    "make_surface_feature", "make_toolpath", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
 )
 
 _NAME_LENGTH = 20
@@ -69,6 +71,19 @@ def make_feature(
     """
     links = {"Source": _with_faces(source, faces), "Axis": axis}
     return _make(doc, RevolutionFeature, "Feature", label, links, [strategy, build_direction], values)
+
+
+def make_surface_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
+    strategy: SurfaceParameters | None = None, build_direction: BuildDirectionParameters | None = None,
+    **values: Any,
+) -> Any:
+    """A wall, of an object's faces, that grows on a solid object.
+
+    `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5, clearance="none")`
+    """
+    links = {"Source": _with_faces(source, faces), "Substrate": substrate}
+    return _make(doc, SurfaceFeature, "Feature", label, links, [strategy, build_direction], values)
 
 
 def make_toolpath(
@@ -170,7 +185,8 @@ def recompute(target: Any, force: bool = False) -> None:
 
 
 def result(obj: Any) -> Any:
-    """What the core made: CellParameters, RevolvedWall, Toolpath, Planned (joint path and motion), Written (files).
+    """What the core made: CellParameters, RevolvedWall or SurfaceWall, Toolpath, Planned (joint path and motion),
+    Written (files).
 
     `am.result(doc.Toolpath).layers[0].beads[0].points`; read from the document, nothing is computed.
     """
@@ -184,7 +200,11 @@ def issues(obj: Any) -> tuple[Issue, ...]:
 
 
 def stages_of(doc: Any, kind: str = "") -> list[Any]:
-    """The stages of a document, inputs first; all, or those of a kind: `am.stages_of(doc, "program")`"""
+    """The stages of a document, inputs first; all, or those of a kind: `am.stages_of(doc, "program")`
+
+    Those that a FreeCAD without the workbench has saved as plain objects are stages again.
+    """
+    revive(doc)
     return [obj for obj in _in_order(doc.Objects) if kind in ("", obj.Proxy.kind)]
 
 

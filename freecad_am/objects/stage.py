@@ -23,6 +23,7 @@ from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 
 SCHEMA_VERSION = 1
+CLASS_PROPERTY = "StageClass"
 _RESULT = "Result"
 _deferred = 0
 
@@ -114,6 +115,8 @@ class Stage:
         add("App::PropertyFloat", "Seconds", _RESULT, "How long computing took.", hidden)
         add("App::PropertyFloatList", "ResultData", _RESULT, "Arrays of the result.", hidden)
         add("App::PropertyString", "ResultLayout", _RESULT, "What is where in the arrays.", hidden)
+        if add("App::PropertyString", CLASS_PROPERTY, _RESULT, "What the object is, should its proxy be lost.", hidden):
+            setattr(obj, CLASS_PROPERTY, f"{type(self).__module__}.{type(self).__name__}")
         if add("App::PropertyInteger", "SchemaVersion", _RESULT, "Version of these properties.", hidden):
             obj.SchemaVersion = SCHEMA_VERSION
 

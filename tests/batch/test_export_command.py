@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """`export`: programs out of a saved document, computed again."""
 
+import os
+import subprocess
+import sys
+
 import FreeCAD
 import pytest
 
@@ -22,6 +26,18 @@ def saved(workshop):
     document.saveAs(str(path))
     FreeCAD.closeDocument(document.Name)
     return path
+
+
+@pytest.fixture
+def script_of_another_freecad(tmp_path):
+    """run(*lines): the lines run in a new process that finds FreeCAD but not this package."""
+    def run(*lines):
+        path = tmp_path / "script.py"
+        path.write_text("\n".join([f"import sys; sys.path.append({os.path.dirname(FreeCAD.__file__)!r})", "import FreeCAD", *lines]))
+        done = subprocess.run([sys.executable, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+    return run
 
 
 def test_writes_all_programs(workshop, saved):
@@ -51,6 +67,22 @@ def test_recomputes(workshop, saved):
     document.save()
     FreeCAD.closeDocument(document.Name)
     assert workshop.run("export", saved, "-o", "after").status == 0
+    before, after = workshop.files("before")["program/FIRST.LS"], workshop.files("after")["program/FIRST.LS"]
+    assert after.count(b"J P[") > 1.6 * before.count(b"J P[") > 0
+
+
+def test_a_document_saved_where_the_workbench_is_not_installed(workshop, saved, script_of_another_freecad):
+    """A FreeCAD that does not know the workbench saves plain objects; they are stages again for us."""
+    assert workshop.run("export", saved, "-o", "before").status == 0
+    script_of_another_freecad(
+        f"document = FreeCAD.openDocument({str(saved)!r})",
+        "assert all(getattr(obj, 'Proxy', None) is None for obj in document.Objects)",
+        "next(obj for obj in document.Objects if 'LayerHeight' in obj.PropertiesList).LayerHeight = 4.0",
+        "document.recompute()",
+        "document.save()",
+    )
+    done = workshop.run("export", saved, "-o", "after")
+    assert done.status == 0, done.err
     before, after = workshop.files("before")["program/FIRST.LS"], workshop.files("after")["program/FIRST.LS"]
     assert after.count(b"J P[") > 1.6 * before.count(b"J P[") > 0
 
