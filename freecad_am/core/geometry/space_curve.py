@@ -142,13 +142,25 @@ class SpaceCurve:
         Newton from the nearest samples along the smooth piece that each lies on; the nearest of the places found.
         """
         tree, arcs, places = self._samples
-        found = tree.query(points, k=min(CANDIDATES, len(arcs)))[1].reshape(len(points), -1)
-        w = self.w[arcs[found]] + places[found] * self.span[arcs[found]]
-        low, high = (bound[arcs[found]] for bound in self._pieces)
+        count = min(CANDIDATES, len(arcs))
+        found = tree.query(points, k=count)[1].reshape(len(points), count)
+        start = self.w[arcs[found]] + places[found] * self.span[arcs[found]]
+        w = self.walked(np.broadcast_to(points[:, None], start.shape + (3,)), start)
+        foot = self.at(w)[0]
+        distance = np.linalg.norm(points[:, None] - foot, axis=-1)
+        best = np.argmin(distance, axis=1)
+        row = np.arange(len(points))
+        return distance[row, best], foot[row, best], self.wrapped(w[row, best])
+
+    def walked(self, points: Array, w: Array) -> Array:
+        """The parameters (...,) at which the walk downhill from w (...,) along its smooth piece comes nearest to points
+        (..., 3)."""
+        w = self.wrapped(w)
+        low, high = (bound[self.arcs(w)] for bound in self._pieces)
         farthest = self.period / 50.0
         for _ in range(STEPS):
             foot, slope, bend = self.at(w)
-            gap = points[:, None] - foot
+            gap = points - foot
             pace = dot(slope, slope)
             curvature = pace - dot(gap, bend)
             step = dot(gap, slope) / np.maximum(np.abs(curvature), 1e-4 * pace)  # always downhill
@@ -157,11 +169,7 @@ class SpaceCurve:
             w = new
             if still:
                 break
-        foot = self.at(w)[0]
-        distance = np.linalg.norm(points[:, None] - foot, axis=-1)
-        best = np.argmin(distance, axis=1)
-        row = np.arange(len(points))
-        return distance[row, best], foot[row, best], self.wrapped(w[row, best])
+        return w
 
     @cached_property
     def _pieces(self) -> tuple[Array, Array]:

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Triangle meshes of walls: level lines of a function of the vertices, chained."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..issues import InputError
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+class LevelLine(NamedTuple):
+    """A chain of points (n, 3), the lower side on its left. A closed one does not repeat its first point.
+
+    rims: unit vectors (2, 3) along the mesh's edges on which an open one begins and ends.
+    """
+
+    points: Array
+    closed: bool
+    rims: Array
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """vertices (n, 3) mm, faces (m, 3) with one sense of rotation all over the wall."""
+
+    vertices: Array
+    faces: Index
+
+    @cached_property
+    def edges(self) -> Index:
+        """All edges (k, 2), each once, the lower vertex first."""
+        pairs = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        edges: Index = np.unique(pairs, axis=0)
+        return edges
+
+    @cached_property
+    def longest_edge(self) -> float:
+        """Length of the longest edge, mm."""
+        a, b = self.vertices[self.edges].transpose(1, 0, 2)
+        return float(np.linalg.norm(a - b, axis=1).max())
+
+    @cached_property
+    def typical_edge(self) -> float:
+        """Median length of the edges, mm."""
+        a, b = self.vertices[self.edges].transpose(1, 0, 2)
+        return float(np.median(np.linalg.norm(a - b, axis=1)))
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """Search tree of the vertices."""
+        return cKDTree(self.vertices)
+
+    @cached_property
+    def _faces_of(self) -> tuple[Index, Index]:
+        """Faces sorted by vertex, and where those of each vertex begin."""
+        order = np.argsort(self.faces.ravel(), kind="stable")
+        counts = np.bincount(self.faces.ravel(), minlength=len(self.vertices))
+        return (order // 3).astype(np.intp), np.r_[0, np.cumsum(counts)].astype(np.intp)
+
+    def faces_at(self, vertices: Index) -> Index:
+        """The faces (k,) that touch the vertices."""
+        faces, begin = self._faces_of
+        count = begin[vertices + 1] - begin[vertices]
+        at = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(count.sum())
+        touched: Index = np.unique(faces[at])
+        return touched
+
+    def joined(self, faces: Index, members: Mask, seeds: Mask) -> Mask:
+        """The members (n,) that edges of the faces link to a seed through members alone; seeds count as members."""
+        band, corners = np.unique(self.faces[faces], return_inverse=True)
+        seeded = seeds[band]
+        inside = members[band] | seeded
+        pairs = corners.reshape(-1, 3)[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        pairs = pairs[inside[pairs].all(axis=1)]
+        links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(band), len(band)))
+        count, label = connected_components(links, directed=False)
+        linked = np.zeros(count, dtype=bool)
+        linked[label[seeded]] = True
+        found = seeds.copy()
+        found[band[inside & linked[label]]] = True
+        return found
+
+    def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
+        """The lines on the faces (k,) along which the values (n,) are zero, interpolated along edges.
+
+        InputError MESH where neighbouring faces turn opposite ways, so that lines have no sides.
+        """
+        corners = self.faces[faces]
+        low = values[corners] < 0.0
+        count = low.sum(axis=1)
+        mixed = (count == 1) | (count == 2)
+        corners, low, single = corners[mixed], low[mixed], (count == 1)[mixed]
+        if not len(corners):
+            return []
+        odd = np.argmax(low == single[:, None], axis=1)
+        row = np.arange(len(corners))
+        a, b, c = corners[row, odd], corners[row, (odd + 1) % 3], corners[row, (odd + 2) % 3]
+        ab, ac = np.sort(np.stack([a, b], 1), axis=1), np.sort(np.stack([a, c], 1), axis=1)
+        start, end = np.where(single[:, None], ab, ac), np.where(single[:, None], ac, ab)
+        edges, node = np.unique(np.vstack([start, end]), axis=0, return_inverse=True)
+        node = np.ravel(node)
+        following = np.full(len(edges), -1, dtype=np.intp)
+        following[node[: len(row)]] = node[len(row) :]
+        arrives = np.bincount(node[len(row) :], minlength=len(edges))
+        if np.bincount(node[: len(row)]).max() > 1 or arrives.max() > 1:
+            raise InputError("MESH", "wall", "faces of the wall's mesh turn opposite ways: orient the faces alike")
+        one, other = values[edges].T
+        t = np.clip(one / (one - other), 1e-6, 1.0 - 1e-6)[:, None]
+        points = (1.0 - t) * self.vertices[edges[:, 0]] + t * self.vertices[edges[:, 1]]
+        rims = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
+        rims /= np.linalg.norm(rims, axis=1, keepdims=True)
+        return [LevelLine(points[chain], closed, rims[chain[[0, -1]]]) for chain, closed in chains(following)]
+
+
+def chains(following: Index) -> list[tuple[Index, bool]]:
+    """The chains of a list of successors (n,), -1 for none: members in order, and whether the chain is closed.
+
+    By doubling: after k rounds each member knows how far its end is, up to 2^k.
+    """
+    n = len(following)
+    has = np.flatnonzero(following >= 0)
+    links = coo_matrix((np.ones(len(has)), (has, following[has])), shape=(n, n))
+    count, label = connected_components(links, directed=False)
+    open_ = np.zeros(count, dtype=bool)
+    open_[label[following < 0]] = True
+    first = np.full(count, n, dtype=np.intp)
+    np.minimum.at(first, label, np.arange(n))
+    jump = following.copy()
+    ring = np.flatnonzero(following >= 0)
+    opened = ring[~open_[label[ring]] & (following[ring] == first[label[ring]])]
+    jump[opened] = -1
+    rank = (jump >= 0).astype(np.intp)
+    while (jump >= 0).any():
+        on = np.flatnonzero(jump >= 0)
+        rank[on] += rank[jump[on]]
+        jump[on] = jump[jump[on]]
+    order = np.lexsort((-rank, label))
+    parts = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
+    return [(part, not open_[label[part[0]]]) for part in parts]

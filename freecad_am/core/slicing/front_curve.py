@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A front on a wall made exact: points brought onto the wall and to their distance, corners found, arcs refined."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.space_curve import SpaceCurve
+from ..geometry.surface import Surface, dot, normals
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+STEPS = 12
+ROUNDS = 12
+SETTLED = 1e-6  # of the height; points off by more have not found their place
+SAME_PLACE = 1e-5  # mm; of two nodes nearer than this one goes, and it is not the corner
+SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is no corner
+WITHIN = 1e-4  # mm; between the nodes, a tenth of what is promised
+SAME_FOOT = 1e-3  # of the height; branches whose nearest points lie closer than this are one
+
+
+class Wall(Protocol):
+    """An exact wall near which a mesh lies."""
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Nearest points of the wall and unit normals, (n, 3), the normals to one side all over."""
+
+
+class ParametricWall:
+    """A parametric surface as a wall."""
+
+    def __init__(self, surface: Surface) -> None:
+        self.surface = surface
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Nearest points and unit normals."""
+        u, v = self.surface.inverse(points)
+        return self.surface.point(u, v), normals(self.surface, u, v)
+
+
+class Feet(NamedTuple):
+    """Distances (n,) to the fronts below, unit vectors away from the nearest points (n, 3), and where these lie:
+    front (n,), parameter w (n,), point (n, 3)."""
+
+    distance: Array
+    away: Array
+    front: Index
+    w: Array
+    point: Array
+
+
+def feet(fronts: list[SpaceCurve], points: Array) -> Feet:
+    """The nearest of all places on the fronts for each point (n, 3)."""
+    found = [front.nearest(points) for front in fronts]
+    distances = np.stack([one[0] for one in found])
+    which = np.argmin(distances, axis=0)
+    row = np.arange(len(points))
+    foot = np.stack([one[1] for one in found])[which, row]
+    return _feet(points, foot, which, np.stack([one[2] for one in found])[which, row])
+
+
+def _feet(points: Array, foot: Array, front: Index, w: Array) -> Feet:
+    gap = points - foot
+    distance = np.linalg.norm(gap, axis=1)
+    return Feet(distance, gap / np.maximum(distance, 1e-300)[:, None], front, w, foot)
+
+
+def exact(
+    wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array
+) -> SpaceCurve | None:
+    """The front at `height` mm from the fronts below that runs near the chain of points (n, 3).
+
+    A closed chain does not repeat its first point; the curve does. Nodes lie on the wall and at the height to rounding,
+    arcs to WITHIN; corners are nodes. The ends of an open front move along the wall's edge, whose directions there are
+    the unit vectors rims (2, 3). None where hardly a point of the chain finds its distance: between fronts that meet.
+    """
+    start = points
+    points, normal, below = _settled(wall, fronts, height, points, None if closed else rims)
+    far = 2.0 * np.median(np.linalg.norm(np.diff(start, axis=0), axis=1))
+    sound = (np.abs(below.distance - height) < SETTLED * height) & (np.linalg.norm(points - start, axis=1) < 4.0 * far)
+    if sound.sum() < (4 if closed else 2):
+        return None
+    points, normal = points[sound], normal[sound]
+    below = _those(below, sound)
+    tangent = np.cross(normal, below.away)
+    chord = np.diff(np.vstack([points, points[:1]]), axis=0)[: len(points) if closed else -1]
+    side = 1.0 if dot(tangent[: len(chord)], chord).sum() >= 0.0 else -1.0
+    out = into = side * _unit(tangent)
+    nodes = _Nodes(points, into, out, below)
+    for _ in range(ROUNDS):
+        nodes = _forward(nodes, closed)
+        curve = _curve(nodes, closed)
+        middle = curve.at(curve.w[:-1] + 0.5 * curve.span)[0]
+        on_wall = wall.project(middle)[0]
+        off = np.maximum(np.abs(feet(fronts, on_wall).distance - height), np.linalg.norm(on_wall - middle, axis=1))
+        bad = np.flatnonzero((off > WITHIN) & (curve.span > 1e-6 * curve.period))
+        if not len(bad):
+            break
+        corner = _corners(wall, fronts, height, nodes, bad, side)
+        rest = bad[~np.isin(bad, corner[0])]
+        spot, spot_normal, spot_below = _settled(wall, fronts, height, on_wall[rest], None)
+        sound = np.abs(spot_below.distance - height) < SETTLED * height
+        rest, spot, spot_normal = rest[sound], spot[sound], spot_normal[sound]
+        spot_below = _those(spot_below, sound)
+        along = side * _unit(np.cross(spot_normal, spot_below.away))
+        nodes = _inserted(nodes, [corner, (rest, _Nodes(spot, along, along, spot_below))])
+    return curve
+
+
+class _Nodes(NamedTuple):
+    points: Array
+    into: Array
+    out: Array
+    below: Feet
+
+
+def _settled(
+    wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, rims: Array | None
+) -> tuple[Array, Array, Feet]:
+    """Points moved within the wall, straight away from the front below, until their distance is the height; the ends of
+    an open chain along the rims."""
+    points, normal = wall.project(points)
+    for _ in range(STEPS):
+        below = feet(fronts, points)
+        slope = below.away - dot(below.away, normal)[:, None] * normal
+        error = height - below.distance
+        if np.abs(error).max(initial=0.0) < 1e-11 * height:
+            break
+        step = (error / np.maximum(dot(slope, slope), 0.05))[:, None] * slope
+        if rims is not None:
+            pace = dot(below.away[[0, -1]], rims)
+            least = np.where(pace < 0.0, -0.1, 0.1)
+            step[[0, -1]] = (error[[0, -1]] / np.where(np.abs(pace) < 0.1, least, pace))[:, None] * rims
+        points, normal = wall.project(points + step)
+    return points, normal, feet(fronts, points)
+
+
+def _corners(
+    wall: Wall, fronts: list[SpaceCurve], height: float, nodes: _Nodes, arcs: Index, side: float
+) -> tuple[Index, _Nodes]:
+    """Corners on those of the arcs (k,) whose ends belong to two branches: the arcs that have one, and the corners."""
+    n = len(nodes.points)
+    ends = [arcs, (arcs + 1) % n]
+    start = [nodes.below.w[end] for end in ends]
+    front = [nodes.below.front[end] for end in ends]
+    span = np.linalg.norm(nodes.points[ends[1]] - nodes.points[ends[0]], axis=1)
+    middle = 0.5 * (nodes.points[ends[0]] + nodes.points[ends[1]])
+    longest = np.maximum(span, 0.3 * height)
+    point, normal = wall.project(middle)
+    for _ in range(STEPS * 2):
+        both = [_walked(fronts, point, front[k], start[k]) for k in (0, 1)]
+        slopes = [one.away - dot(one.away, normal)[:, None] * normal for one in both]
+        a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
+        p, q = (height - one.distance for one in both)
+        determinant = a * c - b * b
+        sharp = determinant > 1e-9
+        safe = np.where(sharp, determinant, 1.0)
+        step = ((c * p - b * q) / safe)[:, None] * slopes[0] + ((a * q - b * p) / safe)[:, None] * slopes[1]
+        length = np.linalg.norm(step, axis=1)
+        step *= (np.where(sharp, 1.0, 0.0) * np.minimum(1.0, longest / np.maximum(length, 1e-300)))[:, None]
+        point, normal = wall.project(point + step)
+        start = [one.w for one in both]
+        if np.abs(step).max(initial=0.0) < 1e-12:
+            break
+    both = [_walked(fronts, point, front[k], start[k]) for k in (0, 1)]
+    apart = np.linalg.norm(both[0].point - both[1].point, axis=1)
+    right = apart > SAME_FOOT * height
+    for one in both:
+        right &= np.abs(one.distance - height) < 1e-8
+    right &= np.linalg.norm(point - middle, axis=1) < np.maximum(1.5 * span, 4.0 * height)
+    for end in ends:  # one of the ends may be that corner already
+        known = dot(nodes.into[end], nodes.out[end]) < SMOOTH
+        right &= ~known | (np.linalg.norm(point - nodes.points[end], axis=1) > SAME_PLACE)
+    right[right] = np.abs(feet(fronts, point[right]).distance - height) < 1e-7
+    into, out = (side * _unit(np.cross(normal, one.away)) for one in both)
+    return arcs[right], _Nodes(point[right], into[right], out[right], _those(both[0], right))
+
+
+def _walked(fronts: list[SpaceCurve], points: Array, front: Index, w: Array) -> Feet:
+    """The nearest points on the branches that the places (front, w) lie on."""
+    new, foot = w.copy(), np.empty_like(points)
+    for k in np.unique(front):
+        one = front == k
+        new[one] = fronts[k].walked(points[one], w[one])
+        foot[one] = fronts[k].at(new[one])[0]
+    return _feet(points, foot, front, new)
+
+
+def _inserted(nodes: _Nodes, more: list[tuple[Index, _Nodes]]) -> _Nodes:
+    """The nodes with others behind the nodes that begin the arcs named."""
+    key = np.concatenate([np.arange(len(nodes.points))] + [arcs + 0.5 for arcs, _ in more])
+    order = np.argsort(key, kind="stable")
+    all_ = [nodes, *(one for _, one in more)]
+    points, into, out = (np.concatenate([one[k] for one in all_])[order] for k in range(3))
+    below = Feet(*(np.concatenate(parts)[order] for parts in zip(*(one.below for one in all_))))
+    return _Nodes(points, into, out, below)
+
+
+def _forward(nodes: _Nodes, closed: bool) -> _Nodes:
+    """Without the nodes that lie behind their predecessor or on it: next to corners points may settle in a tangle."""
+    while True:
+        n = len(nodes.points)
+        chord = np.roll(nodes.points, -1, axis=0) - nodes.points
+        length = np.linalg.norm(chord, axis=1)
+        turned = (dot(chord, nodes.out) <= 0.0) | (dot(chord, np.roll(nodes.into, -1, axis=0)) <= 0.0)
+        alike = dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5  # else a corner is still to be found between them
+        bad = (turned & alike) | (length < SAME_PLACE)
+        if not closed:
+            bad[-1] = False
+        corner = dot(nodes.into, nodes.out) < SMOOTH
+        drop = np.zeros(n, dtype=bool)
+        at = np.flatnonzero(bad)
+        after = (at + 1) % n
+        # of the two ends of an arc that runs backwards a corner stays, and the ends of an open front stay
+        kept = corner[after] | ((after == n - 1) & (not closed))
+        loser = np.where(kept, at, after)
+        drop[loser[~(corner[loser])]] = True
+        if not closed:
+            drop[[0, -1]] = False
+        if not drop.any() or n - drop.sum() < 4:
+            return nodes
+        nodes = _Nodes(nodes.points[~drop], nodes.into[~drop], nodes.out[~drop], _those(nodes.below, ~drop))
+
+
+def _those(below: Feet, which: NDArray[np.bool_]) -> Feet:
+    return Feet(below.distance[which], below.away[which], below.front[which], below.w[which], below.point[which])
+
+
+def _curve(nodes: _Nodes, closed: bool) -> SpaceCurve:
+    points, into, out = nodes[:3]
+    if closed:
+        points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
+    w = np.r_[0.0, np.cumsum(np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-12))]
+    return SpaceCurve(w, points, into, out, closed)
+
+
+def _unit(vectors: Array) -> Array:
+    unit: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
+    return unit
