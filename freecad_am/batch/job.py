@@ -15,12 +15,12 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
 
 from . import fields, quantity, tree
 
-STRATEGIES: dict[str, type] = {"revolution": RevolutionParameters}
-PLANNED_STRATEGIES = ("surface", "developable")  # names the interface promises; refused until they exist
+STRATEGIES: dict[str, type] = {"revolution": RevolutionParameters, "surface": SurfaceParameters}
+PLANNED_STRATEGIES = ("developable",)  # names the interface promises; refused until they exist
 PLANNED_SETUPS = ("rotary-table", "tool-on-robot+positioner")
 SECTIONS = (
     "version", "name", "part", "substrate", "strategy", "build_direction", "cell", "joints", "process", "program",
@@ -41,12 +41,14 @@ class PartSource:
 
 @dataclass(frozen=True)
 class Job:
-    """A checked job. `cell` or `program` None: the stages that need them are left out."""
+    """A checked job. `substrate` is there for SurfaceParameters alone. `cell` or `program` None: the stages that need
+    them are left out."""
 
     path: str
     name: str
     part: PartSource
-    strategy: RevolutionParameters
+    substrate: PartSource | None
+    strategy: RevolutionParameters | SurfaceParameters
     build_direction: BuildDirectionParameters
     joints: JointParameters
     process: ProcessParameters
@@ -79,21 +81,20 @@ def _checked(job: tree.Tree, path: str) -> Job:
     version = values.get("version", 1)
     if version != 1 or isinstance(version, bool):
         raise InputError("BAD_VERSION", "version", f"{quantity.shown(version)} is not understood; this program reads 1")
-    if values.get("substrate") is not None:
-        raise InputError("NOT_YET", "substrate", "growing on an existing part is not supported yet; leave substrate out")
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
+    strategy = _strategy(values.get("strategy") or {})
     process = fields.build(ProcessParameters, values.get("process") or {}, "process")
     if process.bead_model != "none":
         raise _not_yet("process.bead_model", process.bead_model, "none")
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
-    if build_direction.mode == "symmetry-plane":
-        raise _not_yet("build_direction.mode", build_direction.mode, "local, layer or fixed")
+    _refuse_direction(strategy, build_direction)
     return Job(
         path=path,
         name=_name(values.get("name"), path),
         part=_part(fields.mapping(values["part"], "part"), path),
-        strategy=_strategy(values.get("strategy") or {}),
+        substrate=_substrate(values.get("substrate"), strategy, path),
+        strategy=strategy,
         build_direction=build_direction,
         joints=_joints(values.get("joints") or {}),
         process=process,
@@ -121,52 +122,84 @@ def _name(value: Any, path: str) -> str:
     return name
 
 
-def _part(section: dict[str, Any], path: str) -> PartSource:
-    fields.known_keys(section, ("file", "object", "faces", "set"), "part")
+def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
+    if isinstance(strategy, SurfaceParameters):
+        if strategy.spacing == "smooth":
+            raise _not_yet("strategy.spacing", strategy.spacing, "constant-distance or iso-parameter")
+        if build_direction.clearance != "none":
+            raise InputError(
+                "NOT_YET", "build_direction.clearance", "the nozzle is not yet kept clear of substrate and deposit for "
+                "strategy surface; write clearance: none, and look at the report",
+            )
+    elif build_direction.mode == "symmetry-plane":
+        raise InputError(
+            "NOT_FOR_FAMILY", "build_direction.mode",
+            "symmetry-plane is not for parts of revolution; use local, layer or fixed",
+        )
+
+
+def _substrate(section: Any, strategy: Any, path: str) -> PartSource | None:
+    if isinstance(strategy, SurfaceParameters):
+        if section is None:
+            raise InputError(
+                "NO_SUBSTRATE", "substrate", "a wall of the kind surface grows on an existing part; write substrate: {file: "
+                "pipe.step}",
+            )
+        found = _part(fields.mapping(section, "substrate"), path, "substrate")
+        if found.faces:
+            raise _not_yet("substrate.faces", ", ".join(found.faces), "the whole solid")
+        return found
+    if section is not None:
+        raise InputError("NOT_FOR_FAMILY", "substrate", "only strategy.kind surface grows on a substrate; leave it out")
+    return None
+
+
+def _part(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
+    fields.known_keys(section, ("file", "object", "faces", "set"), key)
     if "file" not in section:
-        raise InputError("NO_PART", "part.file", "there is no file; write part: {file: shape.step}")
-    file = absolute(fields.text(section["file"], "part.file"), path)
+        raise InputError("NO_PART", f"{key}.file", f"there is no file; write {key}: {{file: shape.step}}")
+    file = absolute(fields.text(section["file"], f"{key}.file"), path)
     is_document = file.lower().endswith(".fcstd")
-    for key in ("object", "set"):
-        if section.get(key) is not None and not is_document:
+    for entry in ("object", "set"):
+        if section.get(entry) is not None and not is_document:
             message = f"only an FCStd part has objects, {os.path.basename(file)} has none"
-            raise InputError("BAD_VALUE", f"part.{key}", message)
+            raise InputError("BAD_VALUE", f"{key}.{entry}", message)
     if not os.path.isfile(file):
-        raise InputError("NO_FILE", "part.file", f"there is no file {file}; paths are relative to the job file")
+        raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
     name = section.get("object")
     return PartSource(
         file=file,
-        object=None if name is None else fields.text(name, "part.object"),
-        faces=_faces(section.get("faces")),
-        settings=tuple(_settings(section.get("set") or {})),
+        object=None if name is None else fields.text(name, f"{key}.object"),
+        faces=_faces(section.get("faces"), key),
+        settings=tuple(_settings(section.get("set") or {}, key)),
     )
 
 
-def _faces(value: Any) -> tuple[str, ...]:
+def _faces(value: Any, key: str) -> tuple[str, ...]:
     faces = [value] if isinstance(value, str) else value or []
     if not isinstance(faces, list) or not all(isinstance(face, str) and _FACE.fullmatch(face) for face in faces):
-        raise InputError("BAD_VALUE", "part.faces", f"{quantity.shown(value)} names no faces; write [Face1, Face2]")
+        raise InputError("BAD_VALUE", f"{key}.faces", f"{quantity.shown(value)} names no faces; write [Face1, Face2]")
     return tuple(faces)
 
 
-def _settings(section: Any) -> list[tuple[str, str, str]]:
+def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
     settings = []
-    for name, properties in fields.mapping(section, "part.set").items():
-        for key, value in fields.mapping(properties, f"part.set.{name}").items():
+    for name, properties in fields.mapping(section, f"{part}.set").items():
+        for key, value in fields.mapping(properties, f"{part}.set.{name}").items():
             if isinstance(value, (dict, list)) or value is None:
-                raise InputError("BAD_VALUE", f"part.set.{name}.{key}", "give one value such as 45 mm")
+                raise InputError("BAD_VALUE", f"{part}.set.{name}.{key}", "give one value such as 45 mm")
             settings.append((name, key, quantity.shown(value) if isinstance(value, bool) else str(value)))
     return settings
 
 
-def _strategy(section: Any) -> RevolutionParameters:
+def _strategy(section: Any) -> RevolutionParameters | SurfaceParameters:
     kind = fields.mapping(section, "strategy").get("kind", "revolution")
     if kind in PLANNED_STRATEGIES:
-        raise _not_yet("strategy.kind", kind, "revolution")
+        raise _not_yet("strategy.kind", kind, "revolution or surface")
     if not isinstance(kind, str) or kind not in STRATEGIES:
         raise f.unknown_choice("strategy.kind", kind, (*STRATEGIES, *PLANNED_STRATEGIES))
-    parameters: RevolutionParameters = fields.build(STRATEGIES[kind], section, "strategy", also=("kind",))
-    return parameters
+    factory: type[RevolutionParameters] | type[SurfaceParameters] = STRATEGIES[kind]
+    return fields.build(factory, section, "strategy", also=("kind",))
 
 
 def _joints(section: Any) -> JointParameters:

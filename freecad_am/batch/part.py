@@ -15,17 +15,20 @@ from freecad_am.core.issues import InputError
 from .job import PartSource
 
 
-def bring(document: Any, part: PartSource) -> Any:
-    """The part as an object of the document. Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE."""
+def bring(document: Any, part: PartSource, key: str = "part") -> Any:
+    """The part, or what else the job's section `key` names, as an object of the document.
+
+    Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
+    """
     if not part.settings:
         return api.open_part(document, part.file, part.object or "")
     with tempfile.TemporaryDirectory() as folder:
         changed = os.path.join(folder, os.path.basename(part.file))
-        _save_changed(part, changed)
+        _save_changed(part, changed, key)
         return api.open_part(document, changed, part.object or "")
 
 
-def _save_changed(part: PartSource, path: str) -> None:
+def _save_changed(part: PartSource, path: str, section: str) -> None:
     active = App.ActiveDocument
     try:
         source = App.openDocument(part.file, True)
@@ -33,11 +36,12 @@ def _save_changed(part: PartSource, path: str) -> None:
         raise InputError("BAD_FILE", part.file, "it cannot be read as a FreeCAD document; save it again") from None
     try:
         for name, key, text in part.settings:
-            _set(source, name, key, text)
+            _set(source, name, key, text, section)
         source.recompute()
         invalid = [obj.Label for obj in source.Objects if "Invalid" in obj.State]
         if invalid:
-            raise InputError("BAD_PART", "part.set", f"with these values {', '.join(invalid)} cannot be built; change them")
+            names = ", ".join(invalid)
+            raise InputError("BAD_PART", f"{section}.set", f"with these values {names} cannot be built; change them")
         source.saveAs(path)
     finally:
         App.closeDocument(source.Name)
@@ -45,8 +49,8 @@ def _save_changed(part: PartSource, path: str) -> None:
             App.setActiveDocument(active.Name)
 
 
-def _set(document: Any, name: str, key: str, text: str) -> None:
-    place = f"part.set.{name}.{key}"
+def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
+    place = f"{section}.set.{name}.{key}"
     name, constraints, _ = name.partition(".Constraints")
     found = [obj for obj in document.Objects if obj.Name == name] or document.getObjectsByLabel(name)
     if len(found) != 1:

@@ -126,14 +126,20 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     stages = Stages(document)
     with stages.timed("part", session):
         part = bring(document, job.part)
+        substrate = None if job.substrate is None else bring(document, job.substrate, "substrate")
     cell = None
     if job.cell is not None:
         with stages.timed("cell", session):
             cell = api.make_cell(document, parameters=job.cell)
     with stages.timed("feature", session):
-        feature = api.make_feature(
-            document, part, job.part.faces, strategy=job.strategy, build_direction=job.build_direction
-        )
+        if substrate is None:
+            feature = api.make_feature(
+                document, part, job.part.faces, strategy=job.strategy, build_direction=job.build_direction
+            )
+        else:
+            feature = api.make_surface_feature(
+                document, part, job.part.faces, substrate, strategy=job.strategy, build_direction=job.build_direction
+            )
     stages.issues += api.issues(feature)
     with stages.timed("toolpath", session):
         stages.toolpath = api.make_toolpath(document, feature, cell, process=job.process)

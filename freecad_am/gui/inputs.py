@@ -119,6 +119,20 @@ class ShapeChoice(Input):
         return {"source": recorded.reference(obj), "faces": repr([name for name in names if name])}
 
 
+class ObjectChoice(ShapeChoice):
+    """A whole object with a shape: what is selected, renewed by a button."""
+
+    def __init__(self, link: Link, present: Any) -> None:
+        super().__init__(link, None if present is None else (present, []), take_now=False)
+
+    @property
+    def missing(self) -> str:
+        return "" if self.present is not None else f"Select the {self.link.key} and press its Use selection."
+
+    def arguments(self) -> dict[str, str]:
+        return {self.link.key: "None" if self.present is None else recorded.reference(self.present[0])}
+
+
 class NameChoice(Input):
     """The name of a program."""
 
@@ -140,6 +154,8 @@ def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
         present = None if obj is None else getattr(obj, link.name)
         if link.kind:
             found.append(StageChoice(link, present))
+        elif link.type_name == "App::PropertyLink":
+            found.append(ObjectChoice(link, present))
         else:
             found.append(ShapeChoice(link, present, take_now=link.required))
     return found

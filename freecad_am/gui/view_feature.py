@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The feature in the 3D view: meridian and axis."""
+"""The feature in the 3D view: meridian and axis, or the first layer of a wall on a substrate."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from ..core.geometry.surface_wall import SurfaceWall
 from .lines import DASHED, Lines
 from .view_base import StageView
 
 
 class FeatureView(StageView):
-    """Draws the meridian at the start of the turn, and the axis."""
+    """Draws the meridian at the start of the turn, and the axis; of a wall on a substrate the first layer."""
 
     icon = "feature"
 
@@ -23,6 +24,10 @@ class FeatureView(StageView):
         root.addChild(self.axis.node)
 
     def draw(self, obj: Any, value: Any) -> None:
+        if isinstance(value, SurfaceWall):
+            self.meridian.set(np.concatenate([value.first, value.first[:1]]), [len(value.first) + 1])
+            self.axis.set(np.zeros((0, 3)), [])
+            return
         radius, height = value.meridian.points.T
         points = value.points(radius, height, np.full(len(radius), value.start))
         low, high = float(height.min()), float(height.max())

@@ -39,13 +39,13 @@ class RevolutionFeature(Stage):
         self.linked(obj)
         strategy = self.parameters(obj, RevolutionParameters)
         self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
-        source, faces = _source(obj)
+        source, faces = source_of(obj)
         wall = find_wall(global_shape(source), faces, strategy.wall, axis_of(obj), source.Label)
         figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
         return Outcome(wall, wall.issues, figures)
 
     def further_inputs(self, obj: Any) -> list[str]:
-        source, faces = _source(obj)
+        source, faces = source_of(obj)
         axis = axis_of(obj)
         return [shape_fingerprint(global_shape(source)), " ".join(faces), "" if axis is None else _digits(*axis)]
 
@@ -110,7 +110,8 @@ def _digits(*vectors: Any) -> str:
     return " ".join(f"{round(number, 6) + 0.0:.6f}" for vector in vectors for number in vector)
 
 
-def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
+def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
+    """The object of a feature's Source and the names of the faces chosen. InputError 'NO_INPUT', 'BAD_FACES'."""
     if not obj.Source:
         raise InputError("NO_INPUT", obj.Label, "Source is missing; choose the shape to deposit, or some of its faces")
     source, names = obj.Source

@@ -10,9 +10,10 @@ import numpy as np
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import NozzleParameters
 from ..core.parameters.process import ProcessParameters
-from ..core.parameters.strategy import RevolutionParameters
-from ..core.strategies import revolution
+from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
+from ..core.strategies import revolution, surface
 from .stage import Link, Outcome, Section, Stage, stage_of
+from .surface_feature import SurfaceFeature
 
 
 class Toolpath(Stage):
@@ -37,15 +38,17 @@ class Toolpath(Stage):
         shape = stage_of(feature)
         assert shape is not None
         carried = None if cell is None else cell.Proxy.value(cell)
-        toolpath = revolution.plan(
-            shape.value(feature),
-            shape.parameters(feature, RevolutionParameters),
-            shape.parameters(feature, BuildDirectionParameters),
-            self.parameters(obj, ProcessParameters),
-            NozzleParameters() if carried is None else carried.nozzle,
-            0.0 if carried is None else carried.platform_diameter,
-            np.eye(4) if carried is not None and carried.mount == "part" else None,
-        )
+        build = shape.parameters(feature, BuildDirectionParameters)
+        process = self.parameters(obj, ProcessParameters)
+        if isinstance(shape, SurfaceFeature):
+            toolpath = surface.plan(shape.value(feature), shape.parameters(feature, SurfaceParameters), build, process)
+        else:
+            toolpath = revolution.plan(
+                shape.value(feature), shape.parameters(feature, RevolutionParameters), build, process,
+                NozzleParameters() if carried is None else carried.nozzle,
+                0.0 if carried is None else carried.platform_diameter,
+                np.eye(4) if carried is not None and carried.mount == "part" else None,
+            )
         figures = (
             ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
             ("Length", toolpath.length),

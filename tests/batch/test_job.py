@@ -15,7 +15,7 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
 
 # every key of the public interface with the value it has when it is left out
 WHOLE = """\
@@ -155,11 +155,10 @@ LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key
         ("layer_height: 1 mm", "layer_height: 1:30", "BAD_UNIT", "strategy.layer_height", "1:30"),
         ("layer_height: 1 mm", "layer_height: [1 mm]", "BAD_VALUE", "strategy.layer_height", "list"),
         ("layer_height: 1 mm", "layer_height: 1 mm\n  layer_height: 2", "DUPLICATE_KEY", "strategy.layer_height", "8 and 9"),
-        ("kind: revolution", "kind: surface", "NOT_YET", "strategy.kind", "not supported yet"),
         ("kind: revolution", "kind: developable", "NOT_YET", "strategy.kind", "not supported yet"),
         ("kind: revolution", "kind: torus", "BAD_VALUE", "strategy.kind", "revolution, surface, developable"),
         ("setup: part-on-robot", "setup: rotary-table", "NOT_YET", "cell.setup", "part-on-robot"),
-        ("mode: local", "mode: symmetry-plane", "NOT_YET", "build_direction.mode", "local"),
+        ("mode: local", "mode: symmetry-plane", "NOT_FOR_FAMILY", "build_direction.mode", "local"),
         ("setup: part-on-robot", "setup: part_on_robot", "BAD_VALUE", "cell.setup", "did you mean part-on-robot"),
         ("[front, up, flip]", "[front, flip]", "BAD_VALUE", "cell.branch", "up|down"),
         ("653.167, 0, 0, 0]", "653.167]", "BAD_VALUE", "cell.deposition_point", "six"),
@@ -179,7 +178,7 @@ LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key
         ("file: part.step", "file: part.step\n  object: Revolve", "BAD_VALUE", "part.object", "FCStd"),
         ("faces: [Face1, Face2]", "faces: [Edge1]", "BAD_VALUE", "part.faces", "Face1"),
         ("post: fanuc", "post: !!python/name:os.system fanuc", "BAD_VALUE", "program.post", "tag"),
-        ("strategy:\n", "substrate: {file: part.step}\nstrategy:\n", "NOT_YET", "substrate", "leave substrate out"),
+        ("strategy:\n", "substrate: {file: part.step}\nstrategy:\n", "NOT_FOR_FAMILY", "substrate", "leave it out"),
     ],
 )
 def test_refusals_name_file_key_line_and_remedy(read, old, new, code, where, says):
@@ -238,3 +237,44 @@ def test_the_examples_are_valid_and_are_those_of_the_paper(root, name):
     assert job.cell.deposition_point == (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0)
     assert job.cell.branch == ("front", "up", "flip")
     assert job.joints.compare == ("constant", "point-by-point")
+
+
+SURFACE = """\
+part: {file: part.step}
+substrate: {file: part.step}
+strategy:
+  kind: surface
+  layer_height: 5 mm
+  band: 10 %
+  end: whole
+build_direction: {mode: symmetry-plane, clearance: none}
+"""
+
+
+def test_a_wall_on_a_substrate(read):
+    job = read(SURFACE)
+    assert job.strategy == SurfaceParameters(layer_height=5.0, band=0.1, end="whole")
+    assert job.substrate.file == job.part.file
+    assert read("part: {file: part.step}\n").substrate is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "where", "says"),
+    [
+        ("substrate: {file: part.step}\n", "", "NO_SUBSTRATE", "substrate", "pipe.step"),
+        ("substrate: {file: part.step}", "substrate: {file: none.step}", "NO_FILE", "substrate.file", "none.step"),
+        ("{file: part.step}\nstrategy", "{file: part.step, faces: [Face1]}\nstrategy", "NOT_YET", "substrate.faces", "whole"),
+        ("substrate: {file: part.step}", "substrate: {object: A}", "NO_PART", "substrate.file", "write substrate"),
+        ("clearance: none", "clearance: nozzle", "NOT_YET", "build_direction.clearance", "none"),
+        (", clearance: none", "", "NOT_YET", "build_direction.clearance", "none"),
+        ("end: whole", "spacing: smooth", "NOT_YET", "strategy.spacing", "constant-distance"),
+        ("end: whole", "wall: outer", "UNKNOWN_KEY", "strategy.wall", "band"),
+        ("band: 10 %", "band: 110 %", "BAD_VALUE", "strategy.band", "100 %"),
+        ("end: whole", "tolerance: 0 mm", "BAD_VALUE", "strategy.tolerance", "1e-06 mm"),
+    ],
+)
+def test_refusals_of_walls_on_a_substrate(read, old, new, code, where, says):
+    assert old in SURFACE
+    error = refused(read, SURFACE.replace(old, new, 1))
+    assert (error.code, says in error.message) == (code, True), error
+    assert where in error.where
