@@ -49,6 +49,7 @@ def run(words):
         sys.dont_write_bytecode = True
     from freecad_am.batch import host
 
+    host.provide_home()
     missing = host.missing_modules()
     if missing:
         return hand_over(missing, words)

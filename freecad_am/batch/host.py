@@ -7,6 +7,7 @@ import glob
 import importlib.util
 import os
 import sys
+import tempfile
 
 LIBRARY_FOLDERS = (
     "/usr/lib/freecad-python3/lib",
@@ -45,6 +46,15 @@ def _add_shims(folder: str) -> None:
         for path in (entry.rstrip("/") for entry in extra):
             if os.path.isdir(path) and path not in sys.path:
                 sys.path.append(path)
+
+
+def provide_home() -> None:
+    """Where the home folder is closed to this user (sudo keeps that of root), give FreeCAD another: it would abort."""
+    home = os.path.expanduser("~")
+    if os.path.isdir(home) and not os.access(home, os.R_OK | os.W_OK | os.X_OK):
+        folder = os.path.join(tempfile.gettempdir(), f"freecad-am-{os.getuid()}")
+        os.makedirs(folder, mode=0o700, exist_ok=True)
+        os.environ.setdefault("FREECAD_USER_HOME", folder)
 
 
 def missing_modules() -> list[str]:
