@@ -60,9 +60,9 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> None:
     try:
         if constraints:
             obj.setDatum(key, App.Units.Quantity(text))
+        elif key not in obj.PropertiesList:
+            raise AttributeError(key)
         elif obj.TypeId == "Spreadsheet::Sheet":
-            if key not in obj.PropertiesList:
-                raise AttributeError(key)
             obj.set(obj.getCellFromAlias(key) or key, text)
         else:
             obj.setExpression(key, None)  # a value that is set is meant, whatever it was computed from

@@ -82,7 +82,7 @@ def test_sets_properties_of_a_document(workshop):
     assert [int(row["layers"]) for row in rows] == [8, 16, 12]
     assert (workshop.folder / "model.FCStd").read_bytes() == before
     for column, cell, says in (
-        ("part.set.Bowl.Radius", "20 mm", "Bowl"), ("part.set.Ball.Size", "20 mm", "Size"),
+        ("part.set.Bowl.Radius", "20 mm", "Bowl"), ("part.set.Ball.Size", "20 mm", "no property 'Size'"),
         (SPHERE, "20 s", "does not fit"), (SPHERE, "-5 mm", "Ball"), ("part.set.Ball", "1", "object"),
     ):
         (workshop.folder / "bad.csv").write_text(f"{column}\n{cell}\n")
