@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writes the three parts of the paper as STEP files beside this script (Chalvin 2020, eqs. 20 to 22).
+"""Writes the parts of the papers as STEP files beside this script (Chalvin 2020, eqs. 20 to 22; Chalvin 2019, eq. 1).
 
-Each is a surface, so that the wall deposited has exactly the radius of the equation. Curves are exact: circles and
+Each wall is a surface, so that the wall deposited has exactly the radius of the equation. Curves are exact: circles and
 parabolas. Run it in any Python that finds FreeCAD: python3 resources/examples/make_examples.py
 """
 
@@ -25,6 +25,7 @@ from FreeCAD import Vector  # noqa: E402  (before Part, which crashes without)
 import Part  # isort: skip  # noqa: E402
 
 R0 = 45.0  # mm
+BEND, TUBE, PIPE = 60.0, 15.0, 32.0  # mm; bend radius and radius of the tube, radius of the pipe below
 
 
 def hemisphere() -> Any:
@@ -54,6 +55,20 @@ def intake_funnel() -> Any:
     """Eq. 22: x = 2 R0 - sqrt(R0^2 - z^2), z in [0, R0]."""
     circle = Part.Circle(Vector(2.0 * R0, 0, 0), Vector(0, -1, 0), R0)
     return _turned([_between(circle, Vector(R0, 0, 0), Vector(2.0 * R0, 0, R0))])
+
+
+def tube_on_pipe() -> Any:
+    """Chalvin 2019, eq. 1: a quarter of a torus that starts on the axis of the pipe and bends towards -X."""
+    torus = Part.Toroid()
+    torus.MajorRadius, torus.MinorRadius = BEND, TUBE
+    torus.Center, torus.Axis = Vector(-BEND, 0, 0), Vector(0, -1, 0)
+    return torus.toShape(0.0, math.pi / 2.0, 0.0, 2.0 * math.pi)
+
+
+def pipe() -> Any:
+    """The pipe it grows on, about Y, with a wall of 3 mm."""
+    outer, inner = (Part.makeCylinder(radius, 120.0, Vector(0, -60, 0), Vector(0, 1, 0)) for radius in (PIPE, PIPE - 3.0))
+    return outer.cut(inner)
 
 
 def _parabola(rho: float, theta: float) -> Any:
@@ -87,5 +102,5 @@ def write(name: str, shape: Any) -> None:
     path.write_text(text)
 
 
-for part in (hemisphere, laval_nozzle, intake_funnel):
+for part in (hemisphere, laval_nozzle, intake_funnel, tube_on_pipe, pipe):
     write(part.__name__.replace("_", "-"), part())

@@ -263,7 +263,7 @@ def test_a_wall_on_a_substrate(read):
     [
         ("substrate: {file: part.step}\n", "", "NO_SUBSTRATE", "substrate", "pipe.step"),
         ("substrate: {file: part.step}", "substrate: {file: none.step}", "NO_FILE", "substrate.file", "none.step"),
-        ("{file: part.step}\nstrategy", "{file: part.step, faces: [Face1]}\nstrategy", "NOT_YET", "substrate.faces", "whole"),
+        ("step}\nstrategy", "step, faces: [Face1]}\nstrategy", "NOT_YET", "substrate.faces", "whole"),
         ("substrate: {file: part.step}", "substrate: {object: A}", "NO_PART", "substrate.file", "write substrate"),
         ("clearance: none", "clearance: nozzle", "NOT_YET", "build_direction.clearance", "none"),
         (", clearance: none", "", "NOT_YET", "build_direction.clearance", "none"),

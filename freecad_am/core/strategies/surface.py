@@ -45,8 +45,7 @@ def plan(
     stretches, notes = _stretches(wall, surface, curves, strategy)
     layers, found = _layers(wall, surface, stretches, strategy, build, process)
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*wall.issues, *issues, *notes, *found),
-        process.overlap, "surface",
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface"
     )
 
 
