@@ -33,7 +33,8 @@ def script_of_another_freecad(tmp_path):
     """run(*lines): the lines run in a new process that finds FreeCAD but not this package."""
     def run(*lines):
         path = tmp_path / "script.py"
-        path.write_text("\n".join([f"import sys; sys.path.append({os.path.dirname(FreeCAD.__file__)!r})", "import FreeCAD", *lines]))
+        found = f"import sys; sys.path.append({os.path.dirname(FreeCAD.__file__)!r})"
+        path.write_text("\n".join([found, "import FreeCAD", *lines]))
         done = subprocess.run([sys.executable, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .joint_path import BeadPath
 from .points import TURN
+from .straight import curve_points
 from .task import Task
 
 Array = NDArray[np.float64]
@@ -37,6 +38,7 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         return np.asarray(repeated / np.linalg.norm(repeated, axis=1, keepdims=True))
 
     position, tool = again(bead.points), directions(bead.tool)
+    position[-1] = curve_points(bead, float(share))[count - 1]
     phi = again(path.phi, float(path.phi[-1] - path.phi[0]))
     flange = task.cell.flange_poses(position, tool, phi)
     joints = _counted_from(path.joints[-1], task.inverse(flange))

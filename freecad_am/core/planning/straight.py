@@ -55,10 +55,11 @@ def deviation(task: Task, bead: Bead, joints: Array) -> Array:
     return distance
 
 
-def middle_points(bead: Bead) -> Array:
-    """(n - 1, 3) the middle of the curve over each segment: exact to the fourth order in the turn on a circle.
+def curve_points(bead: Bead, share: float = 0.5) -> Array:
+    """(n - 1, 3) points of the curve over each segment, a share of the way along it: cubics through its ends.
 
-    The tangent at a point is that of the circle through it and its neighbours; a segment next to a corner is straight.
+    The tangent at a point is that of the circle through it and its neighbours, so that a circle is met to the fourth
+    order in its turn per segment; a segment next to a corner is straight.
     """
     along = np.diff(bead.points, axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -74,10 +75,11 @@ def middle_points(bead: Bead) -> Array:
         tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
         tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
     corner = (before * after).sum(axis=1) < np.cos(CORNER)
-    bow = length / 8.0 * (tangent[:-1] - tangent[1:])
+    rest = 1.0 - share
+    bow = share * rest * length * (rest * (tangent[:-1] - along) - share * (tangent[1:] - along))
     bow[corner[:-1] | corner[1:]] = 0.0
-    middle: Array = 0.5 * (bead.points[:-1] + bead.points[1:]) + bow
-    return middle
+    points: Array = rest * bead.points[:-1] + share * bead.points[1:] + bow
+    return points
 
 
 def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath:
@@ -93,7 +95,7 @@ def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath
 
     bead = path.bead
     finer = dataclasses.replace(
-        bead, points=np.insert(bead.points, at, middle_points(bead)[segments], axis=0),
+        bead, points=np.insert(bead.points, at, curve_points(bead)[segments], axis=0),
         build=middle_direction(bead.build), tool=middle_direction(bead.tool),
         parameter=middle(bead.parameter), speed=np.insert(bead.speed, at, bead.speed[at]),
         width=None if bead.width is None else middle(bead.width),

@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.straight import middle_points
+from freecad_am.core.planning.straight import curve_points
 from freecad_am.core.toolpath import Bead
 
 
@@ -23,18 +23,20 @@ def test_the_middle_of_uneven_segments_of_a_circle_is_on_it(closed):
     angle = angle if closed else angle[:40]
     points = 45.0 * np.c_[np.cos(angle), np.sin(angle), np.zeros(len(angle))]
     points[-1] = points[0] if closed else points[-1]
-    middle = middle_points(bead_of(points, closed))
+    middle = curve_points(bead_of(points, closed))
     half = 0.5 * np.diff(angle)
     between = angle[:-1] + half
     assert np.abs(np.linalg.norm(middle, axis=1) - 45.0).max() < 45.0 * half.max() ** 4 / 8 + 1e-9
     assert np.abs(np.linalg.norm(middle, axis=1) - 45.0).max() < 1e-4
+    for share in (0.1, 0.3, 0.8):
+        assert np.abs(np.linalg.norm(curve_points(bead_of(points, closed), share), axis=1) - 45.0).max() < 1e-4
     assert np.abs(np.angle(np.exp(1j * (np.arctan2(middle[:, 1], middle[:, 0]) - between)))).max() < 1e-9
 
 
 def test_corners_and_straight_stretches_stay_as_they_are():
     square = np.array([[0, 0, 0], [5, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [0, 0, 0]], dtype=float)
-    assert np.abs(middle_points(bead_of(square, True)) - 0.5 * (square[1:] + square[:-1])).max() < 1e-12
-    assert np.abs(middle_points(bead_of(square[:2], False)) - [2.5, 0, 0]).max() < 1e-12
+    assert np.abs(curve_points(bead_of(square, True)) - 0.5 * (square[1:] + square[:-1])).max() < 1e-12
+    assert np.abs(curve_points(bead_of(square[:2], False)) - [2.5, 0, 0]).max() < 1e-12
 
 
 def test_added_points_are_on_the_sphere_and_in_the_plane_of_their_layer(sliced, cell_of):
@@ -48,3 +50,12 @@ def test_added_points_are_on_the_sphere_and_in_the_plane_of_their_layer(sliced, 
         assert np.abs(np.linalg.norm(path.bead.points, axis=1) - 45.0).max() < 1e-3
         assert np.ptp(path.bead.points[:, 2]) < 1e-9
     assert added > 100
+
+
+def test_an_overlap_ends_on_the_sphere(sliced, cell_of):
+    from freecad_am.core.parameters.process import ProcessParameters
+
+    toolpath = sliced("sphere", 5.0, process=ProcessParameters(overlap=4.3))
+    planned = plan_joints(toolpath, cell_of(toolpath), JointParameters())
+    for path in planned.beads:
+        assert np.abs(np.linalg.norm(path.bead.points, axis=1) - 45.0).max() < 1e-3
