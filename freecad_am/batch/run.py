@@ -143,7 +143,8 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     stages.issues += api.issues(feature)
     with stages.timed("toolpath", session):
         stages.toolpath = api.make_toolpath(document, feature, cell, process=job.process)
-    stages.issues += api.issues(stages.toolpath)
+    # a toolpath repeats the findings about its wall
+    stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
     if cell is None or has_errors(stages.issues):
         return stages
     with stages.timed("joint_path", session):

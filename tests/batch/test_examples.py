@@ -36,6 +36,8 @@ def test_shows_what_the_paper_shows(example):
     assert ranges[:, :5].max() < 0.01
     np.testing.assert_allclose(ranges[:, 5], 360.0, atol=1e-3)
     assert report["programs"]
+    told = [json.dumps(issue) for issue in report["issues"]]
+    assert len(told) == len(set(told)), told  # the nozzle has a step, which feature and toolpath both know
     if name == "hemisphere":
         points = np.array([[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows])
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), 45.0, atol=1e-3)
