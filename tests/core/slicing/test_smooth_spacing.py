@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers free of corners: the band is held everywhere, the turn is what it says, and without need nothing is changed."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.surface import Cone, Torus, cylinder
+from freecad_am.core.issues import InputError
+from freecad_am.core.slicing import constant_distance, smooth_spacing
+from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.wall_layer import WallLayer, even_grid, local_distances
+
+TORUS = Torus(60.0, 15.0)
+HEIGHT, BAND = 5.0, 0.2
+
+
+@pytest.fixture(scope="module")
+def first():
+    return on_implicit(TORUS, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(TORUS, 360))
+
+
+@pytest.mark.parametrize("degrees, reached", [(6.0, 7.5), (2.0, 5.0)])
+def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reached):
+    layers = smooth_spacing.layers(TORUS, first, HEIGHT, 0.5 * np.pi, BAND, np.radians(degrees))
+    below = first
+    for smoothed in layers:
+        distance = local_distances(smoothed.layer, below, 10)[1]
+        assert distance.min() >= (1.0 - BAND) * HEIGHT
+        assert distance.max() <= (1.0 + BAND) * HEIGHT
+        assert (smoothed.least, smoothed.most) == pytest.approx((distance.min(), distance.max()), abs=1e-3)
+        assert not len(smoothed.layer.curve.corners)
+        assert smoothed.turn <= np.radians(reached)
+        below = smoothed.layer
+    exact = constant_distance.layers(TORUS, first, HEIGHT, 0.5 * np.pi)
+    sharpest = [smooth_spacing.turns_in_wall(TORUS, layer).max() for layer in exact[6:]]
+    assert min(sharpest) > np.radians(200.0)  # a corner of 69 degrees or more over the first arc behind it
+    assert abs(len(layers) + 1 - len(exact)) <= 1
+
+
+def test_where_the_front_is_smooth_anyway_its_distance_stays(first):
+    (layer,) = smooth_spacing.layers(TORUS, first, HEIGHT, first.u.min() + 1e-6, BAND, np.radians(6.0))
+    assert (layer.least, layer.most) == pytest.approx((HEIGHT, HEIGHT), abs=0.02)
+    exact = constant_distance.next_layer(TORUS, first, HEIGHT, even_grid(TORUS, 360))
+    assert exact.curve.nearest(layer.layer.curve.points)[0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_turn_within_the_wall_is_the_geodesic_curvature():
+    still = np.zeros(181)
+    disc = Cone(20.0, 0.5 * np.pi)
+    ring = WallLayer.of(disc, even_grid(disc, 180), still + 10.0, still, still)
+    assert smooth_spacing.turns_in_wall(disc, ring) == pytest.approx(1.0 / 30.0, rel=1e-3)
+    tube = cylinder(20.0)
+    hoop = WallLayer.of(tube, even_grid(tube, 180), still, still, still)
+    assert smooth_spacing.turns_in_wall(tube, hoop) == pytest.approx(0.0, abs=1e-9)
+    cone = Cone(20.0, 0.3)
+    ring = WallLayer.of(cone, even_grid(cone, 180), still, still, still)
+    assert smooth_spacing.turns_in_wall(cone, ring) == pytest.approx(np.sin(0.3) / 20.0, rel=1e-3)
+
+
+def test_a_corner_counts_with_its_whole_turn():
+    tube, v = cylinder(20.0), even_grid(cylinder(20.0), 180)
+    rise = np.where(v[:-1] < np.pi, 8.0, -8.0)
+    zigzag = WallLayer.of(tube, v, 8.0 * np.minimum(v, 2 * np.pi - v), np.r_[rise[-1], rise], np.r_[rise, rise[0]])
+    turns = smooth_spacing.turns_in_wall(tube, zigzag) * np.linalg.norm(np.diff(zigzag.curve.points, axis=0), axis=1)
+    assert turns[[0, 90]] == pytest.approx(2.0 * np.arctan(0.4), abs=1e-4)
+    assert np.delete(turns, [0, 90]) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_what_the_wall_cannot_hold_is_refused(first):
+    with pytest.raises(InputError, match="layer height"):
+        smooth_spacing.layers(TORUS, first, 200.0, 0.5 * np.pi)
