@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from ..toolpath import Array, Bead, Layer, Toolpath
 
 CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
+SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
+SUDDEN = 3.0
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
@@ -160,7 +162,7 @@ def _columns(points: Array, closed: bool) -> tuple[Array, ...]:
     length = np.linalg.norm(step, axis=1)
     chord = step / np.where(length > 0.0, length, 1.0)[:, None]
     before, after = np.roll(chord, 1, axis=0), chord
-    smooth = np.einsum("ij,ij->i", before, after) > np.cos(CORNER)  # at the start of each segment
+    smooth = ~_corners(before, after, closed)  # at the start of each segment
     smooth[0] &= closed
     # the tangent of the parabola through three points: the nearer neighbour counts more
     tangent = _unit(before * length[:, None] + after * np.roll(length, 1)[:, None])
@@ -176,6 +178,16 @@ def _columns(points: Array, closed: bool) -> tuple[Array, ...]:
         points[:-1], points[1:], start * size, end * size,
         np.where(smooth, -_BEYOND, 0.0), np.where(smooth_end, 1.0 + _BEYOND, 1.0),
     )
+
+
+def _corners(before: Array, after: Array, closed: bool) -> NDArray[np.bool_]:
+    """(n,) whether the path of segments with the unit directions (n, 3) has a corner at the start of each of them."""
+    turn = np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), np.einsum("ij,ij->i", before, after))
+    if not closed:
+        turn[0] = 0.0
+    beside = np.maximum(np.roll(turn, 1), np.roll(turn, -1))
+    corners: NDArray[np.bool_] = (turn >= CORNER) | ((turn > SLIGHT) & (turn > SUDDEN * beside))
+    return corners
 
 
 def _mirrored(tangent: Array, chord: Array) -> Array:

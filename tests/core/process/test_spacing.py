@@ -68,6 +68,23 @@ def test_corners_are_kept():
     np.testing.assert_allclose(found, [5.0, 2.0, 4.0, 5.0, 7.0], atol=1e-12)
 
 
+@pytest.mark.parametrize("turn", [15.0, 25.0, 38.0])
+def test_slight_corners_between_arcs_are_kept(turn):
+    """Two arcs of 10 mm that meet at a corner: points above it are as far away as the arcs themselves say."""
+    half = np.radians(turn) / 2.0
+    angle = np.linspace(0.0, 1.2, 40)
+    right = 10.0 * np.c_[np.sin(angle + half) - np.sin(half), np.cos(angle + half) - np.cos(half)]
+    left = right[::-1] * [-1.0, 1.0]
+    low = np.c_[np.r_[left, right[1:]], np.zeros(79)]
+    inside = np.c_[np.linspace(-1.0, 1.0, 41), np.full(41, 1.5), np.zeros(41)]
+    toolpath = path(bead(low, False), bead(inside, False))
+    x, y = np.abs(inside[:, 0]) + 10.0 * np.sin(half), inside[:, 1] + 10.0 * np.cos(half)
+    at_the_corner = x < y * np.tan(half)
+    truth = np.where(at_the_corner, np.hypot(inside[:, 0], inside[:, 1]), np.hypot(x, y) - 10.0)
+    assert at_the_corner.any() and not at_the_corner.all()
+    assert spacing.between_layers(toolpath)[0] == pytest.approx(truth, abs=1e-4)
+
+
 def test_nearest_of_all_segments_whatever_their_lengths():
     """Random zigzags, whose every point is a corner, against all pairs."""
     rng = np.random.default_rng(11)
