@@ -23,7 +23,7 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
     The chord is measured in space, as in equation 2, whose closed form this is on a torus. InputError
     LAYER_HEIGHT where the wall bends so much that no such point exists.
     """
-    v, u, into, out = below.v, below.u, *_slopes(surface, below)
+    v, u, into, out = below.v, below.u, *below.slopes(surface)
     for _ in range(ROUNDS):
         new, slopes = _stepped(surface, v, u, (into, out), height, label)
         layer = WallLayer.of(surface, v, new, *slopes)
@@ -31,7 +31,7 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
         if not len(added):
             break
         v = np.sort(np.r_[v, added])
-        u, into, out = _between(surface, below, v)
+        u, into, out = below.heights(surface, v)
     return layer
 
 
@@ -69,27 +69,3 @@ def _stepped(
         (dot(chord, around + slope[:, None] * along) - dot(chord, turn)) / dot(chord, rise) for slope in slopes
     )
     return new, (into, out)
-
-
-def _slopes(surface: Surface, layer: WallLayer) -> tuple[Array, Array]:
-    """du/dv on either side of each node."""
-    _, along, around = surface.derivatives(layer.u, layer.v)
-    pace = dot(along, along)
-    into = dot(layer.curve.into - around, along) / pace
-    out = dot(layer.curve.out - around, along) / pace
-    return into, out
-
-
-def _between(surface: Surface, layer: WallLayer, v: Array) -> tuple[Array, Array, Array]:
-    """u and its slopes on either side at other parameters, between the nodes as the curve has them."""
-    into, out = _slopes(surface, layer)
-    arc = np.clip(np.searchsorted(layer.v, v, side="right") - 1, 0, len(layer.v) - 2)
-    span = np.diff(layer.v)[arc]
-    t = (v - layer.v[arc]) / span
-    rise = layer.u[arc + 1] - layer.u[arc]
-    a, b = out[arc] * span, into[arc + 1] * span
-    u = layer.u[arc] + t * (a + t * (3.0 * rise - 2.0 * a - b + t * (a + b - 2.0 * rise)))
-    slope = (a + t * (2.0 * (3.0 * rise - 2.0 * a - b) + 3.0 * t * (a + b - 2.0 * rise))) / span
-    node = np.clip(np.searchsorted(layer.v, v), 0, len(layer.v) - 1)
-    same = layer.v[node] == v
-    return u, np.where(same, into[node], slope), np.where(same, out[node], slope)

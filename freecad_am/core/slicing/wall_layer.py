@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import Surface
+from ..geometry.surface import Surface, dot
 
 Array = NDArray[np.float64]
 
@@ -31,6 +31,26 @@ class WallLayer:
     def v(self) -> Array:
         """v (m,) at the nodes, rising through one period."""
         return self.curve.w
+
+    def slopes(self, surface: Surface) -> tuple[Array, Array]:
+        """du/dv (m,) on either side of each node."""
+        _, along, around = surface.derivatives(self.u, self.v)
+        pace = dot(along, along)
+        return dot(self.curve.into - around, along) / pace, dot(self.curve.out - around, along) / pace
+
+    def heights(self, surface: Surface, v: Array) -> tuple[Array, Array, Array]:
+        """u (n,) and its slopes du/dv on either side at v (n,) from the first node to the last."""
+        into, out = self.slopes(surface)
+        arc = np.clip(np.searchsorted(self.v, v, side="right") - 1, 0, len(self.v) - 2)
+        span = np.diff(self.v)[arc]
+        t = (v - self.v[arc]) / span
+        rise = self.u[arc + 1] - self.u[arc]
+        a, b = out[arc] * span, into[arc + 1] * span
+        u = self.u[arc] + t * (a + t * (3.0 * rise - 2.0 * a - b + t * (a + b - 2.0 * rise)))
+        slope = (a + t * (2.0 * (3.0 * rise - 2.0 * a - b) + 3.0 * t * (a + b - 2.0 * rise))) / span
+        node = np.clip(np.searchsorted(self.v, v), 0, len(self.v) - 1)
+        same = self.v[node] == v
+        return u, np.where(same, into[node], slope), np.where(same, out[node], slope)
 
 
 def even_grid(surface: Surface, count: int, start: float = 0.0) -> Array:

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers trimmed at the end of the wall: they end on it, lie below it, and leave nothing uncovered."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.slicing import constant_distance
+from freecad_am.core.slicing.end_face import trimmed, whole
+from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.wall_layer import even_grid
+
+TORUS, END, HEIGHT = Torus(60.0, 15.0), 0.5 * np.pi, 5.0
+PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
+
+
+@pytest.fixture(scope="module", params=[0.0, 0.3, np.pi])
+def layers(request):
+    first = on_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, request.param))
+    return constant_distance.layers(TORUS, first, HEIGHT, END)
+
+
+def test_pieces_end_on_the_line_and_lie_below_it(layers):
+    pieces = [trimmed(TORUS, layer, END) for layer in layers]
+    assert [len(layer) for layer in pieces] == [1] * 15 + [0]
+    assert [layer[0].closed for layer in pieces[:-1]] == [layer.u.max() <= END for layer in layers[:-1]]
+    for layer, (piece,) in zip(layers, pieces[:-1]):
+        points = piece.at(piece.refined(5))[0]
+        assert layer.curve.nearest(points)[0] == pytest.approx(0.0, abs=1e-6)
+        assert TORUS.inverse(points)[0].max() <= END + 1e-7
+        if not piece.closed:
+            assert TORUS.inverse(piece.points[[0, -1]])[0] == pytest.approx(END, abs=1e-12)
+            assert len(piece.corners) == len(layer.curve.corners)
+
+
+def test_trimmed_layers_cover_the_wall_and_whole_ones_stop_before(layers):
+    beads = np.vstack([piece.at(piece.refined(10))[0] for layer in layers for piece in trimmed(TORUS, layer, END)])
+    u, v = np.meshgrid(np.linspace(0.3, END, 150), np.linspace(0.0, 2.0 * np.pi, 150), indexing="ij")
+    wall = TORUS.point(u, v).reshape(-1, 3)
+    outside = wall[PIPE.value(wall)[0] > 0.0]
+    distance = cKDTree(beads).query(outside)[0]
+    near_end = TORUS.inverse(outside)[0] > END - HEIGHT / 45.0
+    assert distance.max() < HEIGHT
+    assert distance[~near_end].max() < 0.6 * HEIGHT
+    assert len(whole(layers, END)) == sum(trimmed(TORUS, layer, END) == [layer.curve] for layer in layers) == 10
