@@ -124,8 +124,6 @@ def _name(value: Any, path: str) -> str:
 
 def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
     if isinstance(strategy, SurfaceParameters):
-        if strategy.spacing == "smooth":
-            raise _not_yet("strategy.spacing", strategy.spacing, "constant-distance or iso-parameter")
         if build_direction.clearance != "none":
             raise InputError(
                 "NOT_YET", "build_direction.clearance", "the nozzle is not yet kept clear of substrate and deposit for "

@@ -267,7 +267,7 @@ def test_a_wall_on_a_substrate(read):
         ("substrate: {file: part.step}", "substrate: {object: A}", "NO_PART", "substrate.file", "write substrate"),
         ("clearance: none", "clearance: nozzle", "NOT_YET", "build_direction.clearance", "none"),
         (", clearance: none", "", "NOT_YET", "build_direction.clearance", "none"),
-        ("end: whole", "spacing: smooth", "NOT_YET", "strategy.spacing", "constant-distance"),
+        ("end: whole", "spacing: arc-length", "BAD_VALUE", "strategy.spacing", "constant-distance"),
         ("end: whole", "wall: outer", "UNKNOWN_KEY", "strategy.wall", "band"),
         ("band: 10 %", "band: 110 %", "BAD_VALUE", "strategy.band", "100 %"),
         ("end: whole", "tolerance: 0 mm", "BAD_VALUE", "strategy.tolerance", "1e-06 mm"),

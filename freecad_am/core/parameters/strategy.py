@@ -52,12 +52,13 @@ class SurfaceParameters:
     )
     spacing: str = f.parameter(
         "constant-distance", f.CHOICE,
-        "Layers at the layer height from the nearest point of the one below (constant-distance), or along the lines up "
-        "the wall (iso-parameter).",
+        "Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it "
+        "and without corners (smooth), or along the lines up the wall (iso-parameter).",
         choices=("constant-distance", "smooth", "iso-parameter"),
     )
     band: float = f.parameter(
-        0.2, f.RATIO, "Share of the layer height by which the local distance may differ before there is a warning.",
+        0.2, f.RATIO, "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
+        "layers, before there is a warning.",
         low=0.0, high=1.0,
     )
     tolerance: float = f.parameter(

@@ -13,7 +13,7 @@ from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import SurfaceParameters
-from ..slicing import constant_distance, iso_parameter
+from ..slicing import constant_distance, iso_parameter, smooth_spacing
 from ..slicing.curve_points import within_chord
 from ..slicing.first_layer import on_polyline
 from ..slicing.wall_layer import WallLayer, local_distances
@@ -22,6 +22,7 @@ from . import surface_directions
 from .surface_end import Stretch, trimmed
 
 TURN = 2.0 * np.pi
+SMOOTH_TURN = 0.1  # rad/mm, turn within the wall that smooth layers stay below where the band allows
 FINER = 4  # places per arc of a layer at which its distance from the one below is measured
 
 
@@ -32,16 +33,12 @@ def plan(
 
     The first layer lies where the wall leaves the substrate; closed beads start at the seam's angle around the wall. The
     polynomial's variable is the arc length of the bead, one turn (2 pi) from end to end. Raises InputError 'NOT_YET',
-    'LAYER_HEIGHT', 'NOT_AROUND', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
+    'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
     """
-    if strategy.spacing == "smooth":
-        raise InputError(
-            "NOT_YET", "strategy.spacing", "'smooth' is not supported yet; use constant-distance or iso-parameter"
-        )
     surface_directions.refuse(wall, build)
     surface = wall.surface()
     curves = sliced(wall, surface, strategy)
-    issues = _spacing_issues(curves, strategy) + _corner_notes(curves)
+    issues = _spacing_issues(curves, strategy) + _corner_notes(surface, curves)
     stretches, notes = _stretches(wall, surface, curves, strategy)
     layers, found = _layers(wall, surface, stretches, strategy, build, process)
     return Toolpath(
@@ -52,6 +49,11 @@ def plan(
 def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> list[WallLayer]:
     """The fronts from the substrate up, the last of them at or past the end of the wall somewhere."""
     first = on_polyline(surface, wall.first, label=wall.label)
+    if strategy.spacing == "smooth":
+        found = smooth_spacing.layers(
+            surface, first, strategy.layer_height, wall.end, strategy.band, SMOOTH_TURN, label=wall.label
+        )
+        return [first, *(smoothed.layer for smoothed in found)]
     rule = constant_distance.layers if strategy.spacing == "constant-distance" else iso_parameter.layers
     return rule(surface, first, strategy.layer_height, wall.end, label=wall.label)
 
@@ -193,11 +195,13 @@ def _spacing_issues(fronts: list[WallLayer], strategy: SurfaceParameters) -> lis
     return [Issue(WARNING, "SPACING", f"{text}, the layer height {height:g} mm; {advice}", worst)]
 
 
-def _corner_notes(fronts: list[WallLayer]) -> list[Issue]:
-    """Corners that fronts have formed, for a robot slows down there."""
+def _corner_notes(surface: Placed, fronts: list[WallLayer]) -> list[Issue]:
+    """Corners that fronts have formed, for a robot slows down there; where there are none, the sharpest turn."""
     cornered = [index for index, front in enumerate(fronts) if len(front.curve.corners)]
     if not cornered:
-        return []
+        rates = [float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts]
+        text = f"no layer has a corner; within the wall they turn by up to {np.degrees(max(rates)):.3g} deg/mm"
+        return [Issue(NOTE, "TURN", text, int(np.argmax(rates)))]
     turns = [float(front.curve.turns.max()) for front in fronts]
     return [Issue(
         NOTE, "CORNERS",

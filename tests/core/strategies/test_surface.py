@@ -171,13 +171,22 @@ def test_parameter_is_the_arc_length_of_a_turn():
         assert bead.parameter == pytest.approx(2.0 * np.pi * length / length[-1], abs=1e-12)
 
 
-@pytest.mark.parametrize("change, code", [
-    ({"spacing": "smooth"}, "NOT_YET"), ({"layer_height": 100.0}, "LAYER_HEIGHT"),
-])
-def test_refusals(change, code):
+def test_smooth_layers_have_no_corners_and_keep_the_band():
+    toolpath = planned(bend(), spacing="smooth", band=0.2)
+    assert "CORNERS" in codes(planned(bend())) and "CORNERS" not in codes(toolpath)
+    assert codes(toolpath)["SPACING"].level == "note"
+    distances = np.concatenate(between_layers(toolpath))
+    assert distances.min() >= 4.0 - 1e-3 and distances.max() <= 6.0 + 1e-3
+    for _, _, bead in toolpath:
+        step = np.diff(bead.points, axis=0)
+        step /= np.linalg.norm(step, axis=1)[:, None]
+        assert (step[:-1] * step[1:]).sum(axis=1).min() > np.cos(np.radians(30.0))
+
+
+def test_refusals():
     with pytest.raises(InputError) as caught:
-        planned(bend(), **change)
-    assert caught.value.code == code
+        planned(bend(), layer_height=100.0)
+    assert caught.value.code == "LAYER_HEIGHT"
     with pytest.raises(InputError) as caught:
         surface.plan(bend(), SurfaceParameters(), BuildDirectionParameters(), ProcessParameters())
     assert (caught.value.code, caught.value.where) == ("NOT_YET", "build_direction.clearance")

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A wall on a substrate in the window: shown, its panel opens, and what it grows on can be chosen."""
+
+import FreeCAD as App
+
+from freecad_am import api
+from freecad_am.gui import stage_panel
+
+
+def on_a_pipe(hemisphere):
+    """A document with a branch on a pipe, and its feature."""
+    document = hemisphere.Document
+    pipe = document.addObject("Part::Cylinder", "Pipe")
+    pipe.Radius, pipe.Height = 32, 120
+    pipe.Placement = App.Placement(App.Vector(0, -60, 0), App.Rotation(App.Vector(1, 0, 0), -90))
+    branch = document.addObject("Part::Cylinder", "Branch")
+    branch.Radius, branch.Height = 12, 60
+    document.recompute()
+    feature = api.make_surface_feature(document, branch, ["Face1"], pipe, layer_height=5, clearance="none")
+    return document, feature
+
+
+def test_a_wall_on_a_substrate_is_shown_and_its_panel_opens(person, hemisphere):
+    document, feature = on_a_pipe(hemisphere)
+    toolpath = api.make_toolpath(document, feature)
+    assert feature.Status == toolpath.Status == "up to date"
+    assert feature.ViewObject.Proxy.meridian.coordinates.point.getNum() > 100
+    before = feature.Key
+    stage_panel.edit(feature)
+    panel = person.panel("RoboticAM_SurfaceFeature")
+    assert person.field(panel, "Substrate").text() == "Pipe"
+    person.press("Ok")
+    person.panel_closed()
+    assert feature.Key == before
+
+
+def test_another_substrate_is_chosen_in_the_panel(person, hemisphere):
+    document, feature = on_a_pipe(hemisphere)
+    block = document.addObject("Part::Box", "Block")
+    block.Length = block.Width = 100
+    block.Height = 20
+    block.Placement.Base = App.Vector(-50, -50, 0)
+    document.recompute()
+    stage_panel.edit(feature)
+    panel = person.panel("RoboticAM_SurfaceFeature")
+    person.gui.Selection.clearSelection()
+    person.gui.Selection.addSelection(block)
+    person.field(panel, "UseSubstrate").click()
+    assert person.field(panel, "Substrate").text() == "Block"
+    person.press("Ok")
+    person.panel_closed()
+    assert feature.Substrate == block and feature.Status == "up to date"
+    assert abs(api.result(feature).first[:, 2] - 20.0).max() < 1e-9
