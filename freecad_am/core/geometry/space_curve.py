@@ -82,7 +82,11 @@ class SpaceCurve:
 
     def wrapped(self, w: Array) -> Array:
         """Parameters brought into the range of the nodes, where the curve is closed."""
-        return self.w[0] + np.mod(w - self.w[0], self.period) if self.closed else w
+        if not self.closed:
+            return w
+        past = np.mod(w - self.w[0], self.period)
+        # a hair below the first node the remainder rounds to the whole period, which is the first node again
+        return np.asarray(self.w[0] + np.where(past < self.period, past, 0.0))
 
     def on_arcs(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
         """Points, first and second derivatives along w, each (..., 3), on arcs at t in [0, 1]."""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.implicit import HalfSpace, Round
 from freecad_am.core.geometry.surface import Cone, Torus, cylinder
 from freecad_am.core.geometry.tabulated import Tabulated
 from freecad_am.core.issues import InputError
@@ -97,6 +97,10 @@ class Waves:
         return z - 3.0 * np.sin(7.0 * turn), np.stack([-y * lean, x * lean, 1.0 + 0.0 * lean], axis=-1)
 
 
+# flat fronts: every point below is straight under the one above, and the first node of a curve is met to the last bit
+GROUND = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+
+
 @pytest.mark.parametrize(
     "wall, substrate, reach, end, height, corners",
     [
@@ -106,6 +110,8 @@ class Waves:
         (Cone(20.0, 0.3), Round.cylinder(60.0, [0, 0, -58], [1, 0, 0]), (-40.0, 10.0), 40.0, 3.0, 0),
         (Torus(60.0, 15.0), Round.sphere(30.0, [4, 5, -10]), (-0.2, 1.2), 1.8, 2.0, 1),
         (cylinder(20.0), Waves(), (-40.0, 30.0), 40.0, 1.0, 7),
+        (Torus(60.0, 15.0), GROUND, (-0.3, 0.5), 1.5, 2.0, 1),
+        (Cone(20.0, 0.3), GROUND, (-40.0, 30.0), 30.0, 2.0, 0),
     ],
 )
 def test_walls_on_substrates(wall, substrate, reach, end, height, corners):
