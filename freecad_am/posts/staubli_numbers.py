@@ -69,14 +69,18 @@ class Descriptors:
     def _percent(self, moves: Moves, steps: Array) -> Array:
         """Of the nominal joint speed, (n,): the fastest axis gets through its step in the time of the move."""
         share = (np.abs(steps) / self.nominal).max(axis=1)
-        percent = 100.0 * share / moves.duration
-        wrong = ~(percent <= 100.0 + LEAST_PERCENT) & (share > 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            percent = 100.0 * share / moves.duration
+        wrong = (share > 0.0) & ~(percent <= 100.0 + LEAST_PERCENT)
+        if moves.kind == DEPOSIT:
+            wrong |= percent < LEAST_PERCENT
         if self.before is None:
             wrong[0] = False
         if wrong.any():
             raise InputError(
                 "JOINT_SPEED", place(moves),
-                f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed; lower the speed",
+                f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which cannot be written; use"
+                f" another speed, so that it is {LEAST_PERCENT} to 100 %",
             )
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
@@ -84,7 +88,7 @@ class Descriptors:
         """Corners within a bead are passed through, never farther from one than half its shortest move."""
         distance = 0.0
         if moves.kind == DEPOSIT:
-            shortest = float((moves.speed * moves.duration).min())
+            shortest = float(np.nan_to_num(moves.speed * moves.duration).min())
             distance = math.floor(1000.0 * min(0.005 * self.blend * shortest, 100.0)) / 1000.0
         kind = ("Cartesian" if self.cartesian else "joint") if distance > 0.0 else "off"
         return f'blend="{kind}" leave="{distance:.3f}" reach="{distance:.3f}"'

@@ -175,14 +175,25 @@ class _Values:
     def __init__(self) -> None:
         self._read: dict[tuple[str, str, tuple[str, ...]], tuple[Array, float]] = {}
         self._fathers: dict[tuple[str, str], set[str]] = {}
-        self.digits: dict[tuple[str, ...], float] = {}
+        self._half_digits: dict[tuple[str, ...], dict[bool, float]] = {}
 
     def __call__(self, app: Application, name: str, columns: tuple[str, ...]) -> Array:
         key = (app.folder, name, columns)
         if key not in self._read:
             self._read[key] = numbers(app.data[name], columns, f"{app.folder}: {name}")
-            self.digits[columns] = max(self.digits.get(columns, 0.0), self._read[key][1])
+            values, half = self._read[key]
+            known = self._half_digits.setdefault(columns, {})
+            known[len(values) > 1] = max(known.get(len(values) > 1, 0.0), half)
         return self._read[key][0]
+
+    def digits(self, columns: tuple[str, ...]) -> float:
+        """Half of the last digit of the values in these columns, 0 where none were read.
+
+        What stands alone, such as the one frame of a part, is a setting and means what it says: it counts only where no
+        array of several values has these columns.
+        """
+        known = self._half_digits.get(columns, {})
+        return known.get(True, known.get(False, 0.0))
 
     def six(self, app: Application, name: str) -> Array:
         """(n, 6) x y z rx ry rz, mm and degrees."""
@@ -237,12 +248,12 @@ def _moves(steps: list[_Step]) -> ReadMoves:
             raise unreadable(step.where, "its speed is limited, or its tool fixed, in a way that is not understood")
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
-        np.radians(joints) if np.isfinite(share).any() else None, float(np.radians(values.digits.get(AXES, 0.0))),
+        np.radians(joints) if np.isfinite(share).any() else None, float(np.radians(values.digits(AXES))),
         np.full(total, np.nan), deposit,
         position=point[:, :3] if linear else None, rotation=rotations(point[:, 3:]) if linear else None,
-        position_digits=values.digits.get(_LENGTHS, 0.0),
-        rotation_digits=float(np.radians(values.digits.get(_ANGLES, 0.0))),
-        speed=speed, speed_digits=values.digits[_SPEEDS], share=share, share_digits=values.digits[_SHARE] / 100.0,
+        position_digits=values.digits(_LENGTHS),
+        rotation_digits=float(np.radians(values.digits(_ANGLES))),
+        speed=speed, speed_digits=values.digits(_SPEEDS), share=share, share_digits=values.digits(_SHARE) / 100.0,
         frame=frame, tool=poses(tools) if linear else None,
     )
 

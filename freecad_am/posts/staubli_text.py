@@ -99,7 +99,8 @@ def _rows(template: str, values: Array) -> list[str]:
 
 def remark(text: str) -> list[str]:
     """A comment on as many lines as it needs, in plain characters."""
-    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode("ascii").replace("]]>", "")
+    apart = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
+    plain = apart.encode("ascii", "ignore").decode("ascii").replace("]]>", "")
     return [f"// {line}" for line in textwrap.wrap(plain, 80)]
 
 

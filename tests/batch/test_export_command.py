@@ -35,7 +35,13 @@ def script_of_another_freecad(tmp_path):
         path = tmp_path / "script.py"
         found = f"import sys; sys.path.append({os.path.dirname(FreeCAD.__file__)!r})"
         path.write_text("\n".join([found, "import FreeCAD", *lines]))
-        done = subprocess.run([sys.executable, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+        # a home of its own: the tests' own profile has this workbench among its modules
+        home = tmp_path / "another home"
+        home.mkdir(exist_ok=True)
+        done = subprocess.run(
+            [sys.executable, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False,
+            env={**os.environ, "FREECAD_USER_HOME": str(home), "PYTHONPATH": ""},
+        )
         assert done.returncode == 0, done.stderr
 
     return run

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A judge of FANUC listings that shares nothing with the post, and programs to judge."""
+"""Judges of FANUC listings and VAL 3 applications that share nothing with the posts, and programs to judge."""
 
+import dataclasses
 import os
 import re
+import shutil
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy as np
@@ -176,3 +179,178 @@ def _random_program(seed, motion="joint", endless=True, **options):
 def random_program():
     """A function that makes a program of a seed, of all kinds of blocks."""
     return _random_program
+
+
+@pytest.fixture
+def random_application(random_program):
+    """A function that makes a program a VAL 3 controller can say, of a seed, a motion and a set-up."""
+
+    def make(seed, motion="joint", setup="part-on-robot", **options):
+        whole = random_program(seed, motion, endless=False, **options)
+        blocks = []
+        for block in whole.blocks:
+            if isinstance(block, Moves):
+                block = dataclasses.replace(block, duration=np.clip(block.duration, 0.3, 4.0))
+            blocks.append(block)
+        return dataclasses.replace(
+            whole, setup=setup, blocks=tuple(blocks), max_speed=(15.0, 14.0, 15.5, 20.0, 16.0, 35.0),
+            station=(300.25, -20.5, 310.125, 0.1, -0.2, 3.0), carried=(1.0, 2.0, 105.0, 0.3, 0.2, 0.1),
+        )
+
+    return make
+
+
+VAL3 = "{http://www.staubli.com/robotics/VAL3/"
+WORD = r"[a-zA-Z][a-zA-Z0-9_]{0,14}"
+NUMBER = r"-?(?:0|[1-9]\d*)\.\d+"
+ATTRIBUTES = {
+    "jointRx": dict.fromkeys(("j1", "j2", "j3", "j4", "j5", "j6"), NUMBER),
+    "dio": {"link": r"BasicIO-1\\%[IQ]\d+"},
+    "mdesc": {
+        "accel": "100", "decel": "100", "vel": r"100|\d{1,2}\.\d{5}|100\.0{5}", "tmax": r"99999|\d+\.\d{3}", "rmax": "99999",
+        "blend": "off|joint|Cartesian", "leave": r"\d+\.\d{3}", "reach": r"\d+\.\d{3}",
+    },
+}
+ATTRIBUTES["frame"] = dict.fromkeys(("x", "y", "z", "rx", "ry", "rz"), NUMBER) | {"fatherId": r"world\[0\]"}
+ATTRIBUTES["tool"] = ATTRIBUTES["frame"] | {"fatherId": r"flange\[0\]"}
+ATTRIBUTES["pointRx"] = ATTRIBUTES["frame"] | {
+    "fatherId": r"fStation\[0\]", "shoulder": "ssame", "elbow": "esame", "wrist": "wsame",
+}
+PLACE = r"(?:\[(\d+|l_nI(?:[+-]\d+)?)\])?"
+VAL3_MOVE = rf"(move[jl])\(({WORD}){PLACE},({WORD}){PLACE},({WORD}){PLACE}\)"
+STATEMENTS = [
+    VAL3_MOVE, r"// [ -~]+", r"for l_nI=\d+ to \d+", "endFor", r"waitEndMove\(\)", r"resetMotion\(\)",
+    "doDeposit=(?:true|false)",
+    r"delay\(\d+\.\d{3}\)", rf"wait\({WORD}==true\)", rf"call {WORD}:start\(\)", rf'if prog:libLoad\("\./{WORD}"\)!=0',
+    r'popUpMsg\("[ -~]+"\)', "return", "endIf",
+]  # fmt: skip
+
+
+def _parsed(content):
+    text = content.decode("utf-8")
+    assert text[0] == "\ufeff" and "\r" not in text
+    return ElementTree.fromstring(text[1:])
+
+
+def _data_faults(file, data):
+    """Types, sizes and attributes of the data; returns type and size by name, yields what is wrong."""
+    for name, (kind, size, values) in data.items():
+        if not re.fullmatch(WORD, name) or kind not in ATTRIBUTES or int(size) != len(values) or not values:
+            yield f"{file}: {name} is {kind} of size {size} with {len(values)} values"
+            continue
+        for key, value in enumerate(values):
+            wanted = {"key": str(key)} | ATTRIBUTES[kind]
+            if set(value) != set(wanted) or not all(re.fullmatch(wanted[a], value[a]) for a in wanted):
+                yield f"{file}: {name} {value}"
+
+
+def _code_faults(file, lines, data):
+    """Statements of the plain kind only, inside their arrays; each point used once, in order."""
+    if (lines[0], lines[-1]) != ("begin", "end"):
+        yield f"{file}: begin and end"
+    used, moving, counter = {"jPath": [], "tPath": [], "pPath": []}, False, None
+    for line in map(str.strip, lines[1:-1]):
+        if not any(re.fullmatch(pattern, line) for pattern in STATEMENTS):
+            yield f"{file}: {line}"
+        move, loop = re.fullmatch(VAL3_MOVE, line), re.fullmatch(r"for l_nI=(\d+) to (\d+)", line)
+        if loop:
+            counter = range(int(loop[1]), int(loop[2]) + 1)
+            if len(counter) < 2:
+                yield f"{file}: {line}"
+        elif line == "endFor":
+            counter = None
+        elif move:
+            moving = True
+            kinds = ("jointRx" if move[1] == "movej" else "pointRx", "tool", "mdesc")
+            for name, index, kind in zip(move.groups()[1::2], move.groups()[2::2], kinds):
+                rows = [eval(index or "0", {"l_nI": i}) for i in (counter if counter is not None else (0,))]
+                if data[name][0] != kind or min(rows) < 0 or max(rows) >= int(data[name][1]):
+                    yield f"{file}: {line}: {name}"
+                used.setdefault(name, []).extend(rows)
+        elif line == "waitEndMove()":
+            moving = False
+        elif moving and not line.startswith("//"):
+            yield f"{file}: {line} does not wait for the motion"
+    for name in ("jPath", "tPath", "pPath"):
+        if used[name] != list(range(int(data[name][1]) if name in data else 0)):
+            yield f"{file}: {name} is not used once and in order"
+    if moving:
+        yield f"{file}: ends in motion"
+
+
+def _application_faults(project, files):
+    folder, name = project.rsplit("/", 1)[0], project.rsplit("/", 1)[1].removesuffix(".pjx")
+    root = _parsed(files[project])
+    space = VAL3 + "Project/3}"
+    listed = [element.get("file") for element in root.iter(space + "Program")]
+    datas = [element.get("file") for element in root.iter(space + "Data")]
+    here = {file.rsplit("/", 1)[1] for file in files if file.rsplit("/", 1)[0] == folder}
+    if folder.rsplit("/", 1)[-1] != name or not re.fullmatch(WORD, name) or root.tag != space + "Project":
+        yield f"{project}: name of folder and project"
+    if listed != ["start.pgx", "stop.pgx"] or datas != [f"{name}.dtx"] or here != {*listed, *datas, f"{name}.pjx"}:
+        yield f"{project}: files {listed} {datas} {here}"
+    aliases = {element.get("alias"): element.get("path") for element in root.iter(space + "Library")}
+    for alias, path in aliases.items():
+        if not re.fullmatch(rf"Disk://{alias}/{alias}\.pjx", path) and f"{folder}/{path.removeprefix('./')}" not in files:
+            yield f"{project}: library {alias} {path}"
+    space = VAL3 + "Data/2}"
+    data = {
+        d.get("name"): (d.get("type"), d.get("size"), [dict(v.attrib) for v in d]) for d in
+        _parsed(files[f"{folder}/{name}.dtx"]).iter(space + "Data")
+    }  # fmt: skip
+    yield from _data_faults(f"{folder}/{name}.dtx", data)
+    for program in ("start", "stop"):
+        element = _parsed(files[f"{folder}/{program}.pgx"])[0]
+        code = element.findtext(VAL3 + "Program/2}Code")
+        if element.get("name") != program or element.get("access") != "public":
+            yield f"{folder}/{program}.pgx: name or access"
+        if ("l_nI" in code) != (element.find(f".//{VAL3}Program/2}}Local") is not None):
+            yield f"{folder}/{program}.pgx: the counter and its declaration"
+        if set(re.findall(r"(\w+):", re.sub("//.*|\"[^\"]*\"", "", code))) - set(aliases):
+            yield f"{folder}/{program}.pgx: a library that is not declared"
+        if program == "start":
+            yield from _code_faults(f"{folder}/start.pgx", code.split("\n"), data)
+
+
+LXML_LINT = """\
+#!{python}
+import sys
+from lxml import etree
+schema = etree.RelaxNG(etree.parse(sys.argv[3]))
+if not schema.validate(etree.parse(sys.argv[4])):
+    sys.exit("\\n".join(f"element: error : {{entry.message}}" for entry in schema.error_log))
+"""
+
+
+@pytest.fixture
+def assert_applications(tmp_path, root):
+    """A function that fails when the files of a program are not as VAL 3 applications are.
+
+    Where it stands beside the repository, the shared check with its RELAX NG schema is asked too; it calls xmllint, and
+    lxml stands in for that where it is not installed.
+    """
+    other = Path(os.environ.get("VAL3_CHECK", root.parent / "shared/recipes/posts/val3_check.py"))
+    environment = dict(os.environ)
+    if not shutil.which("xmllint"):
+        (tmp_path / "bin").mkdir()
+        (tmp_path / "bin/xmllint").write_text(LXML_LINT.format(python=sys.executable))
+        (tmp_path / "bin/xmllint").chmod(0o755)
+        environment["PATH"] = f"{tmp_path / 'bin'}{os.pathsep}{environment['PATH']}"
+        can_lint = subprocess.run([sys.executable, "-c", "import lxml.etree"], capture_output=True).returncode == 0
+    else:
+        can_lint = True
+
+    def judge(files):
+        projects = [file for file in files if file.endswith(".pjx")]
+        assert not [fault for project in projects for fault in _application_faults(project, files)]
+        if not other.exists() or not can_lint:
+            return
+        for file, content in files.items():
+            (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / file).write_bytes(content)
+        for project in projects:
+            command = [sys.executable, str(other), str(tmp_path / project), "--strict"]
+            result = subprocess.run(command, capture_output=True, text=True, env=environment)
+            assert result.returncode == 0, result.stdout + result.stderr
+
+    return judge
