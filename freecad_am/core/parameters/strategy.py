@@ -9,8 +9,8 @@ from . import field as f
 
 
 @dataclass(frozen=True)
-class RevolutionParameters:
-    """How a part of revolution is cut into layers (Chalvin 2020, section 2.1). mm and rad."""
+class LayerParameters:
+    """What every family cuts its layers by. mm."""
 
     layer_height: float = f.parameter(
         1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True
@@ -19,6 +19,12 @@ class RevolutionParameters:
         0.01, f.LENGTH, "Largest distance between a bead and the straight segments that stand for it.",
         low=1e-5, high=10.0,
     )
+
+
+@dataclass(frozen=True)
+class RevolutionParameters(LayerParameters):
+    """How a part of revolution is cut into layers (Chalvin 2020, section 2.1). mm and rad."""
+
     spacing: str = f.parameter(
         "arc-length", f.CHOICE,
         "Layers equally spaced along the wall (arc-length) or along the axis (iso-height).",
@@ -40,16 +46,9 @@ class RevolutionParameters:
 
 
 @dataclass(frozen=True)
-class SurfaceParameters:
+class SurfaceParameters(LayerParameters):
     """How a wall on an existing part is cut into layers (Chalvin 2019, section II). mm."""
 
-    layer_height: float = f.parameter(
-        1.0, f.LENGTH, "Distance between neighbouring layers.", low=0.0, open_low=True
-    )
-    chord_error: float = f.parameter(
-        0.01, f.LENGTH, "Largest distance between a bead and the straight segments that stand for it.",
-        low=1e-5, high=10.0,
-    )
     spacing: str = f.parameter(
         "constant-distance", f.CHOICE,
         "Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it "
