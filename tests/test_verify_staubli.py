@@ -35,9 +35,7 @@ def planned():
 
     wall = RevolvedWall(Meridian.chained([sampled(curve, [0, 1.2])]), np.eye(4))
     strategy = RevolutionParameters(layer_height=6.0, chord_error=CHORD_ERROR)
-    toolpath = revolution.plan(
-        wall, strategy, BuildDirectionParameters(), ProcessParameters(), NozzleParameters(), 60.0
-    )
+    toolpath = revolution.plan(wall, strategy, BuildDirectionParameters(), ProcessParameters(), NozzleParameters(), 60.0)
     cell = cells.resolve(
         CellParameters(
             machine="staubli-rx60bl", deposition_point=(300.0, 0.0, 300.0, np.pi, 0.0, 0.0), platform_diameter=60.0
