@@ -8,6 +8,7 @@ circular arc to sixth order in the angle it turns - and keeps corners as they ar
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,13 +42,30 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 
     A spiral is one layer; there it is the distance of each point to the turn before.
     """
-    beads = toolpath.layers[0].beads
-    if len(toolpath.layers) == 1 and len(beads) == 1 and not beads[0].closed and toolpath.family == "revolution":
-        return between_turns(beads[0])
+    if _is_spiral(toolpath):
+        return between_turns(toolpath.layers[0].beads[0])
     return tuple(
         distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
         for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False)
     )
+
+
+def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
+    """Per bead in the order of deposit, (n,) mm: the distance of each of its points to the layer before.
+
+    NaN where nothing of the feature lies below: in the first layer, and in the first turn of a spiral.
+    """
+    if _is_spiral(toolpath):
+        bead = toolpath.layers[0].beads[0]
+        found = np.full(len(bead), np.nan)
+        for mine, before in _quarters(bead):
+            found[mine] = distance(bead.points[mine], before)
+        return (found,)
+    done = [np.full(len(bead), np.nan) for bead in toolpath.layers[0].beads]
+    for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
+        apart = distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
+        done += np.split(apart, np.cumsum([len(bead) for bead in layer.beads])[:-1])
+    return tuple(done)
 
 
 def between_turns(bead: Bead) -> tuple[Array, ...]:
@@ -55,16 +73,24 @@ def between_turns(bead: Bead) -> tuple[Array, ...]:
 
     The stretch is three quarters of a turn long, so that it holds the nearest point but not the points' own neighbours.
     """
+    return tuple(distance(bead.points[mine], before) for mine, before in _quarters(bead))
+
+
+def _is_spiral(toolpath: Toolpath) -> bool:
+    beads = toolpath.layers[0].beads
+    return len(toolpath.layers) == 1 and len(beads) == 1 and not beads[0].closed and toolpath.family == "revolution"
+
+
+def _quarters(bead: Bead) -> Iterator[tuple[NDArray[np.bool_], Curve]]:
+    """Per quarter turn after the first turn: which points (n,) are its, and the stretch one turn before."""
     angle = np.abs(bead.parameter - bead.parameter[0])
     quarter = 0.5 * np.pi
-    found = []
-    for start in np.arange(4.0 * quarter, angle[-1], quarter):
+    for start in np.arange(4.0 * quarter, np.nextafter(angle[-1], np.inf), quarter):
         mine = (angle >= start) & (angle < start + quarter)
         first, last = np.searchsorted(angle, (start - 5.0 * quarter, start - 2.0 * quarter))
         first = max(int(first) - 1, 0)
         if mine.any() and last - first > 1:
-            found.append(distance(bead.points[mine], Curve(*_columns(bead.points[first : int(last) + 1], closed=False))))
-    return tuple(found)
+            yield mine, Curve(*_columns(bead.points[first : int(last) + 1], closed=False))
 
 
 def curve_of(layer: Layer) -> Curve:

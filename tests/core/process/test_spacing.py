@@ -124,3 +124,29 @@ def test_turns_of_a_spiral_are_one_pitch_apart(way):
     chord = 2 * radius * np.sin(back / 2)
     exact = np.sqrt(chord**2 + (pitch - pitch * back / (2 * np.pi)) ** 2).min()
     np.testing.assert_allclose(found, exact, atol=1e-6)
+
+
+def test_local_distances_come_bead_by_bead():
+    rng = np.random.default_rng(3)
+    one = bead(np.c_[np.linspace(0, 40, 81), 0.2 * np.sin(np.linspace(0, 6, 81)), np.zeros(81)], False)
+    heights = (rng.uniform(0.8, 1.2), rng.uniform(0.8, 1.2))
+    pieces = [bead(one.points[a:b] + [0, 0, h], False) for (a, b), h in zip(((0, 30), (40, 81)), heights)]
+    toolpath = Toolpath((Layer((one,)), Layer(tuple(pieces))), np.eye(4), 1.0, 0.01)
+    first, *above = spacing.local_distances(toolpath)
+    assert np.isnan(first).all() and len(first) == 81
+    for found, piece, height in zip(above, pieces, heights, strict=True):
+        assert len(found) == len(piece)
+        np.testing.assert_allclose(found, height, atol=1e-9)
+    np.testing.assert_array_equal(np.concatenate(above), spacing.between_layers(toolpath)[0])
+
+
+@pytest.mark.parametrize("turns", [3.0, 3.25, 3.4])
+def test_local_distances_of_a_spiral_are_to_the_turn_before(turns):
+    angle = np.linspace(0.0, 2 * np.pi * turns, int(240 * turns) + 1)
+    points = np.c_[20 * np.cos(angle), 20 * np.sin(angle), angle / (2 * np.pi)]
+    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    spiral = Bead(points, up, up, angle, np.ones(len(points)), False)
+    (found,) = spacing.local_distances(Toolpath((Layer((spiral,)),), np.eye(4), 1.0, 0.01))
+    np.testing.assert_array_equal(np.isnan(found), angle < 2 * np.pi)
+    slope = 1.0 / (2 * np.pi * 20)  # nearest point of a helix one turn below, nearly at right angles to it
+    np.testing.assert_allclose(found[angle >= 2 * np.pi], 1.0 / np.hypot(1.0, slope), atol=2e-6)
