@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .geometry.surroundings import Body
 from .issues import Issue
 
 Array = NDArray[np.float64]
@@ -112,7 +113,7 @@ class Toolpath:
 
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error and
     layer_height: mm. overlap: how far closed beads run on past their seam, mm. issues: findings made on the way
-    (spacing, tilt-back, clearance).
+    (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle is kept clear of.
     """
 
     layers: tuple[Layer, ...]
@@ -122,6 +123,7 @@ class Toolpath:
     issues: tuple[Issue, ...] = ()
     overlap: float = 0.0
     family: str = field(default="revolution")
+    surroundings: tuple[Body, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..issues import Issue
 from .surface import Cone, Surface, Torus
+from .surroundings import Body
 from .tabulated import Tabulated
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ class SurfaceWall:
     kind: TORUS with sizes (bend, tube), CONE with sizes (radius, slope), or TABLE with the parameters u (n,) and v (m,)
     and the points table (n, m, 3). frame: (4, 4) pose of the surface's own frame in the part. end: u of the upper edge;
     layers rise from the substrate to it. first: (m, 3) closed chain of points in part coordinates in which the wall leaves
-    the substrate, the first not repeated. faces: names of the wall's faces.
+    the substrate, the first not repeated. faces: names of the wall's faces. surroundings: the substrate, then fixtures.
     """
 
     kind: str
@@ -39,6 +40,7 @@ class SurfaceWall:
     label: str = "wall"
     faces: tuple[str, ...] = ()
     issues: tuple[Issue, ...] = ()
+    surroundings: tuple[Body, ...] = ()
 
     def surface(self) -> Placed:
         """The wall as slicing wants it, in part coordinates."""
