@@ -32,9 +32,13 @@ WANTED: dict[str, tuple[Dimension, str]] = {
     f.SPEED: ((1, -1, 0), "a speed such as 6 mm/s or 360 mm/min"),
     f.TIME: (TIME, "a time such as 2 s"),
     f.RATIO: (NONE, "a percentage such as 20 %"),
+    f.TURN_RATE: ((-1, 0, 1), "a turn per length such as 10 deg/mm"),
     f.NUMBER: (NONE, "a number without a unit such as 0.1"),
 }
-DIMENSION_NAMES = {LENGTH: "a length", TIME: "a time", ANGLE: "an angle", (1, -1, 0): "a speed", NONE: "without unit"}
+DIMENSION_NAMES = {
+    LENGTH: "a length", TIME: "a time", ANGLE: "an angle", (1, -1, 0): "a speed", (-1, 0, 1): "a turn per length",
+    NONE: "without unit",
+}
 _UNIT = "[^\\s\\d/*^+().,%-]+"
 _SIMPLE = re.compile(
     rf"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:({_UNIT})(?:\s*/\s*({_UNIT}))?|(%))?", re.ASCII

@@ -25,6 +25,7 @@ _UNITS = {
     f.ANGLE: (App.Units.Angle, "an angle such as 90 deg"),
     f.SPEED: (App.Units.Velocity, "a speed such as 6 mm/s or 360 mm/min"),
     f.TIME: (App.Units.TimeSpan, "a time such as 2 s"),
+    f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
 }
 
 
@@ -82,8 +83,8 @@ class Row:
             return tuple(value)
         if isinstance(value, tuple):
             return " ".join(value)
-        if self.spec.kind in (f.ANGLE, f.RATIO) and not isinstance(value, str) and value is not None:
-            return degrees(value) if self.spec.kind == f.ANGLE else value / f.TO_INNER[f.RATIO]
+        if self.spec.kind in (f.ANGLE, f.TURN_RATE, f.RATIO) and not isinstance(value, str) and value is not None:
+            return value / f.TO_INNER[f.RATIO] if self.spec.kind == f.RATIO else degrees(value)
         return value
 
     def text(self, value: Any) -> str:
@@ -191,7 +192,7 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
     quantity = _quantity(value, where, example + also)
     if quantity.Unit != unit and quantity.Unit != App.Units.Unit():
         raise InputError("BAD_UNIT", where, f"{value!s} has another dimension; give {example}{also}")
-    return math.radians(quantity.Value) if spec.kind == f.ANGLE else float(quantity.Value)
+    return math.radians(quantity.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(quantity.Value)
 
 
 def _quantity(value: Any, where: str, example: str) -> Any:

@@ -62,6 +62,7 @@ def test_means_what_freecad_means(kind):
         ("90\u00b0", f.ANGLE, math.pi / 2),
         ("360 mm/min", f.SPEED, 6.0), ("6 mm/s", f.SPEED, 6.0), (6.5, f.SPEED, 6.5), ("1 m/min", f.SPEED, 1000 / 60),
         ("2 s", f.TIME, 2.0), ("1 min", f.TIME, 60.0), ("20 %", f.RATIO, 0.2), (20, f.RATIO, 0.2), ("0.2", f.NUMBER, 0.2),
+        ("180 deg/mm", f.TURN_RATE, math.pi), (90, f.TURN_RATE, math.pi / 2), ("1 rad/cm", f.TURN_RATE, 0.1),
         ("inf", f.LENGTH, math.inf), ("-inf", f.LENGTH, -math.inf), ("1/2 in", f.LENGTH, 12.7),
     ],
 )

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..issues import InputError
 from . import field as f
 
 
@@ -29,10 +30,37 @@ class BuildDirectionParameters:
     max_tilt: float = f.parameter(
         math.pi / 2, f.ANGLE, "Largest angle between the tool axis and the vertical of the part.", low=0.0, high=math.pi
     )
+    max_turn: float | str = f.parameter(
+        math.radians(30.0), f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an "
+        "existing part; where they would turn faster, at corners, they are spread, and how far they depart is told.",
+        low=0.0, open_low=True, words=("inf",),
+    )
+    plane: str = f.parameter(
+        "auto", f.TEXT, "Normal of the plane of symmetry-plane, as x y z in the part's coordinates; auto: the plane of a "
+        "bend.", advanced=True,
+    )
     clearance: str = f.parameter(
         "nozzle", f.CHOICE, "nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.",
         choices=("none", "nozzle"),
     )
 
     def __post_init__(self) -> None:
+        if self.max_turn == math.inf:
+            object.__setattr__(self, "max_turn", "inf")
         f.check(self, "build_direction")
+        self.plane_normal()
+
+    def plane_normal(self) -> tuple[float, float, float] | None:
+        """`plane` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no vector."""
+        if self.plane == "auto":
+            return None
+        try:
+            x, y, z = (float(word) for word in self.plane.replace(",", " ").split())
+        except ValueError:
+            x = y = z = math.nan
+        if not 0.0 < math.hypot(x, y, z) < math.inf:
+            raise InputError(
+                "BAD_VALUE", "build_direction.plane",
+                f"{self.plane!r} is no direction; give three numbers such as 0 1 0, or auto",
+            )
+        return x, y, z

@@ -16,12 +16,12 @@ from ..issues import InputError
 
 LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
 RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = "ratio", "number", "count", "flag", "choice", "text", "pose"
-ANGLE_RANGE = "angle range"
+ANGLE_RANGE, TURN_RATE = "angle range", "turn rate"
 GROUP = "group"
 
 # the unit a bare number has outside, and how many of ours one of it makes
-OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%"}
-TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, RATIO: 0.01}
+OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%", TURN_RATE: "deg/mm"}
+TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, TURN_RATE: math.pi / 180.0, RATIO: 0.01}
 
 
 @dataclass(frozen=True)

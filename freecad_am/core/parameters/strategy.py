@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from . import field as f
@@ -59,6 +60,10 @@ class SurfaceParameters(LayerParameters):
         0.2, f.RATIO, "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
         "layers, before there is a warning.",
         low=0.0, high=1.0,
+    )
+    max_turn: float = f.parameter(
+        math.radians(6.0), f.TURN_RATE, "Turn of the bead within the wall that smooth layers stay below where the band "
+        "allows.", low=0.0, open_low=True,
     )
     tolerance: float = f.parameter(
         1e-4, f.LENGTH, "Largest error of the local distance of constant-distance layers.", low=1e-6, high=1.0

@@ -22,7 +22,6 @@ from . import surface_directions
 from .surface_end import Stretch, trimmed
 
 TURN = 2.0 * np.pi
-SMOOTH_TURN = 0.1  # rad/mm, turn within the wall that smooth layers stay below where the band allows
 FINER = 4  # places per arc of a layer at which its distance from the one below is measured
 
 
@@ -38,7 +37,7 @@ def plan(
     surface_directions.refuse(wall, build)
     surface = wall.surface()
     curves = sliced(wall, surface, strategy)
-    issues = _spacing_issues(curves, strategy) + _corner_notes(surface, curves)
+    issues = _spacing_issues(curves, strategy) + _corner_notes(surface, curves, strategy)
     stretches, notes = _stretches(wall, surface, curves, strategy)
     layers, found = _layers(wall, surface, stretches, strategy, build, process)
     return Toolpath(
@@ -51,7 +50,7 @@ def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> l
     first = on_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
         found = smooth_spacing.layers(
-            surface, first, strategy.layer_height, wall.end, strategy.band, SMOOTH_TURN, label=wall.label
+            surface, first, strategy.layer_height, wall.end, strategy.band, strategy.max_turn, label=wall.label
         )
         return [first, *(smoothed.layer for smoothed in found)]
     rule = constant_distance.layers if strategy.spacing == "constant-distance" else iso_parameter.layers
@@ -195,11 +194,20 @@ def _spacing_issues(fronts: list[WallLayer], strategy: SurfaceParameters) -> lis
     return [Issue(WARNING, "SPACING", f"{text}, the layer height {height:g} mm; {advice}", worst)]
 
 
-def _corner_notes(surface: Placed, fronts: list[WallLayer]) -> list[Issue]:
+def _corner_notes(surface: Placed, fronts: list[WallLayer], strategy: SurfaceParameters) -> list[Issue]:
     """Corners that fronts have formed, for a robot slows down there; where there are none, the sharpest turn."""
     cornered = [index for index, front in enumerate(fronts) if len(front.curve.corners)]
     if not cornered:
         rates = [float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts]
+        over = [index for index, rate in enumerate(rates) if index and rate > SMOOTH_TURN]  # the first is the substrate's
+        if strategy.spacing == "smooth" and over:
+            return [Issue(
+                WARNING, "TURN",
+                f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(fronts)} layers "
+                f"turn by more than {np.degrees(SMOOTH_TURN):.3g} deg/mm, first layer {over[0]}, by up to "
+                f"{np.degrees(max(rates[1:])):.3g} deg/mm. The robot slows down there; a wider strategy.band rounds them",
+                int(np.argmax(rates[1:])) + 1,
+            )]
         text = f"no layer has a corner; within the wall they turn by up to {np.degrees(max(rates)):.3g} deg/mm"
         return [Issue(NOTE, "TURN", text, int(np.argmax(rates)))]
     turns = [float(front.curve.turns.max()) for front in fronts]
