@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cylinders and cones to grow on: their equidistant neighbours, and what lies on them laid flat (Dai 2020, 2.1 and 2.2).
+
+All in the hub's own frame: its axis is Z, the base circle of radius R lies at z = 0, the apex of a cone at z = H (eq. 1).
+With tan(a) = R / H a point at (rho, theta, z) is rho cos(a) + z sin(a) - R cos(a) away from the surface; since rho is never
+negative this is the nappe below the apex alone. A cylinder is the case a = 0, not a limit.
+
+Laid flat, x runs around the hub and y up along it: with the way s = (H - z) / cos(a) from the apex, s0 that of the base
+circle and phi = (theta - middle) sin(a), x = s sin(phi) and y = s0 - s cos(phi). Both maps are exact isometries; written
+from the base circle, not from the apex, they keep their digits however slim the cone (ERRATA on section 2.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Developable:
+    """A cone of base radius `radius` mm at z = 0 that ends in its apex at z = `height` mm; infinite for a cylinder."""
+
+    radius: float
+    height: float = math.inf
+
+    def __post_init__(self) -> None:
+        if not (self.radius > 0.0 and self.height > 0.0):
+            raise ValueError("radius and height of a base surface must be positive")
+
+    @property
+    def is_cylinder(self) -> bool:
+        """Whether it has no apex."""
+        return math.isinf(self.height)
+
+    @property
+    def taper(self) -> float:
+        """Half the opening angle a at the apex, rad; 0 for a cylinder."""
+        return 0.0 if self.is_cylinder else math.atan2(self.radius, self.height)
+
+    def offset(self, distance: float) -> Developable:
+        """The equidistant surface `distance` mm further out: R + d / cos(a), H + d / sin(a) (2.2 and 5).
+
+        ValueError where the distance leads inwards past the axis.
+        """
+        a = self.taper
+        height = math.inf if self.is_cylinder else self.height + distance / math.sin(a)
+        return Developable(self.radius + distance / math.cos(a), height)
+
+    def distance(self, points: Array) -> Array:
+        """How far (...,) mm points (..., 3) are outside the surface, along its normal; negative inside."""
+        a = self.taper
+        rho = np.hypot(points[..., 0], points[..., 1])
+        away: Array = (rho - self.radius) * math.cos(a) + points[..., 2] * math.sin(a)
+        return away
+
+    def normals(self, points: Array) -> Array:
+        """Unit normals (..., 3) out of the surface at points (..., 3); the same for all equidistant ones. On the axis, where
+        there is none, what is left of it along the axis."""
+        a = self.taper
+        rho = np.hypot(points[..., 0], points[..., 1])
+        level = math.cos(a) / np.maximum(rho, 1e-300)
+        return np.stack([points[..., 0] * level, points[..., 1] * level, np.full_like(rho, math.sin(a))], axis=-1)
+
+    @property
+    def slant(self) -> float:
+        """Way s0 from the apex to the base circle, mm."""
+        return self.height / math.cos(self.taper)
+
+    @property
+    def flat_turn(self) -> float:
+        """Angle (rad) of the sector that a whole turn becomes on the plane; 0 for a cylinder, whose turn is a length."""
+        return TURN * math.sin(self.taper)
+
+    def around(self, points: Array) -> Array:
+        """Azimuth (...,) rad of points (..., 3), in (-pi, pi]."""
+        azimuth: Array = np.arctan2(points[..., 1], points[..., 0])
+        return azimuth
+
+    def flat(self, points: Array, middle: float = 0.0) -> Array:
+        """Points (..., 3) of the surface laid flat, (..., 2) mm; it is cut open half a turn from the azimuth `middle`."""
+        theta = np.remainder(self.around(points) - middle + math.pi, TURN) - math.pi
+        return self.flat_at(theta, points[..., 2])
+
+    def flat_at(self, theta: Array, z: Array) -> Array:
+        """The same from azimuths past the cutting line's middle, which need not be within one turn, and heights."""
+        if self.is_cylinder:
+            return np.stack([self.radius * theta, z], axis=-1)
+        a = self.taper
+        s, phi = (self.height - z) / math.cos(a), theta * math.sin(a)
+        return np.stack([s * np.sin(phi), z / math.cos(a) + 2.0 * s * np.sin(0.5 * phi) ** 2], axis=-1)
+
+    def unrolled(self, flat: Array) -> tuple[Array, Array]:
+        """Azimuth past `middle` and height z, (...,), of points laid flat (..., 2)."""
+        x, y = flat[..., 0], flat[..., 1]
+        if self.is_cylinder:
+            return x / self.radius, y.copy()
+        a = self.taper
+        rest = self.slant - y
+        s = np.hypot(x, rest)
+        lower = ((2.0 * self.slant - y) * y - x * x) / (self.slant + s)  # s0 - s without cancellation
+        return np.arctan2(x, rest) / math.sin(a), lower * math.cos(a)
+
+    def rolled(self, flat: Array, middle: float = 0.0) -> Array:
+        """Points (..., 3) of the surface that lie at (..., 2) when laid flat: the inverse of `flat`."""
+        theta, z = self.unrolled(flat)
+        rho = self.radius if self.is_cylinder else (self.height - z) * math.tan(self.taper)
+        angle = theta + middle
+        return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=-1)

@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cuts of a closed mesh with equidistant cones or cylinders (Dai 2020, section 2.1).
+
+The distance from the base surface is a convex function along every straight line, so what of a facet lies below a cone is
+a convex piece of it: an edge is crossed once, twice or not at all, a facet at up to six places, and what leaves the cone
+along the facet's border comes back at the next place. That pairs the points of every case of the paper without telling
+the cases apart. A vertex on the cone counts as outside, everywhere alike, so that loops close whatever touches whatever
+(the paper's step 0 can leave an odd number of points). A facet that the hub's axis pierces may be cut in a curve that
+meets no edge. Within a facet the cut is a conic; it is followed to the chord error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.developable import TURN, Developable
+from ..geometry.mesh import chains
+from ..issues import InputError
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+NEWTON = 60
+HALVINGS = 14  # of the cut through one facet
+SHORTEST = 1e-9  # mm; points nearer together are one
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A closed cut: points (n, 3) mm in the hub's frame, the first not repeated, the solid to the left as seen from outside
+    the hub. turns: how often it goes round the hub, counted with its sense; 0 for a contour of a blade."""
+
+    points: Array
+    turns: int
+
+
+class Facets:
+    """A closed mesh prepared for cuts with equidistant surfaces of one base.
+
+    vertices (n, 3) mm in the hub's frame; faces (m, 3) with outward normals, every edge between two faces.
+    InputError 'OPEN_MESH' naming the place where an edge has one face, or more than two.
+    """
+
+    def __init__(self, base: Developable, vertices: Array, faces: Index, label: str = "part") -> None:
+        self.base, self.vertices, self.faces = base, vertices, faces
+        self.away = base.distance(vertices)
+        following = faces[:, [1, 2, 0]]
+        n = len(vertices)
+        forward = faces < following
+        key = np.where(forward, faces * n + following, following * n + faces).astype(np.int64).ravel()
+        order = np.argsort(key, kind="stable")
+        ranked = key[order]
+        first = np.r_[True, ranked[1:] != ranked[:-1]]
+        number = np.cumsum(first) - 1
+        self.edge_of: Index = np.empty(len(key), dtype=np.intp)
+        self.edge_of[order] = number
+        self.edge_of = self.edge_of.reshape(-1, 3)
+        self.forward: Mask = forward
+        unique = ranked[first]
+        self.start, self.end = np.divmod(unique, n)
+        counts = np.diff(np.r_[np.flatnonzero(first), len(ranked)])
+        if (counts != 2).any():
+            edge = int(np.flatnonzero(counts != 2)[0])
+            place = self.vertices[[self.start[edge], self.end[edge]]].mean(axis=0)
+            raise InputError(
+                "OPEN_MESH", label, f"{int((counts != 2).sum())} edges have not two faces, one at "
+                f"({place[0]:.4g}, {place[1]:.4g}, {place[2]:.4g}) mm from the hub's base; close the mesh",
+            )
+        self.sides: Index = (order.reshape(-1, 2) // 3).astype(np.intp)  # the two faces of each edge
+        ends = np.sort(np.stack([self.away[self.start], self.away[self.end]]), axis=0)
+        self.lower, self.upper = ends
+        self.dips, self.least = self._least_on_edges()
+        self.number: Index = np.full((len(self.start), 2), -1, dtype=np.intp)  # of crossings; room kept between cuts
+        self.pierced, self.piercing = self._pierced()
+
+    def cut(self, distance: float, chord_error: float) -> list[Loop]:
+        """The loops in which the equidistant surface at `distance` mm cuts the mesh, in a fixed order."""
+        inside = self.away < distance
+        once = np.flatnonzero((self.lower < distance) & (self.upper >= distance))
+        twice = self.dips[(self.least < distance) & (self.lower[self.dips] >= distance)]
+        loops = [self._round(face, spot, distance, chord_error) for face, spot in self._islands(distance)]
+        if not len(once) and not len(twice):
+            return loops
+        nodes = self._crossings(once, twice, inside, distance)
+        self.number[once, 0] = np.arange(len(once))
+        self.number[twice, 0] = len(once) + 2 * np.arange(len(twice))
+        self.number[twice, 1] = self.number[twice, 0] + 1
+        touched = np.unique(self.sides[np.r_[once, twice]])
+        following, face = self._links(touched, self.number, inside, len(nodes))
+        self.number[once] = self.number[twice] = -1
+        for chain, _ in chains(following):
+            points = self._followed(nodes, chain, following, face, distance, chord_error)
+            if len(points) >= 3:
+                loops.append(Loop(points, self._turns(points)))
+        return loops
+
+    def _least_on_edges(self) -> tuple[Index, Array]:
+        """The edges (k,) that come nearest to the base between their ends, and how near (k,), mm."""
+        p, q = self.vertices[self.start], self.vertices[self.end]
+        way = q - p
+        level = (way[:, :2] ** 2).sum(axis=1)
+        cos, sin = np.cos(self.base.taper), np.sin(self.base.taper)
+        toward = (p[:, :2] * way[:, :2]).sum(axis=1)
+        closest = (p[:, 0] * way[:, 1] - p[:, 1] * way[:, 0]) ** 2 / np.maximum(level, 1e-300)
+        # rho = sqrt(closest + level (t - t0)^2), closest being the line's squared distance from the axis;
+        # at the least d/dt (cos rho + sin z) = 0
+        slope = -sin * way[:, 2] / np.maximum(cos * np.sqrt(level), 1e-300)
+        turning = (np.abs(slope) < 1.0) & (level > 0.0)
+        reach = np.sqrt(closest) * np.where(turning, slope, 0.0) / np.sqrt(1.0 - np.where(turning, slope, 0.0) ** 2)
+        t = (-toward + reach * np.sqrt(level)) / np.maximum(level, 1e-300)
+        some = np.flatnonzero(turning & (t > 0.0) & (t < 1.0))
+        return some, self.base.distance(p[some] + t[some, None] * way[some])
+
+    def _pierced(self) -> tuple[Index, Array]:
+        """Faces that the axis goes through, and where (k, 3)."""
+        x, y = self.vertices[self.faces][..., 0], self.vertices[self.faces][..., 1]
+        sides = x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)
+        found = np.flatnonzero((sides > 0.0).all(axis=1) | (sides < 0.0).all(axis=1))
+        share = np.roll(sides[found], -1, axis=1)
+        share = share / share.sum(axis=1)[:, None]
+        z = (share * self.vertices[self.faces[found]][..., 2]).sum(axis=1)
+        return found, np.stack([np.zeros(len(z)), np.zeros(len(z)), z], axis=1)
+
+    def _islands(self, distance: float) -> list[tuple[int, Array]]:
+        """Faces cut in a closed curve that meets no edge, with a place inside of it."""
+        if not len(self.pierced):
+            return []
+        low = self.base.distance(self.piercing) < distance
+        clear = (self.away[self.faces[self.pierced]] >= distance).all(axis=1)
+        clear &= ~np.isin(self.edge_of[self.pierced], self.dips[self.least < distance]).any(axis=1)
+        return [(int(self.pierced[k]), self.piercing[k]) for k in np.flatnonzero(low & clear)]
+
+    def _crossings(self, once: Index, twice: Index, inside: Mask, distance: float) -> Array:
+        """Points where edges are crossed: (k, 3), those crossed twice with both points in the edge's own direction."""
+        starts_inside = inside[self.start[once]]
+        outer = np.where(starts_inside, self.end[once], self.start[once])
+        inner = np.where(starts_inside, self.start[once], self.end[once])
+        single = self._met(self.vertices[outer], self.vertices[inner], distance)
+        p, q = self.vertices[self.start[twice]], self.vertices[self.end[twice]]
+        both = np.stack([self._met(p, q, distance), self._met(q, p, distance)], axis=1)
+        return np.vstack([single, both.reshape(-1, 3)])
+
+    def _met(self, outer: Array, other: Array, distance: float) -> Array:
+        """Where lines from points outside first meet the surface: Newton on a convex function never oversteps."""
+        way = other - outer
+        t = np.zeros(len(outer))
+        for _ in range(NEWTON):
+            at = outer + t[:, None] * way
+            slope = (self.base.normals(at) * way).sum(axis=1)
+            step = (self.base.distance(at) - distance) / np.minimum(slope, -1e-300)
+            new = np.clip(np.where(slope < 0.0, t - step, t), t, 1.0)
+            if (new - t).max(initial=0.0) < 1e-15:
+                break
+            t = new
+        return np.asarray(outer + t[:, None] * way)
+
+    def _links(self, touched: Index, number: Index, inside: Mask, count: int) -> tuple[Index, Index]:
+        """The node that follows each node with the solid to its left, and the face between them."""
+        edges, forward = self.edge_of[touched], self.forward[touched]
+        low, high = number[edges, 0], number[edges, 1]
+        double = high >= 0
+        first, second = np.where(double & ~forward, high, low), np.where(double & forward, high, np.where(double, low, -1))
+        slots = np.stack([first, second], axis=2).reshape(-1, 6)
+        # along an edge crossed twice one goes in, then out; one crossed once tells by where it starts
+        begins_inside = inside[self.faces[touched]]
+        leaves = np.stack([np.where(double, False, begins_inside), np.ones_like(double)], axis=2).reshape(-1, 6)
+        used = slots >= 0
+        following, between = np.full(count, -1, dtype=np.intp), np.full(count, -1, dtype=np.intp)
+        waiting = used & leaves
+        for ahead in range(1, 6):
+            after = np.roll(slots, -ahead, axis=1)
+            row, column = np.nonzero(waiting & (after >= 0))
+            following[after[row, column]] = slots[row, column]
+            between[after[row, column]] = touched[row]
+            waiting[row, column] = False
+        return following, between
+
+    def _followed(
+        self, nodes: Array, chain: Index, following: Index, face: Index, distance: float, chord_error: float
+    ) -> Array:
+        """The nodes of a loop in order, with places between them where a chord would leave the cut."""
+        points, normal = nodes[chain], self._normals(face[chain])
+        gap = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+        points, normal = points[gap > SHORTEST], normal[gap > SHORTEST]
+        arcs: Index = np.arange(len(points))
+        for _ in range(HALVINGS):
+            start, end = points[arcs], points[(arcs + 1) % len(points)]
+            # what lies below the cone is convex: it fills the room between chord and cut, left of the way
+            side = np.cross(normal[arcs], end - start)
+            width = np.linalg.norm(side, axis=1)
+            side /= np.maximum(width, 1e-300)[:, None]
+            middle = 0.5 * (start + end)
+            pushed = self._pushed(middle, side, distance)
+            far = (np.linalg.norm(pushed - middle, axis=1) > chord_error) & (width > SHORTEST)
+            arcs, pushed = arcs[far], pushed[far]
+            if not len(arcs):
+                break
+            points = np.insert(points, arcs + 1, pushed, axis=0)
+            normal = np.insert(normal, arcs + 1, normal[arcs], axis=0)
+            arcs = arcs + np.arange(len(arcs))
+            arcs = np.sort(np.r_[arcs, arcs + 1])
+        return points
+
+    def _pushed(self, points: Array, way: Array, distance: float) -> Array:
+        """Points inside moved along unit vectors (k, 3) out to the surface."""
+        t = np.zeros(len(points))
+        for _ in range(NEWTON):
+            at = points + t[:, None] * way
+            slope = (self.base.normals(at) * way).sum(axis=1)
+            step = (distance - self.base.distance(at)) / np.maximum(slope, 1e-6)
+            t += step
+            if np.abs(step).max(initial=0.0) < 1e-14 * max(1.0, abs(distance)):
+                break
+        return np.asarray(points + t[:, None] * way)
+
+    def _round(self, face: int, spot: Array, distance: float, chord_error: float) -> Loop:
+        """The closed cut about the axis in a facet that it pierces; the solid is on the side the facet turns away from."""
+        normal = self._normals(np.array([face]))[0]
+        radius = self.base.radius + distance
+        count = int(np.clip(np.ceil(np.pi / np.arccos(max(1.0 - chord_error / radius, -1.0))), 12, 8192))
+        angle = TURN * np.arange(count) / count
+        way = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
+        way[:, 2] = -(way[:, :2] @ normal[:2]) / normal[2]
+        way /= np.linalg.norm(way, axis=1)[:, None]
+        # a hair off the axis, where the distance has its kink
+        points = self._pushed(spot + 1e-9 * radius * way, way, distance)
+        return Loop(points if normal[2] < 0.0 else points[::-1], -1 if normal[2] > 0.0 else 1)
+
+    def _normals(self, faces: Index) -> Array:
+        a, b, c = self.vertices[self.faces[faces]].transpose(1, 0, 2)
+        normal = np.cross(b - a, c - a)
+        unit: Array = normal / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+        return unit
+
+    def _turns(self, points: Array) -> int:
+        step = np.diff(self.base.around(points), append=self.base.around(points[:1]))
+        return int(np.round((np.remainder(step + np.pi, TURN) - np.pi).sum() / TURN))
