@@ -9,6 +9,7 @@ runs ahead and on its flanks it holds back, so that a corner of up to 2 acos((1 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -25,18 +26,22 @@ from .wall_layer import WallLayer, local_distances
 Array = NDArray[np.float64]
 
 MARGIN = 0.02  # of the band, kept free for what the curve does between its points
-WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance, tried in turn
-ROUNDS, RELAXED, CLOSE = 2000, 1.6, 1e-3  # of the alternation, and how near its two halves come, of the band
+WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
+HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for
+GAIN, IDLE = 0.02, 2
+ROUNDS, LOOK, RELAXED, CLOSE = 2000, 5, 1.6, 1e-3  # of the alternation; how near its two halves come, of the band
 FINER = 4  # places per arc at which the result is measured
 
 
 class Smoothed(NamedTuple):
-    """A layer, the least and greatest local distance (mm), and its sharpest turn within the wall (rad/mm)."""
+    """A layer, the least and greatest local distance (mm), its sharpest turn within the wall (rad/mm), and which of the
+    weights it was made with."""
 
     layer: WallLayer
     least: float
     most: float
     turn: float
+    weight: int
 
 
 def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
@@ -55,13 +60,14 @@ def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
 
 
 def next_layer(
-    surface: Surface, below: WallLayer, height: float, grid: Array, band: float, limit: float, label: str = "wall"
+    surface: Surface, below: WallLayer, height: float, grid: Array, band: float, limit: float, label: str = "wall",
+    weight: int = HEAVY,
 ) -> Smoothed:
     """The layer above `below`, as near to `height` mm as a turn within the wall of `limit` rad/mm allows.
 
     grid: (n,) equally spread values of v from seam to seam. band: largest departure of the local distance, as a share of
-    the height. Where the band is too narrow for the limit, the band holds: see Smoothed.turn. InputError
-    LAYER_HEIGHT where the wall has no point at such a distance.
+    the height. weight: where the search begins, best that of the layer below. Where the band is too narrow for the
+    limit, the band holds: see Smoothed.turn. InputError LAYER_HEIGHT where the wall has no point at such a distance.
     """
     fronts = []
     for share in (1.0, 1.0 - band * (1.0 - MARGIN), 1.0 + band * (1.0 - MARGIN)):
@@ -73,18 +79,44 @@ def next_layer(
             )
         fronts.append(places.u)
     wanted, low, high = fronts
-    best: Smoothed | None = None
-    for weight in WEIGHTS:
-        found = _measured(surface, below, grid, _between(wanted, low, high, float(weight)))
+
+    def trial(index: int) -> Smoothed | None:
+        found = _measured(surface, below, grid, _between(wanted, low, high, float(WEIGHTS[index])), index)
         inside = found.least >= (1.0 - band) * height and found.most <= (1.0 + band) * height
-        if inside and (best is None or found.turn < best.turn):
-            best = found
-            if found.turn <= limit:
-                break
+        return found if inside else None
+
+    best = _lightest(trial, weight, limit)
     if best is None:  # a front that can only follow the one below, corners and all
         raise InputError(
             "BAND", label, f"a band of {100.0 * band:g} % is too narrow for {len(grid) - 1} points around: use more of them",
         )
+    return best
+
+
+def _lightest(trial: Callable[[int], Smoothed | None], start: int, limit: float) -> Smoothed | None:
+    """The layer of the lightest weight that keeps the limit, searched from `start`, or the one that turns least.
+
+    A heavier weight turns less until the band stops it; too heavy a one leaves the band (`trial` gives None).
+    """
+    best = trial(start)
+    for index in range(start - 1, -1, -1):
+        if best is not None and best.turn > limit:
+            break
+        lighter = trial(index)
+        if best is not None and (lighter is None or lighter.turn > limit):
+            return best
+        best = lighter
+    if best is None or best.turn <= limit or best.weight < start:
+        return best
+    idle = 0
+    for index in range(start + 1, len(WEIGHTS)):
+        heavier = trial(index)
+        if heavier is None:
+            break
+        idle = 0 if index <= HEAVY or heavier.turn < (1.0 - GAIN) * best.turn else idle + 1
+        best = min(best, heavier, key=lambda layer: layer.turn)
+        if best.turn <= limit or idle == IDLE:
+            break
     return best
 
 
@@ -97,7 +129,8 @@ def layers(
     done: list[Smoothed] = []
     below = first
     while below.u.min() < u_end:
-        done.append(next_layer(surface, below, height, grid, band, limit, label))
+        weight = done[-1].weight if done else HEAVY
+        done.append(next_layer(surface, below, height, grid, band, limit, label, weight))
         below = done[-1].layer
     return done
 
@@ -114,22 +147,23 @@ def _between(wanted: Array, low: Array, high: Array, weight: float) -> Array:
     solve = splu(csc_matrix(matrix + pull * identity(n))).solve
     bounded, debt = wanted, np.zeros(n)
     x = wanted
-    for _ in range(ROUNDS):
+    for count in range(ROUNDS):
         x = solve(wanted + pull * (bounded - debt))
         leaning = RELAXED * x + (1.0 - RELAXED) * bounded
-        bounded = np.clip(leaning + debt, low, high)
+        bounded = np.minimum(np.maximum(leaning + debt, low), high)
         debt = debt + leaning - bounded
-        if np.abs(x - bounded).max() < CLOSE * (high - low).max():
+        if count % LOOK == 0 and np.abs(x - bounded).max() < CLOSE * (high - low).max():
             break
     return x
 
 
-def _measured(surface: Surface, below: WallLayer, grid: Array, u: Array) -> Smoothed:
+def _measured(surface: Surface, below: WallLayer, grid: Array, u: Array, weight: int) -> Smoothed:
     closed = np.r_[u, u[0]]
     slope = CubicSpline(grid, closed, bc_type="periodic")(grid, 1)
     layer = WallLayer.of(surface, grid, closed, slope, slope)
     distance = local_distances(layer, below, FINER)[1]
-    return Smoothed(layer, float(distance.min()), float(distance.max()), float(turns_in_wall(surface, layer).max()))
+    turn = float(turns_in_wall(surface, layer).max())
+    return Smoothed(layer, float(distance.min()), float(distance.max()), turn, weight)
 
 
 def _angles(one: Array, other: Array, normal: Array) -> Array:

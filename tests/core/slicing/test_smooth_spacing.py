@@ -20,7 +20,7 @@ def first():
     return on_implicit(TORUS, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(TORUS, 360))
 
 
-@pytest.mark.parametrize("degrees, reached", [(6.0, 7.5), (2.0, 5.0)])
+@pytest.mark.parametrize("degrees, reached", [(6.0, 6.5), (2.0, 4.0)])
 def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reached):
     layers = smooth_spacing.layers(TORUS, first, HEIGHT, 0.5 * np.pi, BAND, np.radians(degrees))
     below = first
@@ -36,6 +36,18 @@ def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reac
     sharpest = [smooth_spacing.turns_in_wall(TORUS, layer).max() for layer in exact[6:]]
     assert min(sharpest) > np.radians(200.0)  # a corner of 69 degrees or more over the first arc behind it
     assert abs(len(layers) + 1 - len(exact)) <= 1
+
+
+def test_wherever_the_search_begins_it_finds_a_layer_that_keeps_the_limit(first):
+    grid, limit = even_grid(TORUS, 360), np.radians(4.5)
+    found = [
+        smooth_spacing.next_layer(TORUS, first, HEIGHT, grid, BAND, limit, weight=k).turn
+        for k in range(len(smooth_spacing.WEIGHTS))
+    ]
+    assert max(found) <= limit
+    narrow = [smooth_spacing.next_layer(TORUS, first, HEIGHT, grid, 0.01, 1e-3, weight=k) for k in range(0, 12, 4)]
+    assert all(layer.least >= 0.99 * HEIGHT and layer.most <= 1.01 * HEIGHT for layer in narrow)  # the band holds
+    assert min(layer.turn for layer in narrow) > 1e-3  # and it is told what that costs
 
 
 def test_where_the_front_is_smooth_anyway_its_distance_stays(first):
