@@ -29,6 +29,7 @@ MARGIN = 0.02  # of the band, kept free for what the curve does between its poin
 WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
 HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for
 GAIN, IDLE = 0.02, 2
+AIM = 0.8  # of the limit; layers above sharpen what is round, so some of it is kept for them
 ROUNDS, LOOK, RELAXED, CLOSE = 2000, 5, 1.6, 1e-3  # of the alternation; how near its two halves come, of the band
 FINER = 4  # places per arc at which the result is measured
 
@@ -85,7 +86,7 @@ def next_layer(
         inside = found.least >= (1.0 - band) * height and found.most <= (1.0 + band) * height
         return found if inside else None
 
-    best = _lightest(trial, weight, limit)
+    best = _lightest(trial, weight, AIM * limit)
     if best is None:  # a front that can only follow the one below, corners and all
         raise InputError(
             "BAND", label, f"a band of {100.0 * band:g} % is too narrow for {len(grid) - 1} points around: use more of them",
