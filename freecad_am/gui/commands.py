@@ -8,6 +8,7 @@ from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+from PySide import QtGui
 
 from . import icons
 
@@ -16,6 +17,9 @@ _PREFIX = "RoboticAM_"
 
 class Tool:
     """One command. `icon` is also the object it makes; `action` opens what the tool opens."""
+
+    name = ""  # without prefix
+    lacking = ""
 
     def __init__(self, icon: str, text: str, help: str, action: Callable[[], None]) -> None:
         self.icon, self.text, self.help, self.action = icon, text, help, action
@@ -28,8 +32,23 @@ class Tool:
         }
 
     def IsActive(self) -> bool:
-        """There is a document, and no task panel is open."""
-        return App.ActiveDocument is not None and not Gui.Control.activeDialog()
+        """There is a document, and no task panel is open; the tooltip says which of them is missing."""
+        lacking = ""
+        if App.ActiveDocument is None:
+            lacking = "First open a part, or make a document."
+        elif Gui.Control.activeDialog():
+            lacking = "First close the task panel that is open."
+        if lacking != self.lacking:
+            self.lacking = lacking
+            self._explain()
+        return not lacking
+
+    def _explain(self) -> None:
+        """Tell in the tooltips what is missing. FreeCAD sets them once."""
+        text = f"{self.help}. {self.lacking}" if self.lacking else self.help
+        for action in Gui.getMainWindow().findChildren(QtGui.QAction, _PREFIX + self.name):
+            action.setToolTip(text)
+            action.setStatusTip(text)
 
     def Activated(self, index: int = 0) -> None:
         """The tool was clicked."""
@@ -42,11 +61,16 @@ def register() -> list[str]:
         "NewJob": Tool("new_job", "New Job", "Makes all stages for the selected shape, from cell to program", _new_job),
         "Cell": Tool("cell", "Cell…", "Adds a cell: machine, set-up, platform and nozzle", _cell),
         "Feature": Tool("feature", "Feature…", "Takes the selected shape of revolution to be deposited", _feature),
+        "WallOnPart": Tool(
+            "wall_on_part", "Wall on Part…",
+            "Takes the selected faces as a wall to be deposited on the other object selected, from where it leaves it", _wall,
+        ),
         "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath),
         "JointPath": Tool("joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path),
         "Program": Tool("program", "Program…", "Writes the controller's program of a joint path", _program),
     }
     for name, tool in tools.items():
+        tool.name = name
         Gui.addCommand(_PREFIX + name, tool)
     return [_PREFIX + name for name in tools]
 
@@ -73,6 +97,12 @@ def _feature() -> None:
     from ..objects.feature import RevolutionFeature
 
     _open(RevolutionFeature, "Feature")
+
+
+def _wall() -> None:
+    from . import stage_panel, wall_panel
+
+    stage_panel.show(wall_panel.WallPanel())
 
 
 def _toolpath() -> None:

@@ -7,6 +7,8 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
+from .colours import WRONG
+
 WIDEST_LABEL = 96  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
 
@@ -37,18 +39,31 @@ class Fold:
         self.heading.setChecked(unfolded)
         self._show(unfolded)
 
-    def add(self, label: str, widget: Any) -> None:
-        """A row of the form."""
+    def add(self, label: str, widget: Any) -> Any:
+        """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
         name = QtGui.QLabel(label)
         name.setToolTip(widget.toolTip())
+        note = QtGui.QLabel()
+        note.setObjectName(f"{widget.objectName()}Note")
+        note.setWordWrap(True)
+        note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        note.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        note.hide()
+        both = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(both)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(1)
+        column.addWidget(widget)
+        column.addWidget(note)
         if widget.layout() is not None and widget.layout().count() > LONGEST_ROW:
             self.form.addRow(name)
-            self.form.addRow(widget)
+            self.form.addRow(both)
         else:
             if name.sizeHint().width() > WIDEST_LABEL:
                 name.setWordWrap(True)
                 name.setFixedWidth(WIDEST_LABEL)
-            self.form.addRow(name, widget)
+            self.form.addRow(name, both)
+        return note
 
     def _show(self, unfolded: bool) -> None:
         self.body.setVisible(unfolded)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coin nodes filled from arrays: polylines, points and surfaces between two circles."""
+"""Coin nodes filled from arrays: polylines, points, triangles and surfaces between two circles."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pivy import coin
+
+Array = NDArray[Any]
 
 DASHED = 0xF0F0
 
@@ -40,13 +43,15 @@ class Lines:
         """Show or hide the lines."""
         self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
 
-    def set(self, points: Any, counts: Any, colours: Any = None) -> None:
-        """points (n, 3), counts (m,) points of each polyline, colours (n, 3) 0..1 or None."""
+    def set(self, points: Any, counts: Any) -> None:
+        """points (n, 3), counts (m,) points of each polyline."""
         fill(self.coordinates.point, np.asarray(points, dtype=np.float32).reshape(-1, 3))
         fill(self.lines.numVertices, np.asarray(counts, dtype=np.int32))
-        if colours is not None:
-            self.binding.value = coin.SoMaterialBinding.PER_VERTEX
-            fill(self.colour.diffuseColor, np.asarray(colours, dtype=np.float32))
+
+    def paint(self, colours: Any) -> None:
+        """colours (n, 3) 0..1 of the points, instead of one colour."""
+        fill(self.colour.diffuseColor, np.asarray(colours, dtype=np.float32))
+        self.binding.value = coin.SoMaterialBinding.PER_VERTEX
 
 
 class Points:
@@ -67,6 +72,35 @@ class Points:
         values = np.asarray(points, dtype=np.float32).reshape(-1, 3)
         fill(self.coordinates.point, values)
         self.set_node.numPoints = len(values)
+
+
+class Faces:
+    """Triangles of one colour that shows what is behind, a little in front of the same faces of a body."""
+
+    def __init__(self, colour: Sequence[float], transparency: float) -> None:
+        self.node = coin.SoSwitch()
+        material, hints, offset = coin.SoMaterial(), coin.SoShapeHints(), coin.SoPolygonOffset()
+        material.diffuseColor.setValue(*colour)
+        material.transparency = transparency
+        hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING  # both sides are seen
+        offset.factor, offset.units = 0.5, 0.5  # FreeCAD's own faces have 1, and lines none
+        self.coordinates = coin.SoCoordinate3()
+        self.triangles = coin.SoIndexedFaceSet()
+        group = coin.SoSeparator()
+        for child in (unshaded(), material, hints, offset, self.coordinates, self.triangles):
+            group.addChild(child)
+        self.node.addChild(group)
+        self.show(True)
+
+    def show(self, visible: bool) -> None:
+        """Show or hide the triangles."""
+        self.node.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
+
+    def set(self, points: Any, corners: Any) -> None:
+        """points (n, 3), corners (m, 3) their indices."""
+        corners = np.asarray(corners, dtype=np.int32).reshape(-1, 3)
+        fill(self.coordinates.point, np.asarray(points, dtype=np.float32).reshape(-1, 3))
+        fill(self.triangles.coordIndex, np.column_stack([corners, np.full(len(corners), -1, dtype=np.int32)]).ravel())
 
 
 def fill(field: Any, values: Any) -> None:

@@ -13,6 +13,7 @@ from PySide import QtCore, QtGui
 from ..core.issues import AmError, InputError
 from ..objects.rows import rows
 from ..objects.stage import Stage, issues_of
+from ..objects.surface_feature import SurfaceFeature
 from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
@@ -24,20 +25,23 @@ CLOSED = "The document or object of this panel is gone; cancel and open the pane
 class StagePanel:
     """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK."""
 
+    icon = function = ""  # where they are not called as the stage's kind is
+
     def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
         self.proxy, self.choices, self.obj = proxy, choices, obj
         self.document = App.ActiveDocument
         self.form = QtGui.QWidget()
         self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
         self.form.setWindowTitle(title)
-        self.form.setWindowIcon(QtGui.QIcon(icons.path(proxy.kind.replace(" ", "_"))))
+        self.form.setWindowIcon(QtGui.QIcon(icons.path(self.icon or proxy.kind.replace(" ", "_"))))
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
         self.error = self._note("error", WRONG)
+        self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
         if choices:
             heading = Fold("Inputs", obj is None)
             for choice in choices:
-                heading.add(choice.label, choice.widget)
+                self.notes[choice.label] = heading.add(choice.label, choice.widget)
             self.column.addWidget(heading.widget)
         self.first_inputs = self._inputs()
         # by the name that errors give a parameter: its field, how the panel calls it, where it is
@@ -75,7 +79,7 @@ class StagePanel:
             value = row.default if current is None else current[row.key]
             field = fields.make(row, value, suggestions.of(section.prefix, row.key))
             self._mark_driven(field)
-            folds[title].add(field.label, field.widget)
+            self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(field.label, field.widget)
             name = field.label if title == section.group or row.spec.advanced else f"{title}, {field.label.lower()}"
             self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
@@ -125,7 +129,8 @@ class StagePanel:
             chosen = self._inputs()
             changed = self._changed()
             if self.obj is None:
-                recorded.make(self.document, f"make_{self.proxy.kind.replace(' ', '_')}", {**chosen, **changed})
+                function = self.function or f"make_{self.proxy.kind.replace(' ', '_')}"
+                recorded.make(self.document, function, {**chosen, **changed})
             elif changed or chosen != self.first_inputs:
                 recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
         except AmError as error:
@@ -171,6 +176,11 @@ def show(panel: Any) -> None:
 
 def edit(obj: Any) -> None:
     """Open the panel of an existing stage."""
+    if isinstance(obj.Proxy, SurfaceFeature):
+        from .wall_panel import WallPanel
+
+        show(WallPanel(obj))
+        return
     choices = inputs.of(type(obj.Proxy), obj)
     if obj.Proxy.kind == "program":
         choices.append(inputs.NameChoice(obj.ProgramName))

@@ -18,7 +18,7 @@ class StageView:
     """Draws the stored result of a stage, and tells its status by its icon."""
 
     icon: ClassVar[str] = ""
-    # view property: FreeCAD type, default, help
+    # view property: FreeCAD type, default (of an enumeration all choices, the default first), help
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {}
     obj: Any = None
     root: Any = None
@@ -34,7 +34,7 @@ class StageView:
         for name, (type_name, default, help) in self.options.items():
             if name not in have:
                 vobj.addProperty(type_name, name, "Drawing", help)
-                setattr(vobj, name, default)
+                setattr(vobj, name, list(default) if isinstance(default, tuple) else default)
 
     # ---- what a view defines
 

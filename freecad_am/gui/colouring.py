@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Colours of the points of a toolpath by what they tell - layer, local distance, tilt, speed - and how to read them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.process.spacing import local_distances
+from ..core.toolpath import Toolpath
+from .colours import ramp
+from .lines import Array
+
+LAYER, DISTANCE, TILT, SPEED = "layer", "local distance", "tilt", "speed"
+KINDS = (LAYER, DISTANCE, TILT, SPEED)
+TOO_NEAR, TOO_FAR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
+TICKS = 5
+_ALIKE = 1e-9
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How to read colours: the ramp goes from low to high; `ticks` are numbers beside it with their texts.
+
+    `below` and `above`: some values are outside. `without`: what has no value, '' when all have one. least, most: of
+    all values.
+    """
+
+    title: str
+    unit: str
+    low: float
+    high: float
+    ticks: tuple[tuple[float, str], ...]
+    least: float
+    most: float
+    below: bool = False
+    above: bool = False
+    without: str = ""
+
+    def share(self, values: Array) -> Array:
+        """Places of values on the ramp, 0..1; the middle where low is high."""
+        span = self.high - self.low
+        return (values - self.low) / span if span > 0.0 else np.full(values.shape, 0.5)
+
+
+def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
+    """Colours (n, 3) of all points in the order of deposit, and their scale. band: share of the layer height."""
+    if kind == DISTANCE:
+        return _by_distance(toolpath, band)
+    beads = [bead for _, _, bead in toolpath]
+    if kind == TILT:
+        upright = np.concatenate([bead.tool for bead in beads]) @ toolpath.frame[:3, 2]
+        values, title, unit = np.degrees(np.arccos(np.clip(upright, -1.0, 1.0))), "tilt", "deg"
+    elif kind == SPEED:
+        values, title, unit = np.concatenate([bead.speed for bead in beads]), "speed", "mm/s"
+    elif len(beads) == 1:
+        values, title, unit = np.linspace(0.0, 100.0, len(beads[0])), "way", "%"
+    else:
+        layers = [np.full(len(bead), float(layer)) for layer, _, bead in toolpath]
+        values, title, unit = np.concatenate(layers), "layer", ""
+    scale = automatic(values, title, unit)
+    return ramp(scale.share(values)), scale
+
+
+def automatic(values: Array, title: str, unit: str) -> Scale:
+    """A scale from the least to the most value; whole numbers where all are."""
+    low, high = float(values.min()), float(values.max())
+    if high - low <= _ALIKE * max(1.0, abs(high)):
+        return Scale(title, unit, low, low, ((low, f"{low:.4g}"),), low, high)
+    ticks = np.linspace(low, high, TICKS)
+    if title == LAYER:
+        ticks = np.unique(np.rint(ticks))
+    return Scale(title, unit, low, high, _texts(ticks), low, high)
+
+
+def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
+    values = np.concatenate(local_distances(toolpath))
+    known = np.isfinite(values)
+    height, title = toolpath.layer_height, "local distance"
+    if not known.any():
+        scale = Scale(title, "mm", height, height, ((height, f"{height:.4g}"),), height, height, without="first layer")
+        return np.tile(np.array(NONE), (len(values), 1)), scale
+    low, high = height * (1.0 - band), height * (1.0 + band)
+    found = values[known]
+    within = 1e-9 * height  # of rounding
+    below, above = known & (values < low - within), known & (values > high + within)
+    scale = Scale(
+        title, "mm", low, high, _texts(np.linspace(low, high, TICKS if high > low else 1)), float(found.min()),
+        float(found.max()), bool(below.any()), bool(above.any()), "" if known.all() else "first layer",
+    )
+    colours = ramp(scale.share(np.where(known, values, height)))
+    for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, NONE)):
+        colours[chosen] = colour
+    return colours, scale
+
+
+def _texts(ticks: Array) -> tuple[tuple[float, str], ...]:
+    """Numbers with as many decimals as tell them apart."""
+    step = float(ticks[1] - ticks[0]) if len(ticks) > 1 else 0.0
+    decimals = max(0, 1 - int(np.floor(np.log10(step)))) if step > 0.0 else 3
+    if np.allclose(ticks, np.rint(ticks), atol=1e-9):
+        decimals = 0
+    return tuple((float(tick), f"{tick:.{decimals}f}") for tick in ticks)

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""An input of a panel that is picked in the tree or the 3D view: a button waits for clicks, another one clears."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ..objects.stage import Link
+from . import recorded
+from .inputs import Input
+from .picking import EDGE, FACE, Pick, is_mesh
+
+_LIST = "App::PropertyLinkList"
+_SUB = "App::PropertyLinkSub"
+
+
+class PickField(Input):
+    """What a link of a stage holds: faces or edges of one object, a whole object, or several objects."""
+
+    def __init__(self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None]) -> None:
+        self.link, self.label = link, label
+        self.several = link.type_name == _LIST
+        self.element = "" if link.type_name != _SUB else EDGE if "Edge" in link.name else FACE
+        self.picks = self._present(present)
+        self.widget = QtGui.QWidget()
+        self.widget.setToolTip(link.help)
+        self.text = QtGui.QLineEdit()
+        self.text.setObjectName(link.name)
+        self.text.setReadOnly(True)
+        self.text.setMinimumWidth(40)
+        self.pick = _button("Pick", f"Pick{link.name}", f"Then click in the tree or the 3D view. {link.help}")
+        self.pick.setCheckable(True)
+        self.pick.toggled.connect(lambda on: toggled(self, on))
+        self.empty = _button("×", f"Clear{link.name}", "Clears it")
+        self.empty.clicked.connect(self.clear)
+        row = QtGui.QHBoxLayout(self.widget)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        row.addWidget(self.text, 1)
+        for button in (self.pick, self.empty):
+            row.addWidget(button)
+        self.show()
+
+    def _present(self, present: Any) -> list[Pick]:
+        if not present:
+            return []
+        if self.element:
+            return [Pick(present[0], tuple(name for name in present[1] if name))]
+        return [Pick(obj) for obj in (present if self.several else [present])]
+
+    # ---- picking
+
+    def take(self, pick: Pick) -> bool:
+        """Take what was clicked, or leave it out where it was in already; False for what cannot be taken."""
+        names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
+        if self.element == EDGE and not names or self.element and is_mesh(pick.obj):
+            return False
+        mine = self.picks[0] if self.picks else None
+        if self.several:
+            kept = [one for one in self.picks if one.obj != pick.obj]
+            self.picks = kept if len(kept) < len(self.picks) else [*kept, Pick(pick.obj)]
+        elif mine is not None and mine.names and names:
+            if mine.obj != pick.obj:
+                return False
+            kept_names = tuple(name for name in mine.names if name not in names)
+            new = tuple(name for name in names if name not in mine.names)
+            self.picks = [Pick(mine.obj, kept_names + new)] if kept_names + new else []
+        else:
+            self.picks = [Pick(pick.obj, names)]
+        self.show()
+        return True
+
+    @property
+    def more(self) -> bool:
+        """Whether further clicks add to what is picked."""
+        return self.several or bool(self.element and self.picks and self.picks[0].names)
+
+    def clear(self, *_: Any) -> None:
+        """Nothing is picked."""
+        self.picks = []
+        self.show()
+
+    def show(self) -> None:
+        """Tell what is picked, or what to click."""
+        text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in self.picks)
+        self.text.setText(text)
+        self.text.setCursorPosition(0)
+        self.text.setToolTip(text or self.link.help)
+        wanted = {FACE: "faces or an object", EDGE: "edges"}.get(self.element, "objects" if self.several else "an object")
+        waiting = f"click {wanted}" if self.pick.isChecked() else "none"
+        self.text.setPlaceholderText(waiting if not self.link.required or self.pick.isChecked() else "pick")
+        self.empty.setEnabled(bool(self.picks))
+
+    # ---- for the panel
+
+    @property
+    def missing(self) -> str:
+        if not self.link.required or self.picks:
+            return ""
+        return f"{self.label} is missing: click it in the tree or the 3D view."
+
+    def value(self) -> Any:
+        """What is picked as the link's property holds it."""
+        if self.several:
+            return [pick.obj for pick in self.picks]
+        if not self.picks:
+            return None
+        return (self.picks[0].obj, list(self.picks[0].names)) if self.element else self.picks[0].obj
+
+    def arguments(self) -> dict[str, str]:
+        references = [recorded.reference(pick.obj) for pick in self.picks]
+        if self.several:
+            return {self.link.key: f"[{', '.join(references)}]"}
+        if not self.picks:
+            return {self.link.key: "None"}
+        names = list(self.picks[0].names)
+        if self.link.name == "Source":
+            return {"source": references[0], "faces": repr(names)}
+        return {self.link.key: f"({references[0]}, {names!r})" if self.element else references[0]}
+
+
+def _button(text: str, name: str, help: str) -> Any:
+    button = QtGui.QToolButton()
+    button.setText(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    button.setFocusPolicy(QtCore.Qt.TabFocus)
+    return button

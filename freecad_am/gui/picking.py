@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the selection in the tree or the 3D view means: objects with their faces or edges, wall and substrate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCADGui as Gui
+
+from ..core.issues import InputError
+from ..objects.feature import global_shape
+from ..objects.stage import stage_of
+
+FACE, EDGE = "Face", "Edge"
+_GROUPS = ("App::Part", "App::DocumentObjectGroup")
+_SAME = 1e-6  # mm; of two faces that are the same
+
+
+@dataclass(frozen=True)
+class Pick:
+    """An object, and the names of the faces or edges of it that were picked; none for the whole object."""
+
+    obj: Any
+    names: tuple[str, ...] = ()
+
+
+def selected(document: Any) -> list[Pick]:
+    """What is selected in a document now, in the order of selection; what can be neither wall nor substrate left out."""
+    found: dict[str, Pick] = {}
+    for entry in Gui.Selection.getSelectionEx(document.Name, 0):
+        for path in entry.SubElementNames or ("",):
+            obj, name = resolved(entry.Object, path)
+            if usable(obj):
+                before = found.get(obj.Name, Pick(obj)).names
+                found[obj.Name] = Pick(obj, (*before, name) if name and name not in before else before)
+    return list(found.values())
+
+
+def usable(obj: Any) -> bool:
+    """Whether an object has a shape or a mesh, and is no stage of ours."""
+    if obj is None or stage_of(obj) is not None:
+        return False
+    shape = getattr(obj, "Shape", None)
+    return is_mesh(obj) or (shape is not None and not shape.isNull())
+
+
+def is_mesh(obj: Any) -> bool:
+    """Whether an object is a mesh, which has no faces to deposit."""
+    return hasattr(obj, "Mesh")
+
+
+def resolved(top: Any, path: str) -> tuple[Any, str]:
+    """The object that a selected element belongs to for its user, and the element's name on it, '' for all of it.
+
+    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the body, or of the
+    feature where it is not the body's tip. What a link shows belongs to the link.
+    """
+    *steps, element = path.split(".")
+    steps = [step for step in steps if step[:1] not in (";", "?")]  # names of FreeCAD 1.0 that outlive changes
+    obj = top
+    while steps and any(obj.isDerivedFrom(kind) for kind in _GROUPS):
+        obj = obj.Document.getObject(steps.pop(0)) or obj
+    if steps and obj.isDerivedFrom("PartDesign::Body"):
+        feature = obj.Document.getObject(steps[-1])
+        if feature is not None and feature != obj.Tip and usable(feature):
+            obj = feature
+    if not element.startswith((FACE, EDGE)) or is_mesh(obj):
+        return obj, ""
+    return obj, element if obj == top and not steps else _own_name(obj, top.getSubObject(path), element)
+
+
+def _own_name(obj: Any, picked: Any, element: str) -> str:
+    """The name that an object itself has for a face or edge in document coordinates; '' when it has no such."""
+    try:
+        shape = global_shape(obj)
+    except InputError:
+        return ""
+    kind = FACE if element.startswith(FACE) else EDGE
+    elements = shape.Faces if kind == FACE else shape.Edges
+    for number, one in enumerate(elements, start=1):
+        apart = (one.CenterOfMass - picked.CenterOfMass).Length
+        if apart < _SAME and abs(one.Length - picked.Length) < _SAME * max(1.0, one.Length):
+            return f"{kind}{number}"
+    return ""
+
+
+def with_faces(pick: Pick) -> Pick:
+    """The pick with its faces alone."""
+    return Pick(pick.obj, tuple(name for name in pick.names if name.startswith(FACE)))
+
+
+def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
+    """Wall and substrate of a selection, None for what it does not tell, and what is unclear about it.
+
+    The one with faces picked is the wall, else the first; a mesh is the substrate.
+    """
+    picks = [with_faces(pick) for pick in picks]
+    walls = [pick for pick in picks if not is_mesh(pick.obj)]
+    faced = [pick for pick in walls if pick.names]
+    if len(picks) > 2:
+        wall = faced[0] if len(faced) == 1 else None
+        return wall, None, f"{len(picks)} objects are selected; pick the {'wall and the ' * (wall is None)}substrate"
+    wall = (faced or walls or [None])[0]
+    others = [pick for pick in picks if pick is not wall]
+    return wall, Pick(others[0].obj) if len(others) == 1 else None, ""
