@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .geometry.outline import Outline, estimated, outline
 from .geometry.surroundings import Body
 from .issues import Issue
 
@@ -37,7 +39,9 @@ class Bead:
     points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the
     deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the
     unwrapped angle about the axis on parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s
-    of the segment that ends at the point. width: (n,) mm, or None where no bead model was used.
+    of the segment that ends at the point. width: (n,) mm, or None where no bead model was used. tangents: (n, 2, 3) unit
+    vectors along which the bead arrives at and leaves each point, the same but at corners; None where a strategy does
+    not know them.
     """
 
     points: Array
@@ -47,6 +51,7 @@ class Bead:
     speed: Array
     closed: bool
     width: Array | None = None
+    tangents: Array | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -58,8 +63,10 @@ class Bead:
             object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.width is not None:
             object.__setattr__(self, "width", _frozen(self.width, (n,), "width"))
-        for name in ("build", "tool"):
-            if np.abs(np.linalg.norm(getattr(self, name), axis=1) - 1.0).max() > 1e-9:
+        if self.tangents is not None:
+            object.__setattr__(self, "tangents", _frozen(self.tangents, (n, 2, 3), "tangents"))
+        for name in ("build", "tool", *(("tangents",) if self.tangents is not None else ())):
+            if np.abs(np.linalg.norm(getattr(self, name), axis=-1) - 1.0).max() > 1e-9:
                 raise ValueError(f"{name} holds a vector that is not of unit length")
         steps = np.diff(self.parameter)
         if not ((steps > 0).all() or (steps < 0).all()):
@@ -75,12 +82,21 @@ class Bead:
         """Length of the polyline, mm."""
         return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
 
+    @cached_property
+    def outline(self) -> Outline:
+        """The curve that the points outline: by the tangents where they are known, else by the circles through
+        neighbouring points. Corners are kept."""
+        if self.tangents is not None:
+            return outline(self.points, self.tangents)
+        return estimated(self.points, self.closed)
+
     def reversed(self) -> Bead:
         """The same bead run the other way."""
         return dataclasses.replace(
             self, points=self.points[::-1], build=self.build[::-1], tool=self.tool[::-1],
             parameter=self.parameter[::-1], speed=self.speed[::-1],
             width=None if self.width is None else self.width[::-1],
+            tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
         )
 
     def started_at(self, index: int) -> Bead:
@@ -97,7 +113,16 @@ class Bead:
         return dataclasses.replace(
             self, points=self.points[order], build=self.build[order], tool=self.tool[order], parameter=parameter,
             speed=self.speed[np.where(order == 0, n, order)], width=None if self.width is None else self.width[order],
+            tangents=None if self.tangents is None else self.tangents[order],
         )
+
+    def part(self, rows: slice) -> Bead:
+        """Some of its points, two or more in a row, as an open bead of their own."""
+        columns = {
+            entry.name: getattr(self, entry.name)[rows]
+            for entry in dataclasses.fields(self) if isinstance(getattr(self, entry.name), np.ndarray)
+        }
+        return dataclasses.replace(self, **columns, closed=False)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from .joint_path import BeadPath
 from .points import TURN
-from .straight import curve_points
 from .task import Task
 
 Array = NDArray[np.float64]
@@ -38,7 +37,8 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         return np.asarray(repeated / np.linalg.norm(repeated, axis=1, keepdims=True))
 
     position, tool = again(bead.points), directions(bead.tool)
-    position[-1] = curve_points(bead, float(share))[count - 1]
+    last, along_last = bead.outline.at(np.array([count - 1]), float(share))
+    position[-1] = last[0]
     phi = again(path.phi, float(path.phi[-1] - path.phi[0]))
     flange = task.cell.flange_poses(position, tool, phi)
     joints = _counted_from(path.joints[-1], task.inverse(flange))
@@ -48,12 +48,19 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         parameter=np.concatenate([bead.parameter, again(bead.parameter, bead.parameter[-1] - bead.parameter[0])]),
         speed=np.concatenate([bead.speed, bead.speed[1 : count + 1]]), closed=False,
         width=None if bead.width is None else np.concatenate([bead.width, again(bead.width)]),
+        tangents=None if bead.tangents is None else _run_on(bead.tangents, count, along_last),
     )
     return dataclasses.replace(
         path, bead=longer, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
         threshold=np.concatenate([path.threshold, again(path.threshold)]),
     )
+
+
+def _run_on(tangents: Array, count: int, last: Array) -> Array:
+    """Tangents (n, 2, 3) of a bead gone on to its point `count`, but ending along `last` (1, 3)."""
+    seam = np.stack([tangents[-1, 0], tangents[0, 1]])[None]
+    return np.concatenate([tangents[:-1], seam, tangents[1:count], np.repeat(last[:, None], 2, axis=1)])
 
 
 def _counted_from(start: Array, joints: Array) -> Array:

@@ -81,7 +81,7 @@ def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Arra
         parts = turns.pieces(task, bead, whole.joints, more)
         if len(parts) == 1:
             return None
-        cuts = [_piece(task, turns.cut(bead, part), place, coefficients) for part in parts]
+        cuts = [_piece(task, bead.part(part), place, coefficients) for part in parts]
         if all(piece.margin >= FITS for piece in cuts):
             return cuts
     return None

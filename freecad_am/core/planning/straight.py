@@ -17,8 +17,6 @@ Array = NDArray[np.float64]
 
 INSIDE = np.array([0.25, 0.5, 0.75])
 ROUNDS = 8
-# a bead that turns by more than this at a point has a corner there, rad
-CORNER = np.radians(35.0)
 # rounding room: beads of revolution use their chord error up by themselves, mm
 ROUNDING = 1e-6
 
@@ -55,33 +53,6 @@ def deviation(task: Task, bead: Bead, joints: Array) -> Array:
     return distance
 
 
-def curve_points(bead: Bead, share: float = 0.5) -> Array:
-    """(n - 1, 3) points of the curve over each segment, a share of the way along it: cubics through its ends.
-
-    The tangent at a point is that of the circle through it and its neighbours, so that a circle is met to the fourth
-    order in its turn per segment; a segment next to a corner is straight.
-    """
-    along = np.diff(bead.points, axis=0)
-    length = np.linalg.norm(along, axis=1, keepdims=True)
-    along = along / np.maximum(length, 1e-12)
-    rounded = bead.closed and len(along) > 2
-    before = np.concatenate([along[-1:] if rounded else along[:1], along])
-    after = np.concatenate([along, along[:1] if rounded else along[-1:]])
-    far = np.concatenate([length[-1:] if rounded else length[:1], length])
-    near = np.concatenate([length, length[:1] if rounded else length[-1:]])
-    tangent = before * near + after * far
-    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-12)
-    if not rounded and len(along) > 1:  # at an end, the circle of the point next to it
-        tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
-        tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
-    corner = (before * after).sum(axis=1) < np.cos(CORNER)
-    rest = 1.0 - share
-    bow = share * rest * length * (rest * (tangent[:-1] - along) - share * (tangent[1:] - along))
-    bow[corner[:-1] | corner[1:]] = 0.0
-    points: Array = rest * bead.points[:-1] + share * bead.points[1:] + bow
-    return points
-
-
 def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath:
     """The path with a point in the middle of each of the segments."""
     at = segments + 1
@@ -94,11 +65,13 @@ def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath
         return np.insert(column, at, mean / np.linalg.norm(mean, axis=1, keepdims=True), axis=0)
 
     bead = path.bead
+    points, tangents = bead.outline.at(segments, 0.5)
     finer = dataclasses.replace(
-        bead, points=np.insert(bead.points, at, curve_points(bead)[segments], axis=0),
+        bead, points=np.insert(bead.points, at, points, axis=0),
         build=middle_direction(bead.build), tool=middle_direction(bead.tool),
         parameter=middle(bead.parameter), speed=np.insert(bead.speed, at, bead.speed[at]),
         width=None if bead.width is None else middle(bead.width),
+        tangents=None if bead.tangents is None else np.insert(bead.tangents, at, tangents[:, None], axis=0),
     )
     phi = middle(path.phi)
     new = at + np.arange(len(at))

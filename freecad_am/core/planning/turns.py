@@ -8,7 +8,6 @@ has not even the stroke for a full turn, the bead is split.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import replace
 
@@ -116,14 +115,6 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
         if out[0] < 2:
             return [slice(0, len(bead))]
         cuts.append(cuts[-1] + int(out[0]) - 1)
-
-
-def cut(bead: Bead, part: slice) -> Bead:
-    """A part of a bead as an open bead of its own."""
-    return dataclasses.replace(
-        bead, points=bead.points[part], build=bead.build[part], tool=bead.tool[part], parameter=bead.parameter[part],
-        speed=bead.speed[part], width=None if bead.width is None else bead.width[part], closed=False,
-    )
 
 
 def is_spiral(bead: Bead) -> bool:

@@ -98,13 +98,13 @@ def _layers(
         for piece in pieces:
             start = process.seam.angle + index * process.seam.step
             w = _places(piece, start, strategy.chord_error)
-            points, along = _along(surface, piece, w, side)
+            points, along, tangents = _along(surface, piece, w, side)
             if _backwards(piece.closed, points, along, process, index, number):
-                points, along = points[::-1], _reversed(along)
+                points, along, tangents = points[::-1], _reversed(along), -tangents[::-1, ::-1]
             up, tool, back = surface_directions.directions(wall, along, build)
             if back > most:
                 most, where = back, index
-            beads.append(_bead(points, up, tool, piece.closed, process.travel_speed))
+            beads.append(_bead(points, tangents, up, tool, piece.closed, process.travel_speed))
             number += 1
         layers.append(Layer(tuple(beads)))
     return tuple(layers), surface_directions.cap_note(most, where)
@@ -132,8 +132,9 @@ def _outside(surface: Placed, piece: Stretch) -> _Side:
     return _Side(float(np.sign(out.sum())))
 
 
-def _along(surface: Placed, piece: Stretch, w: Array, side: _Side) -> tuple[Array, surface_directions.Along]:
-    """Points of a bead and the directions there; at a corner those halfway between its two sides."""
+def _along(surface: Placed, piece: Stretch, w: Array, side: _Side) -> tuple[Array, surface_directions.Along, Array]:
+    """Points of a bead, the directions there - at a corner those halfway between its two sides - and its tangents
+    (n, 2, 3) arriving at and leaving each point."""
     curve = piece.front.curve
     points, leaving, _ = curve.at(w)
     if piece.closed:
@@ -150,10 +151,11 @@ def _along(surface: Placed, piece: Stretch, w: Array, side: _Side) -> tuple[Arra
     _, rise, turn = surface.derivatives(u, v)
     normal = _unit(np.cross(rise, turn)) * side.sign
     up, forward = np.zeros_like(points), np.zeros_like(points)
-    for tangent in (_unit(arriving), _unit(leaving)):
+    tangents = _unit(np.stack([arriving, leaving], axis=1))
+    for tangent in (tangents[:, 0], tangents[:, 1]):
         up += _unit(rise - dot(rise, tangent)[:, None] * tangent)
         forward += tangent
-    return points, surface_directions.Along(_unit(forward), _unit(up), normal)
+    return points, surface_directions.Along(_unit(forward), _unit(up), normal), tangents
 
 
 def _backwards(
@@ -171,9 +173,9 @@ def _reversed(along: surface_directions.Along) -> surface_directions.Along:
     return surface_directions.Along(-along.forward[::-1], along.up[::-1], along.out[::-1])
 
 
-def _bead(points: Array, up: Array, tool: Array, closed: bool, speed: float) -> Bead:
+def _bead(points: Array, tangents: Array, up: Array, tool: Array, closed: bool, speed: float) -> Bead:
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return Bead(points, up, tool, TURN * length / length[-1], np.full(len(points), speed), closed)
+    return Bead(points, up, tool, TURN * length / length[-1], np.full(len(points), speed), closed, None, tangents)
 
 
 def _spacing_issues(fronts: list[WallLayer], strategy: SurfaceParameters) -> list[Issue]:
@@ -203,8 +205,8 @@ def _corner_notes(surface: Placed, fronts: list[WallLayer], strategy: SurfacePar
         if strategy.spacing == "smooth" and over:
             return [Issue(
                 WARNING, "TURN",
-                f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(fronts)} layers "
-                f"turn by more than {np.degrees(SMOOTH_TURN):.3g} deg/mm, first layer {over[0]}, by up to "
+                f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(fronts)} "
+                f"layers turn by more than {np.degrees(SMOOTH_TURN):.3g} deg/mm, first layer {over[0]}, by up to "
                 f"{np.degrees(max(rates[1:])):.3g} deg/mm. The robot slows down there; a wider strategy.band rounds them",
                 int(np.argmax(rates[1:])) + 1,
             )]

@@ -6,8 +6,11 @@ import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.straight import curve_points
 from freecad_am.core.toolpath import Bead
+
+
+def curve_points(bead, share=0.5):
+    return bead.outline.at(np.arange(len(bead) - 1), share)[0]
 
 
 def bead_of(points, closed):

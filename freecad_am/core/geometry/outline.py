@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The curve that a row of points outlines: a cubic over each segment, corners kept.
+
+A circle is met exactly in the middle of a segment and to the sixth order in its turn elsewhere; a curve whose tangents
+are known to the fourth order of the segment's length.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+# a row of points that turns by more than this has a corner there, where nothing else is known, rad
+CORNER = np.radians(35.0)
+
+
+@dataclass(frozen=True)
+class Outline:
+    """points: (n, 3) mm. leaving, arriving: (n - 1, 3) derivatives at the two ends of each segment, by its share."""
+
+    points: Array
+    leaving: Array
+    arriving: Array
+
+    def at(self, segment: Index, share: Array | float) -> tuple[Array, Array]:
+        """Points (k, 3) a share (k,) of the way along segments (k,), and the unit tangents (k, 3) there."""
+        s = np.broadcast_to(np.asarray(share, dtype=np.float64), segment.shape)[:, None]
+        start, chord = self.points[segment], self.points[segment + 1] - self.points[segment]
+        leaving, arriving = self.leaving[segment], self.arriving[segment]
+        rest = 1.0 - s
+        # the chord and what bows away from it, so that segments without a bow stay straight to the bit
+        away, toward = leaving - chord, arriving - chord
+        point = start + s * chord + s * rest * (rest * away - s * toward)
+        slope = chord + rest * (rest - 2.0 * s) * away + s * (s - 2.0 * rest) * toward
+        return point, unit(slope)
+
+
+def outline(points: Array, tangents: Array) -> Outline:
+    """The outline of points (n, 3) with unit tangents (n, 2, 3): arriving and leaving."""
+    chord = np.diff(points, axis=0)
+    length = np.linalg.norm(chord, axis=1)
+    along = unit(chord)
+    leaving, arriving = tangents[:-1, 1], tangents[1:, 0]
+    # the size at which the middle of a circle's arc is met
+    cosine = 0.5 * ((leaving + arriving) * along).sum(axis=1)
+    size = (length / np.maximum(0.5 * (1.0 + cosine), 0.5))[:, None]
+    return Outline(points, size * leaving, size * arriving)
+
+
+def estimated(points: Array, closed: bool) -> Outline:
+    """The outline of points (n, 3) alone: the tangent at a point is that of the circle through it and its neighbours.
+
+    A segment next to a corner is straight. closed: the last point is the first.
+    """
+    along = np.diff(points, axis=0)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = along / np.maximum(length, 1e-12)
+    rounded = closed and len(along) > 2
+    before = np.concatenate([along[-1:] if rounded else along[:1], along])
+    after = np.concatenate([along, along[:1] if rounded else along[-1:]])
+    far = np.concatenate([length[-1:] if rounded else length[:1], length])
+    near = np.concatenate([length, length[:1] if rounded else length[-1:]])
+    tangent = unit(before * near + after * far)
+    if not rounded and len(along) > 1:  # at an end, the circle of the point next to it
+        tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
+        tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
+    corner = (before * after).sum(axis=1) < np.cos(CORNER)
+    straight = (corner[:-1] | corner[1:])[:, None]
+    leaving, arriving = np.where(straight, along, tangent[:-1]), np.where(straight, along, tangent[1:])
+    return outline(points, np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1))
+
+
+def unit(vectors: Array) -> Array:
+    """The vectors (..., 3) at unit length; a vector of no length stays."""
+    result: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+    return result

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cubics through points: a helix with known tangents, an astroid with its cusps, the seam of a turned-about bead."""
+
+import numpy as np
+
+from freecad_am.core.geometry.outline import outline
+from freecad_am.core.toolpath import Bead
+
+
+def helix(t):
+    return np.c_[15 * np.cos(t), 15 * np.sin(t), 4 * t], np.c_[-15 * np.sin(t), 15 * np.cos(t), 4 + 0 * t]
+
+
+def test_points_and_tangents_between_are_the_curves_own():
+    steps = np.random.default_rng(3).uniform(0.5, 1.5, 90)
+    t = np.r_[0.0, np.cumsum(steps)] / steps.sum() * 2 * np.pi
+    points, slope = helix(t)
+    tangents = np.repeat((slope / np.linalg.norm(slope, axis=1, keepdims=True))[:, None], 2, axis=1)
+    curve = outline(points, tangents)
+    segment = np.repeat(np.arange(90), 3)
+    share = np.tile([0.25, 0.5, 0.75], 90)
+    found, along = curve.at(segment, share)
+    at = found[:, 2] / 4  # the helix tells the parameter of a point by its height
+    exact, slope = helix(at)
+    chord = 15 * np.diff(t).max() ** 2 / 8
+    assert np.linalg.norm(found - exact, axis=1).max() < 1e-5 < chord / 1000
+    assert np.abs(along - slope / np.linalg.norm(slope, axis=1, keepdims=True)).max() < 1e-4
+
+
+def test_a_corner_is_kept_and_both_its_sides_are_curves():
+    """Two half circles that meet at right angles: the segments beside the corner are arcs, not chords."""
+    t = np.linspace(0, np.pi / 2, 21)
+    first, second = np.c_[np.sin(t), 1 - np.cos(t), 0 * t], np.c_[1 - np.sin(t), 2 - np.cos(t), 0 * t]
+    into, out = np.c_[np.cos(t), np.sin(t), 0 * t], np.c_[-np.cos(t), np.sin(t), 0 * t]
+    points = 10 * np.r_[first, second[1:]]
+    tangents = np.stack([np.r_[into, out[1:]], np.r_[into[:-1], out]], axis=1)
+    found, _ = outline(points, tangents).at(np.arange(40), 0.5)
+    centre = np.where(np.arange(40) < 20, 0.0, 10.0)[:, None] * [1.0, 0, 0] + np.where(
+        np.arange(40) < 20, 10.0, 20.0)[:, None] * [0, 1.0, 0]
+    assert np.abs(np.linalg.norm(found - centre, axis=1) - 10).max() < 1e-12
+
+
+def test_tangents_go_with_the_bead():
+    t = np.linspace(0, 2 * np.pi, 33)
+    points = np.c_[20 * np.cos(t), 9 * np.sin(t), 3 * np.cos(2 * t)]
+    points[-1] = points[0]
+    slope = np.c_[-20 * np.sin(t), 9 * np.cos(t), -6 * np.sin(2 * t)]
+    tangents = np.repeat((slope / np.linalg.norm(slope, axis=1, keepdims=True))[:, None], 2, axis=1)
+    up = np.tile([0.0, 0.0, 1.0], (33, 1))
+    bead = Bead(points, up, up, t, np.ones(33), True, None, tangents)
+    each = np.arange(32)
+    middle = bead.outline.at(each, 0.5)[0]
+    assert np.abs(bead.reversed().outline.at(each, 0.5)[0] - middle[::-1]).max() < 1e-12
+    assert np.abs(bead.started_at(7).outline.at(each, 0.5)[0] - np.roll(middle, -7, axis=0)).max() < 1e-12
+    part = bead.part(slice(3, 9))
+    assert not part.closed and len(part) == 6
+    assert np.abs(part.outline.at(np.arange(5), 0.5)[0] - middle[3:8]).max() < 1e-12
