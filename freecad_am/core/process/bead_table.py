@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Calibration tables of bead models: comma separated values with one measured bead per row.
+
+Columns by name, in any order: radius_mm, travel_speed_mm_min, width_mm, height_mm and wire_feed_m_min; lines that begin
+with # are remarks.
+"""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from ..issues import InputError
+from .bead_model import MINUTE, BeadModel, fit
+
+BUILT_IN = {"csw": "dai-2020.csv"}
+FOLDER = Path(__file__).resolve().parents[2] / "beads"
+COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
+
+
+def load(name: str, folder: Path | None = None) -> BeadModel:
+    """The bead model of a built-in table ('csw': table 1 of Dai 2020) or of the table at a path, relative to `folder`.
+
+    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column) and those of `bead_model.fit`.
+    """
+    path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeError) as error:
+        raise InputError(
+            "NO_FILE", name,
+            f"the calibration table cannot be read ({type(error).__name__}); give none, csw or the path of one",
+        ) from None
+    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    rows = list(csv.DictReader(lines))
+    header = [] if not lines else next(csv.reader(lines[:1]))
+    missing = [column for column in COLUMNS if column not in header]
+    if missing:
+        raise InputError("BAD_TABLE", path.name, f"it has no column {missing[0]}; its first line names {', '.join(COLUMNS)}")
+    table = np.array([[_number(row, column, path.name, number) for column in COLUMNS] for number, row in enumerate(rows, 1)])
+    if not len(rows):
+        table = np.empty((0, len(COLUMNS)))
+    radius, speed, width, height, feed = table.T
+    if len(feed) and np.ptp(feed) > 1e-9 * feed.max():
+        raise InputError(
+            "BAD_TABLE", path.name, f"its beads were laid at wire feeds from {feed.min():g} to {feed.max():g} m/min; the "
+            "model is of one: keep the rows of one",
+        )
+    return fit(radius, speed / MINUTE, width, height, float(feed[0]) * 1000.0 / MINUTE if len(feed) else 0.0, path.name)
+
+
+def _number(row: dict[str, str | None], column: str, name: str, number: int) -> float:
+    try:
+        return float((row[column] or "").strip())
+    except ValueError:
+        raise InputError("BAD_TABLE", f"{name} row {number}", f"{column} {row[column]!r} is not a number") from None

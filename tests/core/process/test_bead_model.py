@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The bead model: the refit of table 1, its inverse, what it says outside its data, and speeds along a bead."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.process import bead_speed, bead_table
+from freecad_am.core.process.bead_model import fit
+
+TABLE = [  # Dai 2020, table 1: radius mm, travel speed mm/min, width mm, height mm
+    (30, 300, 12.52, 3.40), (30, 600, 9.86, 2.68), (30, 900, 9.14, 2.52), (50, 300, 12.44, 3.26), (50, 600, 9.46, 2.50),
+    (50, 900, 8.28, 2.44), (70, 300, 12.10, 3.12), (70, 600, 9.22, 2.52), (70, 900, 8.00, 2.34), (90, 300, 11.34, 3.34),
+    (90, 600, 8.72, 2.42), (90, 900, 7.46, 2.14),
+]
+
+
+def test_the_refit_of_the_errata():
+    width = bead_table.load("csw").width
+    assert (f"{width.m:.3f}", f"{width.p:.3f}", f"{width.t:.4f}") == ("85.550", "52.742", "-1.7542")
+    assert round(width.r_squared, 5) == 0.98023
+    assert round(width.rmse, 4) == 0.2775
+
+
+@pytest.mark.parametrize("column", [2, 3])
+def test_a_second_solver_agrees(column):
+    table = np.array(TABLE, float)
+    found = least_squares(
+        lambda x: x[0] * table[:, 1] ** (-1 / 3) + x[1] / table[:, 0] + x[2] - table[:, column], [50.0, 10.0, 0.0],
+        xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=[100.0, 50.0, 1.0],
+    )
+    model = bead_table.load("csw")
+    ours = (model.width, model.height)[column - 2]
+    np.testing.assert_allclose([ours.m, ours.p, ours.t], found.x, rtol=1e-6)
+
+
+def test_speed_and_width_are_inverse():
+    model = bead_table.load("csw")
+    rng = np.random.default_rng(1)
+    speed, radius = rng.uniform(5.0, 15.0, 500), rng.uniform(30.0, 90.0, 500)
+    width = model.widths(speed, radius)
+    for v, r, w in zip(speed, radius, width):
+        asked = model.speed_for(w, np.array([r]))
+        assert asked.speed[0] == pytest.approx(v, rel=1e-12)
+        assert not (asked.too_slow[0] or asked.too_fast[0] or asked.too_tight[0])
+
+
+def test_what_the_errata_say_of_9_5_mm():
+    model = bead_table.load("csw")
+    asked = model.speed_for(9.5, np.array([np.inf, 30.0, 10.0]))
+    np.testing.assert_allclose(asked.speed[:2] * 60.0, [439.0, 731.0], atol=0.6)
+    assert asked.too_tight.tolist() == [False, False, True]
+    assert asked.speed[2] == asked.speed[1]
+    # at one wire feed the bead is lower where it runs faster
+    straight, bend = model.heights(asked.speed[:2], np.array([np.inf, 30.0]))
+    assert bend < straight
+
+
+def test_outside_the_table_the_speed_is_kept_within_and_flagged():
+    model = bead_table.load("csw")
+    wide, narrow = model.speed_for(20.0, np.array([50.0])), model.speed_for(3.0, np.array([50.0]))
+    assert (wide.speed[0], narrow.speed[0]) == (300.0 / 60.0, 900.0 / 60.0)
+    assert (wide.too_slow[0], wide.too_fast[0], narrow.too_slow[0], narrow.too_fast[0]) == (True, False, False, True)
+    assert model.speed_for(0.1, np.array([40.0])).too_fast[0]  # narrower than any speed gives
+
+
+def columns(rows):
+    table = np.array(rows, float).reshape(-1, 4)
+    return table[:, 0], table[:, 1] / 60.0, table[:, 2], table[:, 3]
+
+
+@pytest.mark.parametrize("rows, code", [
+    (TABLE[:3], "TOO_FEW_ROWS"), ([], "TOO_FEW_ROWS"), (TABLE[::3], "COLLINEAR_TABLE"),
+    (TABLE[:3] + TABLE[:3], "COLLINEAR_TABLE"),
+    (TABLE[:-1] + [(90, 900, -7.46, 2.14)], "BAD_TABLE"), (TABLE[:-1] + [(0, 900, 7.46, 2.14)], "BAD_TABLE"),
+    (TABLE[:-1] + [(90, float("nan"), 7.46, 2.14)], "BAD_TABLE"),
+    ([(r, 1200 - v, w, h) for r, v, w, h in TABLE], "NO_MODEL"),
+])
+def test_tables_that_are_none(rows, code):
+    with pytest.raises(InputError) as caught:
+        fit(*columns(rows), 100.0, "table.csv")
+    assert caught.value.code == code
+
+
+HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
+
+
+@pytest.mark.parametrize("text, told", [
+    ("radius_mm,width_mm\n1,2\n", "travel_speed_mm_min"),
+    ("", "radius_mm"),
+    (HEAD + "30,300,12,3,6.5\n30,\"4,5\",12,3,6.5\n", "row 2"),
+    (HEAD + "".join(f"{r},{v},{w},{h},{5 + k % 2}\n" for k, (r, v, w, h) in enumerate(TABLE)), "wire feeds from 5 to 6"),
+])
+def test_files_that_are_no_table(tmp_path, text, told):
+    (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=told) as caught:
+        bead_table.load("mine.csv", tmp_path)
+    assert caught.value.code == "BAD_TABLE"
+
+
+def test_a_table_of_the_users_own(tmp_path):
+    head = "# laid on a Monday\nwidth_mm,radius_mm,height_mm,travel_speed_mm_min,wire_feed_m_min\n"
+    (tmp_path / "mine.csv").write_text(head + "".join(f"{w},{r},{h},{v},6.5\n" for r, v, w, h in TABLE), encoding="utf-8")
+    assert bead_table.load("mine.csv", tmp_path) == bead_table.load("csw")
+    with pytest.raises(InputError) as caught:
+        bead_table.load("other.csv", tmp_path)
+    assert caught.value.code == "NO_FILE"
+
+
+@pytest.mark.parametrize("radius", [3.0, 30.0, 90.0])
+def test_radius_of_circles(radius):
+    angle = np.linspace(0.0, 2.0 * math.pi, 200)
+    circle = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    circle[-1] = circle[0]
+    np.testing.assert_allclose(bead_speed.radii(circle, True, 0.5 * radius), radius, rtol=0.02)
+    np.testing.assert_allclose(bead_speed.radii(circle[:100], False, 0.5 * radius)[10:-10], radius, rtol=0.02)
+
+
+def test_radius_of_a_straight_way_with_a_corner():
+    way = np.array([[x, 0.0] for x in np.linspace(-50, 0, 51)] + [[0.0, y] for y in np.linspace(1, 50, 50)])
+    radius = bead_speed.radii(way, False, 8.0)
+    assert np.isinf(radius[:40]).all() and np.isinf(radius[62:]).all()
+    assert radius[50] == pytest.approx(8.0 / (math.pi / 2.0), rel=0.02)
+
+
+def test_speeds_a_machine_can_follow():
+    rng = np.random.default_rng(3)
+    points = np.cumsum(rng.uniform(0.1, 2.0, (300, 2)), axis=0)
+    points = np.vstack([points, points[:1]])
+    asked = rng.uniform(5.0, 15.0, 301)
+    asked[-1] = asked[0]
+    for closed in (True, False):
+        got = bead_speed.followed(points, asked, closed, 20.0)
+        step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        assert (got <= asked).all()
+        assert (np.abs(np.diff(got**2)) <= 2.0 * 20.0 * step + 1e-9).all()
+        # none could be higher: each is held by what was asked there or by a neighbour
+        held = np.isclose(got, asked)
+        for k in np.flatnonzero(~held):
+            sides = [j for j in (k - 1, k + 1) if 0 <= j < len(got)]
+            by_neighbour = [np.isclose(got[k] ** 2 - got[j] ** 2, 40.0 * step[min(j, k)]) for j in sides]
+            assert any(by_neighbour) or k in (0, len(got) - 1)
+        if closed:
+            assert got[0] == pytest.approx(got[-1])
