@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from . import field as f
 
+SPACINGS = ("constant-distance", "smooth", "iso-parameter")
+
 
 @dataclass(frozen=True)
 class LayerParameters:
@@ -54,7 +56,7 @@ class SurfaceParameters(LayerParameters):
         "constant-distance", f.CHOICE,
         "Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it "
         "and without corners (smooth), or along the lines up the wall (iso-parameter).",
-        choices=("constant-distance", "smooth", "iso-parameter"),
+        choices=SPACINGS,
     )
     band: float = f.parameter(
         0.2, f.RATIO, "Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter "
@@ -72,6 +74,13 @@ class SurfaceParameters(LayerParameters):
         "trim", f.CHOICE, "Last layers trimmed flush with the wall's upper edge, or whole layers alone.",
         choices=("trim", "whole"),
     )
+    compare: tuple[str, ...] = f.parameter(
+        (), f.TEXT, "Further spacings whose joint paths are planned for the comparison of the report."
+    )
 
     def __post_init__(self) -> None:
-        f.check(self, "strategy")
+        f.check(self, "strategy", skip=frozenset({"compare"}))
+        object.__setattr__(self, "compare", tuple(self.compare))
+        for spacing in self.compare:
+            if spacing not in SPACINGS:
+                raise f.unknown_choice("strategy.compare", spacing, SPACINGS)
