@@ -63,7 +63,7 @@ class SurfaceParameters(LayerParameters):
         "layers, before there is a warning.",
         low=0.0, high=1.0,
     )
-    max_turn: float = f.parameter(
+    bead_turn: float = f.parameter(
         math.radians(6.0), f.TURN_RATE, "Turn of the bead within the wall that smooth layers stay below where the band "
         "allows.", low=0.0, open_low=True,
     )

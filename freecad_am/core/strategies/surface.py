@@ -50,7 +50,7 @@ def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> l
     first = on_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
         found = smooth_spacing.layers(
-            surface, first, strategy.layer_height, wall.end, strategy.band, strategy.max_turn, label=wall.label
+            surface, first, strategy.layer_height, wall.end, strategy.band, strategy.bead_turn, label=wall.label
         )
         return [first, *(smoothed.layer for smoothed in found)]
     rule = constant_distance.layers if strategy.spacing == "constant-distance" else iso_parameter.layers
