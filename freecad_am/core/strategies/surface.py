@@ -201,7 +201,8 @@ def _corner_notes(surface: Placed, fronts: list[WallLayer], strategy: SurfacePar
     cornered = [index for index, front in enumerate(fronts) if len(front.curve.corners)]
     if not cornered:
         rates = [float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts]
-        over = [index for index, rate in enumerate(rates) if index and rate > strategy.max_turn]  # the first is the substrate's
+        # the first layer is the substrate's
+        over = [index for index, rate in enumerate(rates) if index and rate > strategy.max_turn]
         if strategy.spacing == "smooth" and over:
             return [Issue(
                 WARNING, "TURN",

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The paper's bend cut by every method: the figures of the errata, and what does not apply says so."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.strategy import SurfaceParameters
+from freecad_am.core.slicing.first_layer import on_implicit
+from freecad_am.core.slicing.wall_layer import even_grid
+from freecad_am.core.strategies import wall_comparison
+from freecad_am.core.strategies.wall_comparison import NORMAL, Refused
+
+
+def bend(tube=15.0):
+    torus = Torus(60.0, tube)
+    first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360))
+    return SurfaceWall("torus", (60.0, tube), np.eye(4), 0.5 * np.pi, first.curve.points[:-1])
+
+
+@pytest.fixture(scope="module")
+def compared():
+    return {one.method: one for one in wall_comparison.compare(bend(), SurfaceParameters(layer_height=5.0))}
+
+
+def test_iso_parameter_and_constant_distance_are_those_of_the_errata(compared):
+    before, after = compared["iso-parameter"], compared["constant-distance"]
+    assert (before.layers, after.layers) == (19, 16)
+    assert before.least == pytest.approx(2.49, abs=0.005)
+    assert before.most == pytest.approx(5.0, abs=1e-4)
+    assert (after.least, after.most) == pytest.approx((5.0, 5.0), abs=1e-3)
+    # figure 9: the step up the lines v = const is the layer height before, and up to 1.52 times as much after
+    assert all(np.allclose(step, 5.0, atol=1e-4) for step in before.step)
+    assert max(step.max() for step in after.step) == pytest.approx(5.0 * 1.52, abs=0.03)
+    assert before.corners == 0 and before.corner == 0.0
+    assert after.corners == 11 and np.degrees(after.corner) == pytest.approx(94.0, abs=1.0)  # 97 past the end
+
+
+def test_layers_normal_to_the_centreline_fan_out(compared):
+    normal = compared[NORMAL]
+    angle = 5.0 / 60.0
+    assert normal.most == pytest.approx(2.0 * 75.0 * np.sin(0.5 * angle), abs=1e-4)
+    assert normal.least == pytest.approx(2.0 * 45.0 * np.sin(0.5 * angle), abs=1e-4)
+    assert normal.turn == pytest.approx(0.0, abs=1e-6)  # meridians are geodesics
+    starts = [np.isfinite(distance).any() for distance in normal.distance]
+    assert all(starts)
+    assert np.isnan(normal.distance[0]).any() and np.isfinite(normal.distance[-1]).all()
+
+
+def test_smooth_keeps_band_and_turn(compared):
+    smooth, exact = compared["smooth"], compared["constant-distance"]
+    assert smooth.least >= 4.0 and smooth.most <= 6.0 and smooth.corners == 0
+    assert smooth.turn <= np.radians(6.0) < np.radians(200.0) < exact.turn
+
+
+def test_the_figures_hang_together(compared):
+    for one in compared.values():
+        assert len(one.around) == len(one.distance) == len(one.step) == one.layers - 1 == len(one.curves) - 1
+        assert one.least <= one.mean <= one.most
+        for around, distance, step in zip(one.around, one.distance, one.step, strict=True):
+            assert len(around) == len(distance) == len(step)
+            assert around[0] == 0.0 and around[-1] == pytest.approx(1.0) and (np.diff(around) > 0).all()
+            assert (step >= distance - 1e-3)[np.isfinite(step)].all()  # the nearest point is nearer than the one below
+        reach = np.concatenate(one.curves)
+        assert np.nanmin(reach[:, 0] ** 2 + reach[:, 2] ** 2) >= (32.0 - 1e-3) ** 2  # above the pipe
+        assert np.nanmin(reach[:, 0]) >= -60.0 - 1e-6  # below the end
+
+
+def test_a_method_that_cannot_be_is_told_with_its_reason(monkeypatch):
+    def refuse(*_, **__):
+        raise InputError("NOT_NORMAL", "wall", "not for this wall")
+
+    monkeypatch.setattr(wall_comparison.normal_layers, "layers", refuse)
+    found = wall_comparison.compare(bend(), SurfaceParameters(layer_height=10.0))
+    assert Refused(NORMAL, "not for this wall") in found
+    assert sum(isinstance(one, Refused) for one in found) == 1
+
+
+def test_unknown_spacings_are_refused():
+    with pytest.raises(InputError, match="smooth"):
+        SurfaceParameters(compare=("smoth",))
