@@ -202,12 +202,12 @@ def _corner_notes(surface: Placed, fronts: list[WallLayer], strategy: SurfacePar
     if not cornered:
         rates = [float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts]
         # the first layer is the substrate's
-        over = [index for index, rate in enumerate(rates) if index and rate > strategy.max_turn]
+        over = [index for index, rate in enumerate(rates) if index and rate > strategy.bead_turn]
         if strategy.spacing == "smooth" and over:
             return [Issue(
                 WARNING, "TURN",
                 f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(fronts)} "
-                f"layers turn by more than {np.degrees(strategy.max_turn):.3g} deg/mm, first layer {over[0]}, by up to "
+                f"layers turn by more than {np.degrees(strategy.bead_turn):.3g} deg/mm, first layer {over[0]}, by up to "
                 f"{np.degrees(max(rates[1:])):.3g} deg/mm. The robot slows down there; a wider strategy.band rounds them",
                 int(np.argmax(rates[1:])) + 1,
             )]
