@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..core.parameters.build_direction import BuildDirectionParameters
-from ..core.parameters.cell import NozzleParameters
+from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from ..core.strategies import revolution, surface
+from ..core.toolpath import Toolpath as CoreToolpath
 from .stage import Link, Outcome, Section, Stage, stage_of
 from .surface_feature import SurfaceFeature
 
@@ -38,19 +39,27 @@ class Toolpath(Stage):
         shape = stage_of(feature)
         assert shape is not None
         carried = None if cell is None else cell.Proxy.value(cell)
-        build = shape.parameters(feature, BuildDirectionParameters)
-        process = self.parameters(obj, ProcessParameters)
-        if isinstance(shape, SurfaceFeature):
-            toolpath = surface.plan(shape.value(feature), shape.parameters(feature, SurfaceParameters), build, process)
-        else:
-            toolpath = revolution.plan(
-                shape.value(feature), shape.parameters(feature, RevolutionParameters), build, process,
-                NozzleParameters() if carried is None else carried.nozzle,
-                0.0 if carried is None else carried.platform_diameter,
-                np.eye(4) if carried is not None and carried.mount == "part" else None,
-            )
+        family = SurfaceParameters if isinstance(shape, SurfaceFeature) else RevolutionParameters
+        toolpath = planned(
+            shape.value(feature), shape.parameters(feature, family), shape.parameters(feature, BuildDirectionParameters),
+            self.parameters(obj, ProcessParameters), carried,
+        )
         figures = (
             ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
             ("Length", toolpath.length),
         )
         return Outcome(toolpath, toolpath.issues, figures)
+
+
+def planned(
+    wall: Any, strategy: RevolutionParameters | SurfaceParameters, build: BuildDirectionParameters,
+    process: ProcessParameters, cell: CellParameters | None,
+) -> CoreToolpath:
+    """The toolpath of a wall, the result of a feature, cut by the strategy of its family."""
+    if isinstance(strategy, SurfaceParameters):
+        return surface.plan(wall, strategy, build, process)
+    return revolution.plan(
+        wall, strategy, build, process, NozzleParameters() if cell is None else cell.nozzle,
+        0.0 if cell is None else cell.platform_diameter,
+        np.eye(4) if cell is not None and cell.mount == "part" else None,
+    )
