@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 
+# of a joined bead's rotation from start to end, tried besides what the search found best
+OTHER_TURNS = (-1.0, 0.0, 1.0)
+
 
 def plan(
     task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
@@ -38,19 +41,44 @@ def plan(
     hopeless = [int(k) for k in np.flatnonzero(found.margin[best, each] < 0.0)]
     roomy = room.for_beads(task, [beads[k] for k in hopeless], [places[k] for k in hopeless])
     helped = {k: paths for k, paths in zip(hopeless, roomy) if paths is not None}
+    joined = task.joined & full.closed
+    starts = _with_other_turns(start, found) if joined.any() else start[None]
+    starts[1:, ~joined] = np.nan
     progress(0.4, "refining layers")
     wanted = np.array([k not in helped for k in each])
-    refined = refine.refine(task, full, threshold, start, wanted)
+    wanted |= np.array([len(helped.get(int(k), ())) > 1 and bool(joined[k]) for k in each])
+    refined = refine.refine(task, full, threshold, starts, wanted)
     progress(0.7, "settling")
     settled = valley.settle(task, coarse, coarse_threshold, refined.coefficients)
     paths = judged(task, beads, places, full, threshold, settled, refined)
-    if any(path.margin < FITS for path in paths):
+    equal = valley.as_good(task, [path.objective for path in paths], refined.objective)
+    if not equal.all() or any(path.margin < FITS for path in paths):
         # settling looks at few points of a bead: where all of them say otherwise, the optimum stays as it was found
         as_found = judged(task, beads, places, full, threshold, refined.coefficients, refined)
-        paths = [path if path.margin >= min(FITS, other.margin) else other for path, other in zip(paths, as_found)]
+        paths = [
+            path if good and path.margin >= min(FITS, other.margin) else other
+            for path, other, good in zip(paths, as_found, equal)
+        ]
+    # a joined bead that a higher degree serves in one piece need not be split
+    helped = {k: some for k, some in helped.items() if len(some) == 1 or not joined[k] or paths[k].margin < FITS}
     late = [int(k) for k in each if paths[k].margin < FITS and k not in helped and k not in hopeless]
     helped.update({
         k: found for k, found in zip(late, room.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
         if found is not None
     })
     return room.put_in(task, paths, helped)
+
+
+def _with_other_turns(start: Array, found: search.Found) -> Array:
+    """(S, B, degree + 1) the starts with the best of each other number of whole turns, NaN where it is the start's own.
+
+    Which number of turns is best can change with what a higher degree makes of it.
+    """
+    if start.shape[1] < 2:
+        return start[None]
+    others = []
+    for turns in OTHER_TURNS:
+        few = found.of_slope(turns)
+        best = few.coefficients[few.best(), np.arange(len(start))]
+        others.append(np.where(np.abs(best[:, 1:2] - start[:, 1:2]) < 1e-9, np.nan, best))
+    return np.stack([start, *others])

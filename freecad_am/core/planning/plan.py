@@ -28,6 +28,7 @@ Progress = Callable[[float, str], None]
 
 METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
 BRANCHES = 8
+REVOLUTION = "revolution"
 
 
 def _silent(fraction: float, text: str) -> None:
@@ -45,7 +46,7 @@ def plan_joints(
     places = [(layer, index) for layer, index, _ in toolpath]
     beads = [bead for _, _, bead in toolpath]
     branch = cell.branch if cell.branch is not None else best_branch(beads, cell, parameters)
-    task = Task(cell, branch, parameters)
+    task = Task(cell, branch, parameters, toolpath.family != REVOLUTION)
     paths, issues = _planned(task, toolpath, beads, places, progress)
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
@@ -95,7 +96,7 @@ def _compared(
     task: Task, beads: Sequence[Bead], places: Sequence[tuple[int, int]], method: str, progress: Progress
 ) -> dict[str, object]:
     started = time.perf_counter()
-    other = Task(task.cell, task.branch, dataclasses.replace(task.parameters, method=method))
+    other = dataclasses.replace(task, parameters=dataclasses.replace(task.parameters, method=method))
     paths, issues = METHODS[method](other, beads, places, progress)
     for path in paths:
         issues += findings(other, path)

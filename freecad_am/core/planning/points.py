@@ -20,13 +20,14 @@ TURN = 2.0 * np.pi
 @dataclass(frozen=True)
 class Points:
     """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
-    first point. bead: (T,) the bead a point belongs to."""
+    first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts."""
 
     position: Array
     tool: Array
     parameter: Array
     first: NDArray[np.int64]
     bead: NDArray[np.int64]
+    closed: NDArray[np.bool_]
     frames: PoseFrames
 
     def __len__(self) -> int:
@@ -36,6 +37,11 @@ class Points:
     def beads(self) -> int:
         """Number of beads B."""
         return len(self.first)
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """The parameter (B,) at the first point of each bead, and at its last."""
+        return self.parameter[self.first], self.parameter[np.append(self.first[1:], len(self)) - 1]
 
     @cached_property
     def starts(self) -> NDArray[np.bool_]:
@@ -48,7 +54,8 @@ class Points:
         """Chosen points, each as a bead of its own."""
         alone = np.arange(len(index))
         return Points(
-            self.position[index], self.tool[index], self.parameter[index], alone, alone, self.frames.of(index)
+            self.position[index], self.tool[index], self.parameter[index], alone, alone,
+            np.zeros(len(index), dtype=bool), self.frames.of(index),
         )
 
     def only(self, bead: int) -> tuple[Points, slice]:
@@ -57,7 +64,8 @@ class Points:
         chosen = slice(int(ends[bead]), int(ends[bead + 1]))
         none = np.zeros(chosen.stop - chosen.start, dtype=np.int64)
         part = Points(
-            self.position[chosen], self.tool[chosen], self.parameter[chosen], none[:1], none, self.frames.of(chosen)
+            self.position[chosen], self.tool[chosen], self.parameter[chosen], none[:1], none,
+            self.closed[bead : bead + 1], self.frames.of(chosen),
         )
         return part, chosen
 
@@ -95,6 +103,7 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None) -> Points
         parameter=np.concatenate([bead.parameter[index] for bead, index in zip(beads, chosen)]),
         first=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
         bead=np.repeat(np.arange(len(beads)), counts),
+        closed=np.array([bead.closed for bead in beads], dtype=bool),
         frames=cell.pose_frames(position, tool),
     )
 

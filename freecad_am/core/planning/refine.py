@@ -13,14 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
-from . import criteria
+from . import basis, criteria
 from .points import Points
 from .task import Task
 
 Array = NDArray[np.float64]
 
-# share by which the condition stays above its threshold, so that an optimum on it does not fall below by rounding
-CONDITION_RESERVE = 1e-6
+# share by which the condition stays above its threshold, so that an optimum on it does not fall below between the points
+CONDITION_RESERVE = 1e-3
+# by how little a constraint may be violated and count as kept: limits and condition have reserves many times as wide
+KEPT = 4e-7
 STATIONARY = "stationary at the start found by the search"
 
 
@@ -47,36 +49,79 @@ class _State:
 
 
 def refine(
-    task: Task, points: Points, thresholds: Array, start: Array, wanted: NDArray[np.bool_] | None = None
+    task: Task, points: Points, thresholds: Array, starts: Array, wanted: NDArray[np.bool_] | None = None
 ) -> Refined:
-    """Improve the coefficients (B, degree + 1) of every bead, or of the wanted (B,); points are all points of the beads."""
-    first = _state(task, points, thresholds, start, slopes=False)
+    """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
+
+    starts: (S, B, degree + 1), the first the one to be preferred; NaN where a bead has no further one. Closed beads that
+    join up stay joined.
+    """
+    first = _state(task, points, thresholds, starts[0], slopes=False)
     tolerance = task.parameters.tolerance
-    done = np.isfinite(first.objective) & (first.predicted <= tolerance) & (first.constraints >= 0.0).all(axis=1)
+    alone = np.isnan(starts[1:]).any(axis=(0, 2)) if len(starts) > 1 else np.ones(points.beads, dtype=bool)
+    done = np.isfinite(first.objective) & (first.predicted <= tolerance) & (first.constraints >= 0.0).all(axis=1) & alone
     if wanted is not None:
         done |= ~wanted
-    coefficients, objective = start.copy(), first.objective.copy()
+    coefficients, objective = starts[0].copy(), first.objective.copy()
     reasons = [STATIONARY] * points.beads
     iterations = [0] * points.beads
+    directions = basis.changes(task, points, starts.shape[2] - 1)
     for bead in np.flatnonzero(~done):
         part, chosen = points.only(int(bead))
-        found, value, reasons[bead], iterations[bead] = _slsqp(task, part, thresholds[chosen], start[bead])
-        coefficients[bead], objective[bead] = found, value
+        tried = [
+            _climbed(_Bead(task, part, thresholds[chosen]), start, directions[bead])
+            for start in starts[:, bead] if np.isfinite(start).all()
+        ]
+        best = min(range(len(tried)), key=lambda k: (tried[k][0], tried[k][1], k))
+        _, objective[bead], coefficients[bead], reasons[bead], iterations[bead] = tried[best]
     return Refined(coefficients, objective, tuple(reasons), tuple(iterations))
 
 
-def _slsqp(task: Task, points: Points, thresholds: Array, start: Array) -> tuple[Array, float, str, int]:
+@dataclass(frozen=True)
+class _Bead:
+    """One bead alone, its points and the condition asked for at each."""
+
+    task: Task
+    points: Points
+    thresholds: Array
+
+    def state(self, coefficients: Array) -> _State:
+        return _state(self.task, self.points, self.thresholds, coefficients[None])
+
+    def worth(self, coefficients: Array) -> tuple[float, float]:
+        """By how much the constraints are violated at worst, and the objective: the less the better."""
+        state = self.state(coefficients)
+        worst = float(np.nan_to_num(state.constraints, nan=-1.0).min())
+        violated = max(0.0, -worst) if np.isfinite(state.objective[0]) else np.inf
+        return (violated if violated > KEPT else 0.0, float(state.objective[0]))
+
+
+def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float, Array, str, int]:
+    """Optimised degree by degree, so that a higher one is never worse: violation, objective, coefficients, why and after
+    how many iterations the last degree stopped."""
+    here, worth, reason, iterations = start, bead.worth(start), STATIONARY, 0
+    used = np.flatnonzero(np.abs(directions).any(axis=0))
+    for count in range(1, len(used) + 1):
+        # an open bead of the first degree has been looked at in the search for slope and offset at once
+        if count == 1 and len(used) > 1 and used[1] == 1:
+            continue
+        found, reason, iterations = _slsqp(bead, here, directions[:, used[:count]])
+        better = bead.worth(found)
+        if better <= worth:
+            here, worth = found, better
+    return (*worth, here, reason, iterations)
+
+
+def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, int]:
     from scipy.optimize import minimize  # slow to import, and most jobs on parts of revolution never need it
 
     cache: dict[bytes, _State] = {}
-    # coefficients of high powers act more strongly: bring them to the scale of a rotation
-    scale = np.abs(points.parameter).max() ** np.arange(len(start))
 
     def state(x: Array) -> _State:
         key = x.tobytes()
         if key not in cache:
             cache.clear()
-            cache[key] = _state(task, points, thresholds, (x / scale)[None])
+            cache[key] = bead.state(start + directions @ x)
         return cache[key]
 
     def objective(x: Array) -> float:
@@ -86,37 +131,25 @@ def _slsqp(task: Task, points: Points, thresholds: Array, start: Array) -> tuple
     # scipy's stubs do not know a list of constraint dictionaries with their own types
     result = minimize(  # type: ignore[call-overload]
         objective,
-        start * scale,
-        jac=lambda x: np.nan_to_num(state(x).gradient[0]) / scale,
+        np.zeros(directions.shape[1]),
+        jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions,
         constraints=[{
             "type": "ineq",
             "fun": lambda x: np.nan_to_num(state(x).constraints[0], nan=-1.0),
-            "jac": lambda x: np.nan_to_num(state(x).constraint_rates[0]) / scale,
+            "jac": lambda x: np.nan_to_num(state(x).constraint_rates[0]) @ directions,
         }],
         method="SLSQP",
-        options={"ftol": task.parameters.tolerance, "maxiter": task.parameters.max_iterations},
+        options={"ftol": bead.task.parameters.tolerance, "maxiter": bead.task.parameters.max_iterations},
     )
-    kept = _better(state, start * scale, result.x)
-    return kept / scale, float(state(kept).objective[0]), str(result.message), int(result.nit)
-
-
-def _better(state, start: Array, end: Array) -> Array:  # type: ignore[no-untyped-def]
-    """The end of the optimisation, or its start where only that is feasible."""
-    def violated(x: Array) -> float:
-        value = float(np.nan_to_num(state(x).constraints, nan=-1.0).min())
-        return max(0.0, -value) if np.isfinite(state(x).objective[0]) else np.inf
-
-    if violated(end) <= 1e-9 or violated(end) < violated(start):
-        return end
-    return start
+    return start + directions @ result.x, str(result.message), int(result.nit)
 
 
 def _state(task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True) -> _State:
-    """The state at coefficients (B, degree + 1); without `slopes` the constraints' derivatives are left at 0."""
+    """The state at coefficients (B, degree + 1): with the derivatives of the constraints, or else `predicted`."""
     phi, phi_rate = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
-        return _partly_unreachable(task, points, thresholds, coefficients, joints)
+        return _partly_unreachable(task, points, thresholds, coefficients, joints, slopes)
     rates, matrix = task.spin_rates(points, phi, joints)
     rates = rates * phi_rate[:, None]
     powers = points.powers(coefficients.shape[1] - 1)
@@ -126,11 +159,13 @@ def _state(task: Task, points: Points, thresholds: Array, coefficients: Array, s
     constraints, constraint_rates = _constraints(
         task, points, thresholds, phi, phi_rate, joints, rates, matrix, powers, slopes
     )
-    predicted = _predicted(task, points, joints, rates, powers, gradient)
+    predicted = np.full(points.beads, np.nan) if slopes else _predicted(task, points, joints, rates, powers, gradient)
     return _State(objective, gradient, predicted, constraints, constraint_rates)
 
 
-def _partly_unreachable(task: Task, points: Points, thresholds: Array, coefficients: Array, joints: Array) -> _State:
+def _partly_unreachable(
+    task: Task, points: Points, thresholds: Array, coefficients: Array, joints: Array, slopes: bool
+) -> _State:
     """With one bead there is nothing to say; with several, those within reach are still worth judging."""
     b, k = coefficients.shape
     rows = len(task.rows.labels) + 1 + _narrow(task)
@@ -142,7 +177,7 @@ def _partly_unreachable(task: Task, points: Points, thresholds: Array, coefficie
     lost = np.add.reduceat(np.isnan(joints).any(axis=1), points.first) > 0
     for bead in np.flatnonzero(~lost):
         part, chosen = points.only(int(bead))
-        one = _state(task, part, thresholds[chosen], coefficients[bead : bead + 1])
+        one = _state(task, part, thresholds[chosen], coefficients[bead : bead + 1], slopes)
         for name in ("objective", "gradient", "predicted", "constraints", "constraint_rates"):
             getattr(state, name)[bead] = getattr(one, name)[0]
     return state
@@ -190,11 +225,13 @@ def _where_worst(points: Points, values: Array, worst: Array) -> NDArray[np.int6
 
 
 def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: Array, gradient: Array) -> Array:
-    """(B,) how much the objective would still fall by its second-order model.
+    """(B,) how much the objective would still fall by its second-order model, joined beads staying joined.
 
     Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); of other objectives the
     gradient alone is taken.
     """
+    free = basis.changes(task, points, powers.shape[1] - 1)
+    gradient = (gradient[:, None] @ free)[:, 0]
     if task.parameters.objective != "displacement":
         return np.asarray(np.linalg.norm(gradient, axis=1))
     spread = rates[:, :, None] * powers[:, None, :]
@@ -202,6 +239,7 @@ def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: 
     change[1:] = spread[1:] - spread[:-1]
     change[points.starts] = 0.0
     curvature = 2.0 * points.total(np.einsum("a,iaj,iak->jki", task.weights, change, change)).transpose(2, 0, 1)
+    curvature = np.swapaxes(free, 1, 2) @ curvature @ free
     inverse = np.linalg.pinv(curvature, rcond=1e-10, hermitian=True)
     fall: Array = 0.5 * np.einsum("bj,bjk,bk->b", gradient, inverse, gradient)
     return fall

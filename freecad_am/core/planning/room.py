@@ -21,8 +21,6 @@ from .task import FITS, Task
 Array = NDArray[np.float64]
 Place = tuple[int, int]
 
-# slopes that close a full turn in joint space: only with these can a seam be moved after the planning
-CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 OFFSETS = 72
 MORE_PIECES = 3
 MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
@@ -40,7 +38,8 @@ def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> lis
     free = dataclasses.replace(task, cell=dataclasses.replace(task.cell, limits=_last_endless(task.cell.limits)))
     coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
     threshold = task.thresholds(coarse)
-    found = search.everywhere(free, coarse, threshold, CLOSING_SLOPES, OFFSETS)
+    # only with slopes of whole turns can a seam be moved after the planning
+    found = search.everywhere(free, coarse, threshold, search.CLOSING_SLOPES, OFFSETS)
     best, each = found.best(), np.arange(len(usable))
     settled = valley.settle(free, coarse, threshold, found.coefficients[best, each])
     for number, k in enumerate(usable):
@@ -95,7 +94,7 @@ def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPat
     coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
     found = search.everywhere(task, coarse, task.thresholds(coarse))
     threshold = task.thresholds(full)
-    refined = refine.refine(task, full, threshold, found.coefficients[found.best()[0]])
+    refined = refine.refine(task, full, threshold, found.coefficients[None, found.best()[0]])
     return judged(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
 
 

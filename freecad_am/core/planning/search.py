@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 POINTS_PER_BEAD = 10
 OFFSETS = 24
 SLOPES = np.linspace(-2.0, 2.0, 13)
+# slopes that close a full turn in joint space
+CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
 # of candidates with the same objective the one that moves the joints less is taken
 TIE = 1e-6
 # poses handled at once, so that a long job does not fill the memory
@@ -43,6 +45,11 @@ class Found:
     objective: Array
     margin: Array
 
+    def of_slope(self, slope: float) -> Found:
+        """The candidates of one slope alone."""
+        chosen = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
+        return Found(self.coefficients[chosen], self.objective[chosen], self.margin[chosen])
+
     def best(self) -> NDArray[np.int64]:
         """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
         feasible = self.margin >= 0.0
@@ -50,8 +57,16 @@ class Found:
         return np.asarray(np.where(feasible.any(axis=0), ranked, self.margin.argmax(axis=0)), dtype=np.int64)
 
 
-def everywhere(task: Task, points: Points, thresholds: Array, slopes: Array = SLOPES, offsets: int = OFFSETS) -> Found:
-    """Candidates over the whole range of offset (one turn) and slope, for every bead of the points."""
+def everywhere(
+    task: Task, points: Points, thresholds: Array, slopes: Array | None = None, offsets: int = OFFSETS
+) -> Found:
+    """Candidates over the whole range of offset (one turn) and slope, for every bead of the points.
+
+    Of closed beads that have to join up those of slopes that do not make whole turns are out of the question.
+    """
+    joined = task.joined & points.closed
+    if slopes is None:
+        slopes = CLOSING_SLOPES if joined.all() else SLOPES
     degree = task.parameters.degree
     turn = np.arange(offsets) * (2.0 * np.pi / offsets) - np.pi
     slope = slopes if degree > 0 else np.zeros(1)
@@ -60,7 +75,10 @@ def everywhere(task: Task, points: Points, thresholds: Array, slopes: Array = SL
     coefficients[:, :, 0] = offset_grid[:, None]
     if degree > 0:
         coefficients[:, :, 1] = slope_grid[:, None]
-    return judge(task, points, thresholds, coefficients)
+    found = judge(task, points, thresholds, coefficients)
+    apart = np.abs(slope_grid - np.round(slope_grid)) > 1e-9
+    found.margin[np.ix_(apart, joined)] = UNREACHABLE
+    return found
 
 
 def judge(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Found:

@@ -78,11 +78,16 @@ def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
 
 @dataclass(frozen=True)
 class Task:
-    """A cell with one branch and the parameters of the planning."""
+    """A cell with one branch and the parameters of the planning.
+
+    joined: whether the polynomial of a closed bead must come back to its value but for whole turns. On parts of revolution
+    it need not: there a limited axis turns back between layers.
+    """
 
     cell: Cell
     branch: int
     parameters: JointParameters
+    joined: bool = False
 
     @cached_property
     def rows(self) -> LimitRows:

@@ -9,7 +9,7 @@ where several come equally close, the one with the least motion from the bead be
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import search
 from .points import TURN, Points
@@ -33,18 +33,24 @@ def settle(task: Task, points: Points, thresholds: Array, coefficients: Array) -
     here = search.judge(task, points, thresholds, coefficients[None])
     coarse = _moved(coefficients, np.broadcast_to(np.arange(COARSE)[:, None] * (TURN / COARSE), (COARSE, points.beads)))
     rough = search.judge(task, points, thresholds, coarse)
-    flat = rough.objective <= here.objective * (1.0 + FLAT) + task.parameters.tolerance
+    flat = as_good(task, rough.objective, here.objective)
     margin = np.where(flat, rough.margin, -np.inf)
     if not flat[1:].any():
         return coefficients
     around = _peaks(margin) * (TURN / COARSE)
     offsets = (around[:, None] + np.linspace(-1.0, 1.0, FINE)[:, None] * (TURN / COARSE)).reshape(-1, points.beads)
     near = search.judge(task, points, thresholds, _moved(coefficients, offsets))
-    flat = near.objective <= here.objective * (1.0 + FLAT) + task.parameters.tolerance
+    flat = as_good(task, near.objective, here.objective)
     margin = np.where(flat, near.margin, -np.inf)
     chosen = _least_motion(task, points, near.coefficients, margin)
     improved = margin[chosen, np.arange(points.beads)] > here.margin[0]
     return np.where(improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients)
+
+
+def as_good(task: Task, objective: ArrayLike, best: Array) -> NDArray[np.bool_]:
+    """Whether objectives count as equal to the best ones."""
+    good: NDArray[np.bool_] = np.asarray(objective) <= best * (1.0 + FLAT) + task.parameters.tolerance
+    return good
 
 
 def _peaks(margin: Array) -> Array:
