@@ -17,6 +17,6 @@ def body(source: Any, name: str) -> Body:
     """The triangles of a Part.Shape with faces, or of a Mesh.Mesh, in its coordinates; InputError 'NO_FACES'."""
     points, facets = source.Topology if hasattr(source, "Topology") else source.tessellate(DEFLECTION)
     if not len(facets):
-        raise InputError("NO_FACES", name, "it has no faces that the nozzle could be kept clear of; choose a solid or a mesh")
+        raise InputError("NO_FACES", name, "it has no faces to keep the nozzle clear of; choose a solid or a mesh")
     vertices = np.array([tuple(point) for point in points], dtype=np.float64)
     return Body(name, vertices, np.array(facets, dtype=np.int64))

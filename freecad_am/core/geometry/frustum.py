@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The nozzle as a convex solid, and whether straight segments and triangles reach into it. Exact.
+
+A frustum about the tool axis t: at the height x over the tip plane its radius is a + k x, from x = low to x = high. The
+function |y| - k x - a, y being the part of a point's offset across the axis, is convex: along a segment its least value
+has a closed form. A triangle whose edges all miss a convex solid meets it only where its plane's whole section of the
+solid is inside the triangle, so one point of the section decides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+ROUNDING = 1e-9  # mm of depth that is rounding
+
+
+@dataclass(frozen=True)
+class Frustum:
+    """radius: a, mm, at the tip plane; slope: k; low, high: mm over the tip plane.
+
+    All methods take offsets from the tip and unit tool axes (k, 3), row by row.
+    """
+
+    radius: float
+    slope: float
+    low: float
+    high: float
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of a point of the solid from the tip, mm."""
+        return float(np.hypot(self.high, self.radius + self.slope * self.high))
+
+    def near(self, offset: Array, axis: Array, size: Array) -> Mask:
+        """False where a ball of the radius `size` (k,) surely misses the solid."""
+        x = np.einsum("ij,ij->i", offset, axis)
+        side = np.sqrt(np.maximum(np.einsum("ij,ij->i", offset, offset) - x * x, 0.0))
+        lean = np.sqrt(1.0 + self.slope**2)
+        near: Mask = (side - self.radius - self.slope * x < size * lean) & (x > self.low - size) & (x < self.high + size)
+        return near
+
+    def holds(self, offset: Array, axis: Array) -> Mask:
+        """Whether points are inside."""
+        x = np.einsum("ij,ij->i", offset, axis)
+        room = self.radius + self.slope * x - ROUNDING
+        square = np.einsum("ij,ij->i", offset, offset) - x * x
+        inside: Mask = (x > self.low + ROUNDING) & (x < self.high - ROUNDING) & (room > 0.0) & (square < room * room)
+        return inside
+
+    def meets_segments(self, start: Array, end: Array, axis: Array) -> Mask:
+        """Whether segments reach into the solid."""
+        x, rise = np.einsum("ij,ij->i", start, axis), np.einsum("ij,ij->i", end - start, axis)
+        across = start - x[:, None] * axis
+        along = end - start - rise[:, None] * axis
+        steep = np.abs(rise) > 1e-12
+        safe = np.where(steep, rise, 1.0)
+        at_low, at_high = (self.low + ROUNDING - x) / safe, (self.high - ROUNDING - x) / safe
+        within = (x > self.low + ROUNDING) & (x < self.high - ROUNDING)
+        first = np.where(steep, np.maximum(np.minimum(at_low, at_high), 0.0), np.where(within, 0.0, 2.0))
+        last = np.where(steep, np.minimum(np.maximum(at_low, at_high), 1.0), 1.0)
+        square, mixed = np.einsum("ij,ij->i", along, along), np.einsum("ij,ij->i", across, along)
+        apart = np.einsum("ij,ij->i", across, across)
+        pull = self.slope * rise
+        bent = square - pull * pull > 1e-24
+        with np.errstate(divide="ignore", invalid="ignore"):
+            nearest = -mixed / square
+            off = np.maximum(apart - mixed * mixed / square, 0.0)
+            least = nearest + pull * np.sqrt(off / (square * (square - pull * pull)))
+        # where the cone opens faster than the segment leaves the axis, the deepest place is the end that is higher up
+        place = np.where(bent, np.clip(np.where(bent, least, 0.0), first, last), np.where(rise > 0.0, last, first))
+        side = np.linalg.norm(across + place[:, None] * along, axis=1)
+        meets: Mask = (first <= last) & (side - self.radius - self.slope * (x + place * rise) < -ROUNDING)
+        return meets
+
+    def meets_triangles(self, corners: Array, axis: Array) -> Mask:
+        """Whether triangles, corners (k, 3, 3), reach into the solid."""
+        a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+        meets = self.meets_segments(a, b, axis)
+        for start, end in ((b, c), (c, a)):
+            rest = np.flatnonzero(~meets)
+            meets[rest] = self.meets_segments(start[rest], end[rest], axis[rest])
+        rest = np.flatnonzero(~meets)
+        meets[rest] = self._section_inside(corners[rest], axis[rest])
+        return meets
+
+    def _section_inside(self, corners: Array, axis: Array) -> Mask:
+        """Whether a point of the section of the solid by each triangle's plane is in the triangle.
+
+        Where the plane misses the axis between the end discs, it cuts a diameter of one of them: the one that goes
+        farthest towards the plane.
+        """
+        base, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        normal = np.cross(one, other)
+        square = np.einsum("ij,ij->i", normal, normal)
+        level = np.einsum("ij,ij->i", normal, base)
+        lean = normal - np.einsum("ij,ij->i", normal, axis)[:, None] * axis
+        size = np.linalg.norm(lean, axis=1)
+        lean = lean / np.where(size > 0.0, size, 1.0)[:, None]
+        inside = np.zeros(len(corners), dtype=bool)
+        lines = [(self.low * axis, (self.high - self.low) * axis)]
+        for height in (self.low, self.high):
+            room = self.radius + self.slope * height
+            lines.append((height * axis - room * lean, 2.0 * room * lean))
+        for start, step in lines:
+            climb = np.einsum("ij,ij->i", normal, step)
+            crossing = climb != 0.0
+            place = (level - np.einsum("ij,ij->i", normal, start)) / np.where(crossing, climb, 1.0)
+            point = start + place[:, None] * step - base
+            u = np.einsum("ij,ij->i", np.cross(point, other), normal)
+            v = np.einsum("ij,ij->i", np.cross(one, point), normal)
+            inside |= (
+                crossing & (place > 1e-12) & (place < 1.0 - 1e-12) & (u >= 0.0) & (v >= 0.0) & (u + v <= square)
+            )
+        return inside & (square > 0.0)

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Many segments or triangles in a tree of balls, and which nozzles they reach into."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from .frustum import Array, Frustum, Mask
+from .surroundings import Body
+
+Index = NDArray[np.intp]
+
+BRANCH = 8
+QUERIES, PAIRS = 16384, 200_000  # worked on at once
+PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
+
+
+class Obstacles:
+    """Segments (m, 2, 3) or triangles (m, 3, 3), neighbours in the list near each other.
+
+    since: (m,) the moment from which each is there; none, then always.
+    """
+
+    def __init__(self, corners: Array, since: Index | None = None) -> None:
+        self.corners = corners
+        self.since = np.full(len(corners), -1, dtype=np.intp) if since is None else since
+        self._levels = [self._balls(1)]
+        while len(self._levels[-1][1]) > 2 * BRANCH:
+            self._levels.append(self._balls(BRANCH ** len(self._levels)))
+
+    def _balls(self, size: int) -> tuple[Array, Array, Index]:
+        """Centres, radii and earliest moments of the balls about so many obstacles each."""
+        starts = np.arange(0, len(self.corners), size)
+        if not len(starts):
+            return np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
+        low = np.minimum.reduceat(self.corners.min(axis=1), starts)
+        high = np.maximum.reduceat(self.corners.max(axis=1), starts)
+        centre = 0.5 * (low + high)
+        away = np.linalg.norm(self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None], axis=2).max(axis=1)
+        return centre, np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
+
+    def touched(self, nozzle: Frustum, tip: Array, axis: Array, moment: Index | None = None) -> Mask:
+        """Whether nozzles with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,)."""
+        found = np.zeros(len(tip), dtype=bool)
+        if not len(self.corners) or nozzle.high <= nozzle.low:
+            return found
+        if moment is None:
+            moment = np.zeros(len(tip), dtype=np.intp)
+        for first in range(0, len(tip), QUERIES):
+            some = slice(first, first + QUERIES)
+            found[some] = self._touched(nozzle, tip[some], axis[some], moment[some])
+        return found
+
+    def _touched(self, nozzle: Frustum, tip: Array, axis: Array, moment: Index) -> Mask:
+        found = np.zeros(len(tip), dtype=bool)
+        top = len(self._levels[-1][1])
+        query, node = np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip))
+        for depth in range(len(self._levels) - 1, -1, -1):
+            centre, radius, since = self._levels[depth]
+            near = (since[node] < moment[query])
+            query, node = query[near], node[near]
+            near = nozzle.near(centre[node] - tip[query], axis[query], radius[node])
+            query, node = query[near], node[near]
+            # one corner inside settles the matter without looking at all the rest
+            sample = node * BRANCH**depth
+            inside = nozzle.holds(self.corners[sample, 0] - tip[query], axis[query]) & (self.since[sample] < moment[query])
+            found[query[inside]] = True
+            left = ~found[query]
+            query, node = query[left], node[left]
+            if depth:
+                child = (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()
+                query, node = np.repeat(query, BRANCH), child
+                real = node < len(self._levels[depth - 1][1])
+                query, node = query[real], node[real]
+        for first in range(0, len(query), PAIRS):
+            q, n = query[first : first + PAIRS], node[first : first + PAIRS]
+            left = ~found[q]
+            q, n = q[left], n[left]
+            offset = self.corners[n] - tip[q, None]
+            if self.corners.shape[1] == 2:
+                meets = nozzle.meets_segments(offset[:, 0], offset[:, 1], axis[q])
+            else:
+                meets = nozzle.meets_triangles(offset, axis[q])
+            found[q[meets]] = True
+        return found
+
+
+def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Obstacles:
+    """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3)."""
+    low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
+    corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
+    while True:
+        corners = corners[((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)]
+        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        long = edges.max(axis=1, initial=0.0) > PIECE
+        if not long.any():
+            break
+        corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
+    if len(corners):
+        corners = corners[cKDTree(corners.mean(axis=1), leafsize=BRANCH).indices]
+    return Obstacles(corners)
+
+
+def _halves(corners: Array, edge: Index) -> Array:
+    """Triangles cut in two through the middle of an edge each."""
+    row = np.arange(len(corners))
+    a, b, c = (corners[row, (edge + k) % 3] for k in range(3))
+    middle = 0.5 * (a + b)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Keeps the nozzle clear of bodies and deposit along any beads, by tilting the tool axis no more than needed.
+
+The nozzle is the frustum of `clearance`. Its lowest part is left out, up to where its side is one nozzle diameter from the
+deposit point: there it touches what it stands on and the bead being laid. Points at or behind the tip plane are free, so
+is what is not deposited yet.
+
+In a bead on which the nozzle would touch, each point has candidate axes on cones about the asked one, in growing angle
+until every point has a clear one; of all ways through clear candidates that is taken for which the integral of tilt^2 +
+(SPREAD d tilt / ds)^2 along the bead is least. Finer candidates about the way found follow, level by level.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..geometry.frustum import Frustum
+from ..geometry.obstacles import Obstacles, of_bodies
+from ..geometry.surroundings import Body
+from ..issues import ERROR, NOTE, Issue
+from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.cell import NozzleParameters
+from ..toolpath import Layer, Toolpath
+from .least_turn import least
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
+LARGEST = np.radians(90.0)  # tilt that is tried
+LEVELS = 4  # of finer candidates, each of half the distance
+SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
+COARSE = 0.2  # mm of height left out more over bodies: their triangles are off the true faces by half of that
+CAP = 1e-9  # rad
+
+
+@dataclass(frozen=True)
+class _Room:
+    """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit."""
+
+    points: Array
+    bodies: Obstacles
+    deposit: Obstacles
+    above_bodies: Frustum
+    above_deposit: Frustum
+    max_tilt: float
+
+    def clear(self, at: Index, axis: Array) -> Mask:
+        """Whether the axes (k, 3) at the points numbered `at` (k,) are clear and within the cap."""
+        clear = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]) <= self.max_tilt + CAP
+        rows = np.flatnonzero(clear)
+        clear[rows] = ~self.bodies.touched(self.above_bodies, self.points[at[rows]], axis[rows])
+        rows = np.flatnonzero(clear)
+        clear[rows] = ~self.deposit.touched(self.above_deposit, self.points[at[rows]], axis[rows], at[rows] + 1)
+        return clear
+
+
+def left_out(nozzle: NozzleParameters) -> float:
+    """Height (mm) over the tip plane at which the nozzle's side is one nozzle diameter from the deposit point."""
+    a, k = 0.5 * nozzle.diameter, np.tan(nozzle.half_angle)
+    return float(a * (np.sqrt(k * k + 3.0 * (1.0 + k * k)) - k) / (1.0 + k * k))
+
+
+def kept_clear(
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
+    plane: Array | None = None,
+) -> Toolpath:
+    """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
+
+    bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
+    tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE.
+    """
+    beads = [bead for _, _, bead in toolpath]
+    begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
+    asked = np.concatenate([bead.tool for bead in beads])
+    room = _room(toolpath, bodies, nozzle, build.max_tilt)
+    free = room.clear(np.arange(len(asked)), asked)
+    blocked = [k for k in range(len(beads)) if not free[begin[k] : begin[k + 1]].all()]
+    if not blocked:
+        return toolpath
+    rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
+    closed = np.array([beads[k].closed for k in blocked])
+    bench = _Bench(room, rows, closed, asked, plane)
+    offset, stuck = bench.coarse()
+    for level in range(1, LEVELS + 1):
+        offset = bench.finer(offset, RING / 2.0**level, level)
+    tool, tilt = asked.copy(), np.zeros(len(asked))
+    flat = np.concatenate(rows)
+    tool[flat], tilt[flat] = bench.axes(flat, offset), np.linalg.norm(offset, axis=1)
+    lost = np.zeros(len(asked), dtype=bool)
+    lost[flat[stuck]] = True
+    layers = iter(np.split(tool, begin[1:-1]))
+    places = [(i, j) for i, j, _ in toolpath]
+    return dataclasses.replace(
+        toolpath,
+        layers=tuple(
+            Layer(tuple(dataclasses.replace(bead, tool=next(layers)) for bead in layer.beads)) for layer in toolpath.layers
+        ),
+        issues=(*toolpath.issues, *_issues(places, begin, tilt, lost)),
+    )
+
+
+def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
+    """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
+    beads = [bead for _, _, bead in toolpath]
+    points = np.concatenate([bead.points for bead in beads])
+    around = Frustum(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), left_out(nozzle) + COARSE, nozzle.length)
+    hit = of_bodies(bodies, points, around.reach).touched(around, points, np.concatenate([bead.tool for bead in beads]))
+    if not hit.any():
+        return []
+    begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
+    places = [(i, j) for i, j, _ in toolpath]
+    at, point = _place(places, begin, int(np.argmax(hit)))
+    names = " or ".join(body.name for body in bodies)
+    return [Issue(
+        ERROR, "CLEARANCE", f"the nozzle touches {names} at {int(hit.sum())} of {len(points)} points; on parts of "
+        "revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle", *at, point,
+    )]
+
+
+def _room(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float) -> _Room:
+    points = np.concatenate([bead.points for _, _, bead in toolpath])
+    ends = np.cumsum([len(bead) for _, _, bead in toolpath])
+    second = np.setdiff1d(np.arange(1, len(points)), ends)
+    a, k, low = 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), left_out(nozzle)
+    near_bodies = Frustum(a, k, low + COARSE, nozzle.length)
+    return _Room(
+        points, of_bodies(bodies, points, near_bodies.reach),
+        Obstacles(np.stack([points[second - 1], points[second]], axis=1), second),
+        near_bodies, Frustum(a, k, low, nozzle.length), max_tilt,
+    )
+
+
+class _Bench:
+    """The blocked beads side by side: their points one after the other (m,), and padded to chains (b, n).
+
+    A tilt is a turn from the asked axis, given by two components (rad) along directions that are carried along the bead
+    without twist; one of them is 0 where the tool must stay in a plane.
+    """
+
+    def __init__(self, room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None) -> None:
+        self.room, self.closed, self.plane = room, closed, plane
+        self.flat = np.concatenate(rows)
+        self.asked = asked
+        self.counts = np.array([len(row) for row in rows])
+        self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
+        self.sides = np.concatenate([_sides(asked[row], plane) for row in rows])
+        points = room.points[self.flat]
+        self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
+        self.step[self.begin + self.counts - 1] = 0.0
+
+    def axes(self, at: Index, offset: Array) -> Array:
+        """Tool axes (k, 3) of tilts (k, 2) at points numbered `at`, all of them among those of the blocked beads."""
+        return self._tilted(np.searchsorted(self.flat, at), offset)
+
+    def _tilted(self, place: Index, offset: Array) -> Array:
+        angle = np.linalg.norm(offset, axis=1)
+        towards = offset / np.where(angle > 0.0, angle, 1.0)[:, None]
+        lean = np.einsum("ki,kij->kj", towards, self.sides[place])
+        axis = np.cos(angle)[:, None] * self.asked[self.flat[place]] + np.sin(angle)[:, None] * lean
+        unit: Array = axis / np.linalg.norm(axis, axis=1, keepdims=True)
+        return np.where((angle > 0.0)[:, None], unit, self.asked[self.flat[place]])
+
+    def _clear(self, place: Index, offsets: Array) -> Mask:
+        """(k, s) whether the tilts (s, 2) or (k, s, 2) are clear at the places (k,)."""
+        offsets = np.broadcast_to(offsets, (len(place), *offsets.shape[-2:]))
+        s = offsets.shape[1]
+        spread = np.repeat(place, s)
+        return self.room.clear(self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))).reshape(-1, s)
+
+    def coarse(self) -> tuple[Array, Mask]:
+        """Tilts (m, 2) on the cones, and the points (m,) that have none that is clear; those hinder no one."""
+        states = np.zeros((1, 2))
+        allowed = self._clear(np.arange(len(self.flat)), states)
+        bead = np.repeat(np.arange(len(self.counts)), self.counts)
+        pending = np.ones(len(self.counts), dtype=bool)
+        for number in range(1, round(LARGEST / RING) + 1):
+            ring = self._ring(number)
+            states = np.concatenate([states, ring])
+            more = np.zeros((len(self.flat), len(ring)), dtype=bool)
+            some = np.flatnonzero(pending[bead])
+            more[some] = self._clear(some, ring)
+            # one ring more than the first that frees every point, so that there is a way round
+            had = np.logical_and.reduceat(self._both_ends(allowed).any(axis=1), self.begin)
+            allowed = np.hstack([allowed, more])
+            pending &= ~had
+            if not pending.any():
+                break
+        allowed = self._both_ends(allowed)
+        stuck = np.logical_not(allowed.any(axis=1))
+        allowed[stuck] = True
+        # a closed bead starts where its least tilt is, and with it
+        size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
+        anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
+        return states[self._least(states[None], allowed, anchor, size.argmin(axis=1))], stuck
+
+    def finer(self, offset: Array, step: float, turn: int) -> Array:
+        """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
+        around = step * np.arange(-2.0, 3.0)
+        grid = np.stack(np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1).reshape(-1, 2)
+        offsets = offset[:, None] + grid
+        here = len(grid) // 2
+        offsets[:, here] = offset
+        allowed = self._both_ends(self._clear(np.arange(len(offset)), offsets))
+        allowed[:, here] = True
+        # each time another point of a closed bead stays as it is
+        anchor = (self.counts - 1) * (turn % 3) // 3
+        chosen = self._least(offsets, allowed, anchor, np.full(len(offset), here))
+        better: Array = offsets[np.arange(len(offset)), chosen]
+        return better
+
+    def _ring(self, number: int) -> Array:
+        azimuth = 2.0 * np.pi * np.arange(AZIMUTHS) / AZIMUTHS if self.plane is None else np.array([0.0, np.pi])
+        ring: Array = number * RING * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
+        if self.plane is not None:
+            ring[:, 1] = 0.0
+        return ring
+
+    def _both_ends(self, allowed: Mask) -> Mask:
+        """The first and last point of a closed bead are one: what is allowed at both."""
+        allowed = allowed.copy()
+        first = self.begin[self.closed]
+        last = first + self.counts[self.closed] - 1
+        allowed[first] &= allowed[last]
+        allowed[last] = allowed[first]
+        return allowed
+
+    def _anchors(self, size: Array) -> Index:
+        return np.array([
+            int(np.argmin(size[start : start + count])) for start, count in zip(self.begin, self.counts, strict=True)
+        ])
+
+    def _least(self, states: Array, allowed: Mask, anchor: Index, fixed: Index) -> Index:
+        """(m,) the states of least cost; a closed bead is run from the anchor all around, its state there `fixed`."""
+        n, s = int(self.counts.max()), allowed.shape[1]
+        place = np.zeros((len(self.counts), n), dtype=np.intp)  # of the chains' points in the list, the pads at any
+        weight, change = np.zeros(place.shape), np.zeros((len(place), n - 1))
+        free = np.ones((*place.shape, s), dtype=bool)
+        for k, (start, count) in enumerate(zip(self.begin, self.counts, strict=True)):
+            around = np.arange(count)
+            if self.closed[k]:
+                around = np.r_[np.arange(anchor[k], count - 1), np.arange(anchor[k]), anchor[k]]
+            place[k, :count] = start + around
+            step = self.step[place[k, : count - 1]]
+            weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
+            change[k, : count - 1] = SPREAD**2 / np.maximum(step, 1e-6)
+            free[k, :count] = allowed[place[k, :count]]
+            if self.closed[k]:
+                ends = np.arange(s) == fixed[start + anchor[k]]
+                free[k, 0], free[k, count - 1] = ends, ends
+        found = least(states[None] if states.shape[0] == 1 else states[place], free, weight, change)
+        chosen = np.zeros(len(self.flat), dtype=np.intp)
+        for k, count in enumerate(self.counts):
+            chosen[place[k, :count]] = found[k, :count]
+            if self.closed[k]:
+                chosen[self.begin[k] + count - 1] = chosen[self.begin[k]]
+        return chosen
+
+
+def _sides(asked: Array, plane: Array | None) -> Array:
+    """(n, 2, 3) unit vectors normal to the asked axes and to each other, carried along a bead; the first in the plane."""
+    if plane is not None:
+        side = np.cross(plane, asked)
+        side /= np.linalg.norm(side, axis=1, keepdims=True)
+        return np.stack([side, np.broadcast_to(plane, side.shape)], axis=1)
+    middle = asked.mean(axis=0)
+    size = np.linalg.norm(middle)
+    middle = middle / size if size > 1e-6 else asked[0]
+    level = frames.smallest_rotation(middle, np.array([0.0, 0.0, 1.0]))[:2]
+    sides: Array = np.einsum("nij,kj->nki", frames.smallest_rotation(middle, asked), level)
+    return sides
+
+
+def _place(places: list[tuple[int, int]], begin: Index, row: int) -> tuple[tuple[int, int], int]:
+    bead = int(np.searchsorted(begin, row, side="right")) - 1
+    return places[bead], row - int(begin[bead])
+
+
+def _issues(places: list[tuple[int, int]], begin: Index, tilt: Array, lost: Mask) -> list[Issue]:
+    bead = np.repeat(np.arange(len(places)), np.diff(begin))
+    layer = np.array([place[0] for place in places])[bead]
+    issues = []
+    if lost.any():
+        at, point = _place(places, begin, int(np.argmax(lost)))
+        issues.append(Issue(
+            ERROR, "CLEARANCE", f"however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at "
+            f"{int(lost.sum())} point(s) of layers {layer[lost].min()} to {layer[lost].max()}; use a slimmer nozzle, a "
+            "larger build_direction.max_tilt or another place for what is in the way", *at, point,
+        ))
+    moved = ~lost & (tilt > 1e-9)
+    if moved.any():
+        worst = int(np.argmax(np.where(moved, tilt, 0.0)))
+        at, point = _place(places, begin, worst)
+        first, last = int(layer[moved].min()), int(layer[moved].max())
+        where = f"in layer {first}" if first == last else f"in layers {first} to {last}"
+        issues.append(Issue(
+            NOTE, "TILT_BACK", f"{where}, tool axes are tilted back to keep the nozzle clear, by up to "
+            f"{np.degrees(tilt[worst]):.2f} deg", *at, point,
+        ))
+    return issues

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The nozzle against segments and triangles: a convex minimisation by dense samples, refined, says the same."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.frustum import Frustum
+from freecad_am.core.geometry.obstacles import Obstacles, of_bodies
+from freecad_am.core.geometry.surroundings import Body
+
+
+def unit(v):
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def depth(frustum, points, axis):
+    """How far outside points (k, 3) are: a convex function of the place, negative inside."""
+    x = (points * axis).sum(axis=-1)
+    side = np.linalg.norm(points - x[..., None] * axis, axis=-1)
+    return np.maximum(side - frustum.radius - frustum.slope * x, np.maximum(frustum.low - x, x - frustum.high))
+
+
+def least(function, count):
+    """The least of convex functions on [0, 1], by thirds."""
+    low, high = np.zeros(count), np.ones(count)
+    for _ in range(70):
+        one, other = (2 * low + high) / 3, (low + 2 * high) / 3
+        left = function(one) <= function(other)
+        low, high = np.where(left, low, one), np.where(left, other, high)
+    return function(0.5 * (low + high))
+
+
+def least_depth(frustum, corners, axis):
+    """Least depth (k,) over segments (k, 2, 3) or triangles (k, 3, 3): the least along a side is convex across it."""
+
+    def along(start, end):
+        return least(lambda s: depth(frustum, start + s[:, None] * (end - start), axis), len(axis))
+
+    if corners.shape[1] == 2:
+        return along(corners[:, 0], corners[:, 1])
+    a, b, c = corners.transpose(1, 0, 2)
+    return least(lambda s: along(a + s[:, None] * (b - a), a + s[:, None] * (c - a)), len(axis))
+
+
+@pytest.mark.parametrize("kind", [2, 3], ids=["segments", "triangles"])
+@pytest.mark.parametrize("seed", range(3))
+def test_as_by_convex_minimisation(kind, seed):
+    rng = np.random.default_rng(seed)
+    frustum = Frustum(rng.uniform(0, 2), rng.uniform(0, 1.5), rng.uniform(0, 3), rng.uniform(4, 20))
+    axis = unit(rng.normal(size=(200, 3)))
+    near = axis * rng.uniform(0, frustum.high, (200, 1)) + 0.4 * frustum.reach * rng.normal(size=(200, 3))
+    corners = near[:, None] + rng.normal(size=(200, kind, 3)) * frustum.reach * rng.choice([0.1, 0.7, 4], (200, 1, 1))
+    meets = (
+        frustum.meets_segments(corners[:, 0], corners[:, 1], axis) if kind == 2 else frustum.meets_triangles(corners, axis)
+    )
+    truth = least_depth(frustum, corners, axis)
+    clear_cut = np.abs(truth) > 1e-6
+    assert (meets == (truth < 0))[clear_cut].all()
+    assert clear_cut.sum() > 195 and 15 < meets.sum() < 185
+
+
+def test_a_large_face_through_the_nozzle_and_one_beside_it():
+    frustum = Frustum(0.5, 0.36, 0.67, 60.0)
+    big = 1e3 * np.array([[1, 0, 0], [-0.5, 0.9, 0], [-0.5, -0.9, 0]])
+    axis = np.array([[0.0, 0.0, 1.0]])
+    for height, meets in ((0.6, False), (0.7, True), (59.9, True), (60.1, False)):
+        assert frustum.meets_triangles(big[None] + [0, 0, height], axis)[0] == meets
+    upright = big[:, [2, 0, 1]]  # the plane x = 0
+    for offset, meets in ((22.0, True), (22.2, False)):
+        assert frustum.meets_triangles(upright[None] + [offset, 0, 0], axis)[0] == meets
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_tree_finds_what_a_look_at_every_one_finds(seed):
+    rng = np.random.default_rng(seed)
+    frustum = Frustum(0.5, 0.36, 0.7, 15.0)
+    tip, axis = rng.uniform(-30, 30, (300, 3)), unit(rng.normal(size=(300, 3)))
+    centre = rng.uniform(-40, 40, (900, 1, 3))
+    for kind in (2, 3):
+        corners = centre + rng.normal(size=(900, kind, 3)) * 1.5
+        since, moment = rng.integers(0, 900, 900), rng.integers(0, 1000, 300)
+        found = Obstacles(corners, since).touched(frustum, tip, axis, moment)
+        wanted = np.zeros(300, dtype=bool)
+        for k in range(300):
+            offset, axes = corners[since < moment[k]] - tip[k], np.tile(axis[k], ((since < moment[k]).sum(), 1))
+            meets = frustum.meets_segments(offset[:, 0], offset[:, 1], axes) if kind == 2 else (
+                frustum.meets_triangles(offset, axes))
+            wanted[k] = meets.any()
+        assert (found == wanted).all() and 0 < wanted.sum() < 300
+
+
+def test_cutting_up_large_faces_changes_nothing():
+    rng = np.random.default_rng(7)
+    frustum = Frustum(0.5, 0.36, 0.7, 40.0)
+    tip, axis = rng.uniform(-30, 30, (2000, 3)), unit(rng.normal(size=(2000, 3)))
+    vertices = rng.uniform(-200, 200, (30, 3))
+    body = Body("slabs", vertices, np.arange(30).reshape(-1, 3))
+    found = of_bodies([body], tip, frustum.reach).touched(frustum, tip, axis)
+    wanted = np.zeros(2000, dtype=bool)
+    for corners in body.corners():
+        wanted |= frustum.meets_triangles(corners - tip[:, None], axis)
+    assert (found == wanted).all() and 0 < wanted.sum() < 2000
+
+
+def test_nothing_there_touches_nothing():
+    tip, axis = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
+    assert not of_bodies([], tip, 10.0).touched(Frustum(0.5, 0.36, 0.7, 60.0), tip, axis).any()
