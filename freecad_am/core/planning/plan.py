@@ -28,6 +28,8 @@ Progress = Callable[[float, str], None]
 
 METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
 BRANCHES = 8
+# with the branch left open: beads looked at in each, and branches planned until one serves
+SCREENED, TRIED = 12, 3
 REVOLUTION = "revolution"
 
 
@@ -45,31 +47,45 @@ def plan_joints(
     """
     places = [(layer, index) for layer, index, _ in toolpath]
     beads = [bead for _, _, bead in toolpath]
-    branch = cell.branch if cell.branch is not None else best_branch(beads, cell, parameters)
-    task = Task(cell, branch, parameters, toolpath.family != REVOLUTION)
-    paths, issues = _planned(task, toolpath, beads, places, progress)
+    joined = toolpath.family != REVOLUTION
+    branches = [cell.branch] if cell.branch is not None else best_branches(beads, cell, parameters, joined)
+    chosen = None
+    for branch in branches:
+        task = Task(cell, branch, parameters, joined)
+        paths, issues = _planned(task, toolpath, beads, places, progress)
+        if chosen is None or not has_errors(issues):
+            chosen = task, paths, issues
+        if not has_errors(issues):
+            break
+    assert chosen is not None
+    task, paths, issues = chosen
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
     )
     return JointPath(
-        parameters.method, parameters.objective, opw.branch_name(branch), cell.limits.name, tuple(paths),
+        parameters.method, parameters.objective, opw.branch_name(task.branch), cell.limits.name, tuple(paths),
         tuple(issues), comparisons,
     )
 
 
-def best_branch(beads: Sequence[Bead], cell: Cell, parameters: JointParameters) -> int:
-    """The branch in which most beads are feasible; of several, the one with the least objective, then margin."""
-    points = gather(beads, cell, search.POINTS_PER_BEAD)
+def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool = False) -> list[int]:
+    """The branches worth planning, the best first: those that serve as many beads as any, by objective, then margin.
+
+    A few beads from the first to the last are looked at; what they promise, the planning has to keep.
+    """
+    some = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
+    points = gather([beads[k] for k in some], cell, search.POINTS_PER_BEAD)
     ranks = []
     for branch in range(BRANCHES):
-        task = Task(cell, branch, parameters)
+        task = Task(cell, branch, parameters, joined)
         found = search.everywhere(task, points, task.thresholds(points))
-        best, each = found.best(), np.arange(len(beads))
+        best, each = found.best(), np.arange(len(some))
         margin, objective = found.margin[best, each], found.objective[best, each]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
         ranks.append((-int(feasible.sum()), worth, -float(margin.min()), branch))
-    return min(ranks)[-1]
+    ranks.sort()
+    return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
 
 
 def _compare_order(parameters: JointParameters) -> list[str]:
