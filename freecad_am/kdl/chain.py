@@ -38,7 +38,7 @@ def _kdl() -> ModuleType:
 
 
 class KdlArm:
-    """The chain of a machine in PyKDL. Poses (n, 4, 4) of the flange in base_link, mm; joint angles (n, axes) rad."""
+    """The chain of a machine in PyKDL. Poses (n, 4, 4) of the flange in base_link, mm; joint values (n, axes) rad and mm."""
 
     def __init__(self, machine: Machine) -> None:
         self.kdl = _kdl()
@@ -48,7 +48,8 @@ class KdlArm:
         for index, (origin, direction) in enumerate(zip(machine.chain.origins, machine.chain.directions, strict=True)):
             self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(origin)))
             axis = self.kdl.Vector(*direction)
-            joint = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), axis, self.kdl.Joint.RotAxis)
+            kind = self.kdl.Joint.TransAxis if machine.chain.sliding[index] else self.kdl.Joint.RotAxis
+            joint = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), axis, kind)
             self.chain.addSegment(self.kdl.Segment(joint, self.kdl.Frame()))
         self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.flange)))
         self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)

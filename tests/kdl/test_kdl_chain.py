@@ -16,19 +16,20 @@ def arm(request):
     return machine.load(request.param)
 
 
-def joints(count, seed):
-    return np.random.default_rng(seed).uniform(-np.pi, np.pi, (count, 6))
+def joints(count, seed, axes=6):
+    return np.random.default_rng(seed).uniform(-np.pi, np.pi, (count, axes))
 
 
 def test_flange_poses_agree(arm):
-    q = joints(100, 1)
+    q = joints(100, 1, len(arm.axes))
     wanted = KdlArm(arm).forward(q)
     assert np.abs(arm.chain.forward(q) - wanted).max() < 1e-9
-    assert np.abs(arm.opw.forward(q) - wanted).max() < 1e-9
+    if arm.opw is not None:
+        assert np.abs(arm.opw.forward(q) - wanted).max() < 1e-9
 
 
 def test_jacobians_agree(arm):
-    q = joints(100, 2)
+    q = joints(100, 2, len(arm.axes))
     flange = arm.chain.forward(q)[:, :3, 3]
     assert np.abs(jacobian(arm.chain, q, flange) - KdlArm(arm).jacobian(q)).max() < 1e-9
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Forward kinematics of a serial chain of revolute joints from its joint frames.
+"""Forward kinematics of a serial chain of turning and sliding joints from its joint frames.
 
 Knows nothing of the closed form in `opw`, so that one can check the other. Joint frames are those of
-the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis, q_i), then the flange.
+the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis, q_i), then the flange; a joint that
+slides has Trans(axis q_i) in the place of Rot(axis, q_i).
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..geometry import frames
 from ..geometry.frames import Array
@@ -32,20 +33,24 @@ class JointFrames(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Chain:
     """A serial chain. `origins` (axes, 4, 4) the joint frames at zero in the link before, `directions`
-    (axes, 3) unit axes in the joint frames, `flange` (4, 4) in the last link; mm."""
+    (axes, 3) unit axes in the joint frames, `flange` (4, 4) in the last link; mm. `sliding` (axes,) tells the joints
+    that slide, whose values are mm; none when left out."""
 
     origins: Array
     directions: Array
     flange: Array
+    sliding: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
     _links: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        if not len(self.sliding):
+            object.__setattr__(self, "sliding", np.zeros(len(self.directions), dtype=bool))
         # each joint is turned into one about its own Z, which leaves constant poses between the rotations
         to_axis = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3))
         before = np.concatenate((np.eye(4)[None], frames.inverse(to_axis)))
         after = np.concatenate((self.origins @ to_axis, self.flange[None]))
         object.__setattr__(self, "_links", before @ after)
-        for array in (self.origins, self.directions, self.flange, self._links):
+        for array in (self.origins, self.directions, self.flange, self.sliding, self._links):
             array.flags.writeable = False
 
     @property
@@ -54,11 +59,11 @@ class Chain:
         return len(self.directions)
 
     def forward(self, q: ArrayLike) -> Array:
-        """The flange poses (..., 4, 4) in base_link for joint angles `q` (..., axes), rad."""
+        """The flange poses (..., 4, 4) in base_link for joint values `q` (..., axes), rad and mm."""
         return self._run(q).flange
 
     def frames(self, q: ArrayLike) -> JointFrames:
-        """The axes and the flange in base_link for joint angles `q` (..., axes), rad."""
+        """The axes and the flange in base_link for joint values `q` (..., axes), rad and mm."""
         return self._run(q)
 
     def _run(self, q: ArrayLike) -> JointFrames:
@@ -88,7 +93,10 @@ class Chain:
             columns, position = _advance(columns, position, self._links[joint])
             directions[joint] = columns[2].reshape(3, count)
             origins[joint] = position.reshape(3, count)
-            _turn(columns.reshape(3, 3, count), sines[joint], cosines[joint])
+            if self.sliding[joint]:
+                position = position + (columns[2].reshape(3, count) * angles[joint]).ravel()
+            else:
+                _turn(columns.reshape(3, 3, count), sines[joint], cosines[joint])
         columns, position = _advance(columns, position, self._links[-1])
         flange[:, :3, :3] = columns.reshape(3, 3, count).T
         flange[:, :3, 3] = position.reshape(3, count).T

@@ -23,7 +23,7 @@ PIECE = 1024
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
-    """The geometric Jacobians (n, 6, axes): rows velocity (mm) and angular velocity per rad of each joint.
+    """The geometric Jacobians (n, 6, axes): rows velocity (mm) and angular velocity per rad, or mm, of each joint.
 
     Joint angles `q` (n, axes) rad; `point` (n, 3) or (3,) in mm is the point of the last link whose velocity is
     meant, given where it is now. Point and result in base_link.
@@ -42,6 +42,8 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
             np.multiply(direction[:, following], arm[:, last], out=result[row, :, piece])
             result[row, :, piece] -= direction[:, last] * arm[:, following]
             result[3 + row, :, piece] = direction[:, row]
+        for joint in np.flatnonzero(chain.sliding):
+            result[:3, joint, piece], result[3:, joint, piece] = direction[joint], 0.0
     return result.transpose(2, 0, 1)
 
 

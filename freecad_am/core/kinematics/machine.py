@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..geometry import frames
 from ..geometry.frames import Array
@@ -35,10 +35,10 @@ POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A machine. Joint angles are serial ones, rad; lengths mm.
+    """A machine. Joint values are serial ones, rad, and mm of joints that slide; lengths mm.
 
     `opw` is None where there is no closed form. `base` (4, 4) is the maker's base frame in base_link, the frame of
-    the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s, infinite where not known.
+    the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
     the file does not say.
@@ -59,6 +59,21 @@ class Machine:
     sources: tuple[str, ...]
     remarks: tuple[str, ...]
 
+    @property
+    def is_table(self) -> bool:
+        """Whether it has axes that slide: a machine with rotary tables or heads, not a robot."""
+        return bool(self.chain.sliding.any())
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit that each axis is shown in, 'deg' or 'mm'."""
+        return tuple("mm" if sliding else "deg" for sliding in self.chain.sliding)
+
+    @property
+    def unit_values(self) -> Array:
+        """What one of the unit that each axis (axes,) is shown in amounts to inside: rad of a degree, or 1."""
+        return unit_values(self.chain.sliding)
+
     def limits(self, name: str) -> Limits:
         """The set of limits of that name; InputError 'UNKNOWN_LIMITS' when there is none."""
         if name not in self.limit_sets:
@@ -77,6 +92,11 @@ class Machine:
         back = np.linalg.inv(self.controller_matrix)
         result: Array = (np.asarray(shown, float) - self.controller_offset) @ back.T
         return result
+
+
+def unit_values(sliding: NDArray[np.bool_]) -> Array:
+    """rad of a degree for axes (axes,) that turn, 1 for those that slide."""
+    return np.where(sliding, 1.0, math.radians(1.0))
 
 
 def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
@@ -123,26 +143,31 @@ def _near(name: str, names: list[str]) -> str:
 
 def _parse(top: Node) -> Machine:
     top.only(*KEYS)
-    joints = [joint.only("name", "origin", "rpy", "axis", "max_speed") for joint in top["joints"].items()]
+    joints = [joint.only("name", "type", "origin", "rpy", "axis", "max_speed") for joint in top["joints"].items()]
     if not joints:
         raise top["joints"].bad("there is no joint")
     count = len(joints)
+    sliding = np.array([_slides(joint) for joint in joints])
+    units = unit_values(sliding)
+    # the axes of a robot go by number everywhere; those of a machine tool have names
+    names = tuple(joint["name"].text() if sliding.any() else f"q{index + 1}" for index, joint in enumerate(joints))
     controller = top["controller"].only("matrix", "offset", "remark", "posts")
     machine = Machine(
         id=top["id"].text(),
         title=top["title"].text(),
-        axes=tuple(f"q{index + 1}" for index in range(count)),
+        axes=names,
         chain=Chain(
             np.stack([joint.pose() for joint in joints]),
             np.stack([_unit(joint["axis"]) for joint in joints]),
             top["flange"].only("origin", "rpy").pose(),
+            sliding,
         ),
         opw=_opw(top["opw"], count) if top.has("opw") else None,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([math.radians(_speed(joint)) for joint in joints]),
-        limit_sets={name: _limits(name, node, count) for name, node in top["limits"].pairs()},
+        max_speed=np.array([_speed(joint) for joint in joints]) * units,
+        limit_sets={name: _limits(name, node, names, units) for name, node in top["limits"].pairs()},
         controller_matrix=controller["matrix"].matrix(count, count),
-        controller_offset=np.radians(controller["offset"].numbers(count)),
+        controller_offset=controller["offset"].numbers(count) * units,
         controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
         sources=top["sources"].texts(),
@@ -166,12 +191,19 @@ def _unit(node: Node) -> Array:
     return axis / length
 
 
+def _slides(joint: Node) -> bool:
+    kind = joint["type"].text() if joint.has("type") else "revolute"
+    if kind not in ("revolute", "prismatic"):
+        raise joint["type"].bad(f"{kind!r} is not a type of joint; use revolute or prismatic")
+    return kind == "prismatic"
+
+
 def _speed(joint: Node) -> float:
     if not joint.has("max_speed"):
         return math.inf
     speed = joint["max_speed"].number()
     if speed <= 0.0:
-        raise joint["max_speed"].bad(f"{speed:g} deg/s is not a speed; give more than 0, or null where not known")
+        raise joint["max_speed"].bad(f"{speed:g} is not a speed; give more than 0, or null where not known")
     return speed
 
 
@@ -195,16 +227,17 @@ def _opw(node: Node, count: int) -> OpwArm:
     )
 
 
-def _limits(name: str, node: Node, count: int) -> Limits:
+def _limits(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
     node.only("axes", "coupled", "source")
-    spans = np.array([axis.span() for axis in node["axes"].items(count)])
+    count = len(axes)
+    spans = np.array([axis.span(unit) for axis, unit in zip(node["axes"].items(count), units, strict=True)])
     coupled = [c.only("label", "coefficients", "range") for c in node["coupled"].items()] if node.has("coupled") else []
     ranges = np.array([row["range"].span() for row in coupled]).reshape(len(coupled), 2)
     coefficients = np.array([row["coefficients"].numbers(count) for row in coupled]).reshape(len(coupled), count)
     return Limits(
         name=name, lower=spans[:, 0].copy(), upper=spans[:, 1].copy(), coefficients=coefficients,
         coupled_lower=ranges[:, 0].copy(), coupled_upper=ranges[:, 1].copy(),
-        labels=tuple(f"q{axis + 1}" for axis in range(count)) + tuple(row["label"].text() for row in coupled),
+        labels=axes + tuple(row["label"].text() for row in coupled),
         source=node["source"].text(),
     )
 
@@ -214,7 +247,7 @@ def _check(machine: Machine, node: Node) -> None:
     poses = [pose.only("q", "origin", "rotation") for pose in node.items()]
     if len(poses) < 3:
         raise node.bad(f"there are {len(poses)}; a machine needs at least 3 joint vectors with their flange poses")
-    q = np.radians([pose["q"].numbers(len(machine.axes)) for pose in poses])
+    q = np.array([pose["q"].numbers(len(machine.axes)) for pose in poses]) * machine.unit_values
     if not (q == 0.0).all(axis=1).any():
         raise node.bad("the pose at all zeros is missing")
     wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])

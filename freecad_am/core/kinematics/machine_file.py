@@ -84,14 +84,14 @@ class Node:
         # something is wrong: find which
         return np.array([item.number() for item in self.items(length)])
 
-    def span(self) -> tuple[float, float]:
-        """A range of two angles in degrees, in rad; null is endless."""
+    def span(self, unit: float = math.radians(1.0)) -> tuple[float, float]:
+        """A range of two numbers times `unit`: of angles in degrees, in rad; null is endless."""
         if self.value is None:
             return -math.inf, math.inf
         lower, upper = (item.number() for item in self.items(2))
         if not lower < upper:
-            raise self.bad(f"{_short(self.value)} is not a range; give the smaller angle first, or null for endless")
-        return math.radians(lower), math.radians(upper)
+            raise self.bad(f"{_short(self.value)} is not a range; give the smaller one first, or null for endless")
+        return lower * unit, upper * unit
 
     def matrix(self, rows: int, columns: int) -> Array:
         """A list of lists of numbers (rows, columns)."""

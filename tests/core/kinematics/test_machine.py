@@ -19,15 +19,35 @@ GOOD = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encod
 
 def test_all_built_in_machines_load():
     known = machine.known()
-    assert len(known) == 25
+    assert len(known) == 29
     for name, title in known:
         arm = machine.load(name)
         assert (arm.id, arm.title) == (name, title)
-        assert arm.opw is not None and arm.sources and arm.controller_remark
+        assert (arm.opw is None) == arm.is_table and arm.sources and arm.controller_remark
         assert np.isfinite(arm.max_speed).all() and (arm.max_speed > 0).all()
         assert "maker" in arm.limit_sets
         assert all((limits.upper > limits.lower).all() for limits in arm.limit_sets.values())
         assert arm.posts is not None
+
+
+def test_tables_have_the_kinematics_that_linuxcnc_gives_them():
+    # the running controller's inverse, checked at standstill: what is on the tip of the torch
+    rng = np.random.default_rng(4)
+    point, (tilt, turn) = rng.uniform(-200, 200, (50, 3)), rng.uniform(-2, 2, (2, 50))
+    x, y = np.cos(turn) * point[:, 0] - np.sin(turn) * point[:, 1], np.sin(turn) * point[:, 0] + np.cos(turn) * point[:, 1]
+    c, s, z = np.cos(tilt), np.sin(tilt), point[:, 2] - 10.0
+    tips = {
+        "table-xyzac": (x, c * (y - 20.0) - s * z + 20.0, s * (y - 20.0) + c * z + 10.0),
+        "table-xyzbc": (c * (x - 20.0) + s * z + 20.0, y, -s * (x - 20.0) + c * z + 10.0),
+    }
+    for name, tip in tips.items():
+        table = machine.load(name)
+        assert table.units == ("mm", "mm", "mm", "deg", "deg")
+        flange = table.chain.forward(np.column_stack((*tip, tilt, turn)))
+        at_tip = np.einsum("nij,nj->ni", flange[:, :3, :3], point) + flange[:, :3, 3]
+        np.testing.assert_allclose(at_tip, 0.0, atol=1e-10)
+        lower, upper = table.limits("maker").lower, table.limits("maker").upper
+        assert lower[0] == -500.0 and upper[3] == pytest.approx(np.radians(120.0)) and np.isinf(upper[4])
 
 
 def test_the_arc_mate_is_that_of_the_data():
@@ -137,7 +157,7 @@ BAD = {
     "no upper arm": (changed("opw", "c2", value=0), "opw.c2", "more than 0 mm"),
     "limits upside down": (
         changed("limits", "maker", "axes", 1, value=[160, -100]),
-        "limits.maker.axes[1]", "smaller angle first",
+        "limits.maker.axes[1]", "smaller one first",
     ),
     "no maker limits": (changed("limits", "maker", remove=True), "limits", "'maker' is missing"),
     "coupled without a label": (

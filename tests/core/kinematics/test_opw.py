@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.kinematics import machine, opw, opw_inverse
 
-MACHINES = [name for name, _ in machine.known()]
+MACHINES = [name for name, _ in machine.known() if machine.load(name).opw is not None]
 
 
 @pytest.fixture(params=MACHINES)
