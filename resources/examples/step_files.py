@@ -31,10 +31,10 @@ def write_step(path: Path, shape: Any) -> None:
 
 def write_stl(path: Path, triangles: list[Triangle]) -> None:
     """Write triangles as a binary STL file, outside where they turn counter-clockwise."""
-    data = [b"part of an example".ljust(80), struct.pack("<I", len(triangles))]
-    for triangle in triangles:
-        data.append(struct.pack("<12fH", 0.0, 0.0, 0.0, *(number for point in triangle for number in point), 0))
-    path.write_bytes(b"".join(data))
+    records = [
+        struct.pack("<12fH", 0.0, 0.0, 0.0, *(number for point in triangle for number in point), 0) for triangle in triangles
+    ]
+    path.write_bytes(b"part of an example".ljust(80) + struct.pack("<I", len(triangles)) + b"".join(records))
 
 
 def _escaped(name: str) -> str:

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The shipped walls on existing parts, planned by the command and measured without the program's own code."""
+
+import numpy as np
+import pytest
+
+from tests.batch import wall_checks
+from tests.batch.wall_examples import EXAMPLES, Plans
+
+CHORD = 0.01  # mm, the chord error of the jobs
+FINE = 2e-5  # mm, at which chords stand for the curve
+TOLERANCE = 1e-4  # mm, of the local distance
+TURN = 30.0  # deg/mm, the largest turn of the build direction, build_direction.max_turn
+
+
+@pytest.fixture(scope="module")
+def plans(tmp_path_factory):
+    from pathlib import Path
+
+    return Plans(Path(__file__).resolve().parents[2], tmp_path_factory.mktemp("walls"))
+
+
+@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda example: example.job.split("/")[-1])
+def example(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def planned(example, plans):
+    """The job as it is shipped."""
+    return plans.plan(example.job)
+
+
+@pytest.fixture(scope="module")
+def exact(example, plans):
+    """The same without a cell, its points dense."""
+    return plans.plan(example.job, plans.exact(example.job, FINE))
+
+
+@pytest.fixture(scope="module")
+def wall(example, plans):
+    return wall_checks.read_wall(plans.folder / example.wall, example.depth)
+
+
+def test_jobs_with_a_cell_end_in_a_verified_program(example, planned):
+    assert planned.report["status"] == "ok"
+    assert bool(planned.report["programs"]) == example.has_cell
+    if example.has_cell:
+        assert planned.report["joints"]["feasible"] is True
+        assert min(margin for margin in planned.report["joints"]["limit_margin_deg"] if margin is not None) > 0.0
+
+
+def test_points_lie_on_the_wall(planned, exact, wall):
+    chosen = np.random.default_rng(20).permutation
+    assert wall.off(chosen(planned.points)[:150]) <= CHORD
+    assert wall.off(chosen(exact.points)[:150]) <= TOLERANCE
+
+
+def test_the_first_layer_lies_on_the_substrate(example, planned, exact):
+    for run, error in ((planned, CHORD), (exact, TOLERANCE)):
+        for bead in run.layers[0]:
+            assert np.abs(example.depth(bead.points)).max() <= error + example.substrate_error
+    assert all(example.depth(bead.points).min() > 0.0 for layer in exact.layers[2:] for bead in layer)
+
+
+def test_layers_are_at_the_layer_height_everywhere(example, exact):
+    """At every point, hundreds of times denser than the jobs ask for, corners included."""
+    spacing = wall_checks.spacing(exact)
+    assert np.abs(spacing.inside - example.height).max() <= TOLERANCE
+    if len(spacing.at_ends):  # cut at the end of the wall: the curve went on below
+        assert spacing.at_ends.min() >= example.height - TOLERANCE
+
+
+def test_the_wall_is_covered(example, planned, wall):
+    anywhere, at_end = wall_checks.coverage(planned, wall, 0.2 * example.height, example.height)
+    assert anywhere <= 0.6 * example.height
+    assert at_end <= example.height
+
+
+def test_beads_lie_on_what_was_deposited_before(example, exact):
+    most = wall_checks.support(exact, example.depth)
+    assert most <= example.height + 2.0 * TOLERANCE + example.substrate_error
+
+
+def test_seams_follow_one_another(example, planned):
+    steps = wall_checks.seam_steps(planned)
+    assert steps.size == 0 or steps.max() <= 1.5 * example.height
+
+
+def test_build_directions_are_continuous(planned):
+    most, rate = wall_checks.turns(planned)
+    assert rate <= 1.01 * TURN
+    assert most <= TURN
+
+
+def test_the_half_shell_is_deposited_to_and_fro(plans):
+    layers = plans.plan("walls/half-shell-on-rod").layers
+    assert all(len(layer) == 1 and not layer[0].closed for layer in layers[:5])
+    towards = np.array([layer[0].points[-1, 1] - layer[0].points[0, 1] for layer in layers[:6]])
+    assert (np.sign(towards) == np.sign(towards[0]) * (-1.0) ** np.arange(6)).all()
+
+
+def test_the_front_of_the_branched_tube_splits_in_two(plans):
+    layers = plans.plan("walls/branched-tube-on-plate").layers
+    counts = [len(layer) for layer in layers]
+    split = counts.index(2)
+    assert set(counts[:split]) == {1} and layers[split - 1][0].closed and all(bead.closed for bead in layers[split])
+    centres = np.array([bead.points.mean(axis=0) for bead in layers[split + 2]])
+    assert np.linalg.norm(centres[0] - centres[1]) > 12.0
+
+
+def test_a_mesh_serves_as_well_as_the_solid(plans):
+    solid = plans.plan("tube-on-pipe", plans.exact("tube-on-pipe", FINE))
+    mesh = plans.plan("walls/tube-on-scanned-pipe", plans.exact("walls/tube-on-scanned-pipe", FINE))
+    assert len(mesh.layers) == len(solid.layers) == 15
+    for one, other in zip(mesh.layers, solid.layers):
+        assert wall_checks.nearest(one[0].points, [other[0].points]).distance.max() <= 0.02

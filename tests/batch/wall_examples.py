@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The shipped examples of walls on existing parts: what the tests know of them, and a folder in which they are planned."""
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from tests.batch import wall_checks
+
+
+def rod(x, z, radius):
+    """Distance from a cylinder about a line along Y."""
+    return lambda points: np.hypot(points[:, 0] - x, points[:, 2] - z) - radius
+
+
+def dome(points):
+    return np.linalg.norm(points - [-60.0, 35.0, 12.0], axis=1) - 40.0
+
+
+def cone(points):
+    """64 mm high, 48 mm wide at its foot and 16 mm at its top."""
+    lean = np.hypot(64.0, 32.0)
+    return ((np.hypot(points[:, 0], points[:, 1]) - 48.0) * 64.0 + points[:, 2] * 32.0) / lean
+
+
+def sloping_block(points):
+    """Its top rises by 6 mm over 60 mm along X turned by 30 deg."""
+    x, y, z = (points - [-85.0, 140.0, 10.0]).T
+    along = np.cos(np.pi / 6.0) * x + np.sin(np.pi / 6.0) * y
+    return (60.0 * z - 6.0 * along) / np.hypot(60.0, 6.0)
+
+
+def plate(points):
+    return points[:, 2] - 100.0
+
+
+@dataclass(frozen=True)
+class Example:
+    """A job in resources/examples, the file of its wall, its layer height (mm), the distance of points from the skin of its
+    substrate, and how far the substrate itself is off that skin (mm)."""
+
+    job: str
+    wall: str
+    height: float
+    depth: Callable[[np.ndarray], np.ndarray] = field(repr=False)
+    substrate_error: float = 1e-5
+    has_cell: bool = False
+
+
+EXAMPLES = (
+    Example("tube-on-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), has_cell=True),
+    Example("walls/wide-tube-on-pipe", "walls/wide-tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0)),
+    Example("walls/skewed-bend", "walls/skewed-bend.step", 4.0, rod(200.0, 75.0, 30.0), has_cell=True),
+    Example("walls/flared-shell-on-dome", "walls/coque évasée.step", 4.0, dome),
+    Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone),
+    Example("walls/elbow-on-block", "walls/elbow.step", 4.0, sloping_block, has_cell=True),
+    Example("walls/half-shell-on-rod", "walls/half shell.step", 4.0, rod(40.0, -30.0, 30.0), has_cell=True),
+    # 240 flats on a radius of 32 mm
+    Example("walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=2.8e-3),
+    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 3.0, plate),
+)
+
+
+class Plans:
+    """A copy of the examples, planned with the launcher; each job once."""
+
+    def __init__(self, root: Path, folder: Path):
+        self.launcher, self.folder = root / "freecad-am", folder / "examples"
+        shutil.copytree(root / "resources" / "examples", self.folder, ignore=shutil.ignore_patterns("out", "__pycache__"))
+        self._done = {}
+
+    def text(self, job):
+        return (self.folder / f"{job}.yaml").read_text(encoding="utf-8")
+
+    def exact(self, job, chord_error):
+        """The job without its cell: no points but those of the fronts, so dense that chords stand for the curve."""
+        text = self.text(job).split("\ncell:")[0] + "\n"
+        return re.sub(r"(  layer_height: .*\n)", rf"\1  chord_error: {chord_error:.6f} mm\n", text)
+
+    def plan(self, job, text=None):
+        """What the job plans, its text changed; the job must end well."""
+        key = (job, text)
+        if key not in self._done:
+            self._done[key] = self._planned(job, text, self.folder / f"out{len(self._done)}")
+        return self._done[key]
+
+    def _planned(self, job, text, out):
+        path = self.folder / f"{job}.yaml"
+        if text is not None:
+            path = path.with_name(f"{out.name}.yaml")
+            path.write_text(text, encoding="utf-8")
+        done = subprocess.run(
+            [str(self.launcher), "plan", str(path), "-o", str(out), "--no-page"], cwd=self.folder, capture_output=True,
+            env={**os.environ, "FREECAD_USER_HOME": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}, text=True,
+            encoding="utf-8", timeout=120, check=False, stdin=subprocess.DEVNULL,
+        )
+        assert done.returncode == 0, done.stderr
+        return wall_checks.read(out)
