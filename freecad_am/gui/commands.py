@@ -25,10 +25,13 @@ class Tool:
         self.icon, self.text, self.help, self.action = icon, text, help, action
 
     def GetResources(self) -> dict[str, str]:
-        """Texts and icon; the macro interface makes the step of undo, not the command."""
+        """Texts and icon; the macro interface makes the step of undo, not the command.
+
+        With ForEdit FreeCAD asks `IsActive` even while a task panel is open.
+        """
         return {
             "Pixmap": icons.path(self.icon), "MenuText": self.text, "ToolTip": self.help, "StatusTip": self.help,
-            "CmdType": "AlterDoc NoTransaction",
+            "CmdType": "AlterDoc NoTransaction ForEdit",
         }
 
     def IsActive(self) -> bool:
@@ -38,17 +41,21 @@ class Tool:
             lacking = "First open a part, or make a document."
         elif Gui.Control.activeDialog():
             lacking = "First close the task panel that is open."
-        if lacking != self.lacking:
+        if lacking != self.lacking and self._explain(f"{self.help}. {lacking}" if lacking else self.help):
             self.lacking = lacking
-            self._explain()
         return not lacking
 
-    def _explain(self) -> None:
-        """Tell in the tooltips what is missing. FreeCAD sets them once."""
-        text = f"{self.help}. {self.lacking}" if self.lacking else self.help
-        for action in Gui.getMainWindow().findChildren(QtGui.QAction, _PREFIX + self.name):
+    def _explain(self, text: str) -> bool:
+        """Tell in the tooltip what is missing, which FreeCAD sets once; False while there is no button yet."""
+        name = _PREFIX + self.name
+        actions = [
+            action for action in Gui.getMainWindow().findChildren(QtGui.QAction)
+            if name in (action.objectName(), action.data())  # where it stands differs between versions
+        ]
+        for action in actions:
             action.setToolTip(text)
             action.setStatusTip(text)
+        return bool(actions)
 
     def Activated(self, index: int = 0) -> None:
         """The tool was clicked."""
@@ -63,7 +70,7 @@ def register() -> list[str]:
         "Feature": Tool("feature", "Feature…", "Takes the selected shape of revolution to be deposited", _feature),
         "WallOnPart": Tool(
             "wall_on_part", "Wall on Part…",
-            "Takes the selected faces as a wall to be deposited on the other object selected, from where it leaves it", _wall,
+            "Takes the selected faces as a wall to be deposited on the other object that is selected", _wall,
         ),
         "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath),
         "JointPath": Tool("joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path),

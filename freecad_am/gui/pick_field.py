@@ -56,7 +56,7 @@ class PickField(Input):
     def take(self, pick: Pick) -> bool:
         """Take what was clicked, or leave it out where it was in already; False for what cannot be taken."""
         names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
-        if self.element == EDGE and not names or self.element and is_mesh(pick.obj):
+        if (self.element == EDGE and not names) or (self.element and is_mesh(pick.obj)):
             return False
         mine = self.picks[0] if self.picks else None
         if self.several:

@@ -109,16 +109,18 @@ class WallPanel(StagePanel):
             return
         picks = picking.selected(self.document)
         for pick in picks:
+            following = self._next(field)
             if field.take(pick):
                 self._tell(field.label, "")
-            elif self._next(field) is not None and self._next(field).take(pick):
-                field = self._next(field)
+            elif following is not None and following.take(pick):
+                field = following
             else:
                 self._tell(field.label, _refusal(field, pick))
         if picks:
             Gui.Selection.clearSelection()
-            if not field.more:
-                self.armed.pick.setChecked(False)
+            if field.picks and not field.more:
+                for one in self.picks:
+                    one.pick.setChecked(False)
                 self._arm_missing()
 
     def _next(self, field: PickField) -> PickField | None:
@@ -252,4 +254,5 @@ def _told(curves: list[Any], issues: tuple[Issue, ...]) -> str:
     lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
     kinds = ["closed" if np.allclose(curve[0], curve[-1], atol=1e-9) else "open" for curve in curves]
     parts = [f"{kind}, {length:.1f} mm" for kind, length in zip(kinds, lengths, strict=True)]
-    return "\n".join([f"First layer: {'; '.join(parts)}", *(issue.message[:1].upper() + issue.message[1:] for issue in issues)])
+    findings = (issue.message[:1].upper() + issue.message[1:] for issue in issues)
+    return "\n".join([f"First layer: {'; '.join(parts)}", *findings])

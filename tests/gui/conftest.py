@@ -2,6 +2,7 @@
 """A person at the window: sees buttons, fields and pictures, clicks and types; whatever pops up unasked is noted."""
 
 import os
+import subprocess
 import time
 from pathlib import Path
 
@@ -188,11 +189,104 @@ class Person:
         grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
         assert grabbed.save(os.path.join(folder or str(self.folder), name + ".png"))
 
+    def screen_pixels(self, colour, within=24):
+        """How many pixels of the 3D view, as the screen shows it, have a colour 0..255."""
+        import numpy as np
+
+        self.idle(0.3)
+        screen = self.widgets.QApplication.primaryScreen()
+        view = self.gui.activeDocument().activeView()
+        corner = view.graphicsView().mapToGlobal(self.core.QPoint(0, 0))
+        grabbed = screen.grabWindow(0) if self.core.qVersion().startswith("5") else screen.grabWindow()
+        cut = grabbed.toImage().copy(self.core.QRect(corner, self.core.QSize(*view.getSize())))
+        image = cut.convertToFormat(self.widgets.QImage.Format_RGB32)
+        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+        return int((np.abs(rows[:, : image.width(), 2::-1].astype(int) - colour).max(axis=2) < within).sum())
+
     def console(self):
         """The text of the report view."""
         view = self.window.findChild(self.widgets.QTextEdit, "Report view")
         assert view is not None, "there is no report view to watch"
         return view.toPlainText()
+
+
+class Hand:
+    """The mouse and the keys themselves: events go through the X server, to whatever is under the pointer."""
+
+    def __init__(self, person):
+        self.person = person
+
+    def do(self, *words):
+        process = subprocess.Popen(["xdotool", *map(str, words)])
+        self.person.until(lambda: process.poll() is not None, "xdotool", 10)
+        assert process.returncode == 0
+        self.person.idle(0.2)
+
+    def at(self, place, *held):
+        """Click at a place of the screen while keys are held."""
+        keys = [word for key in held for word in ("keydown", key)]
+        self.do("mousemove", *place)  # so that the view sees the pointer come
+        released = [word for key in held for word in ("keyup", key)]
+        self.do(*keys, "click", "1", *released)
+
+    def click(self, widget):
+        """Click in the middle of a widget, once it no longer moves."""
+        def middle():
+            centre = widget.mapToGlobal(widget.rect().center())
+            return centre.x(), centre.y()
+
+        seen = [middle()]
+        while len(seen) < 4 or len(set(seen[-4:])) > 1:
+            self.person.idle(0.05)
+            seen.append(middle())
+        self.at(seen[-1])
+
+    def enter(self, panel, name, text):
+        """Type over what a field holds, and leave it."""
+        self.click(self.person.field(panel, name))
+        self.do("key", "ctrl+a")
+        self.do("type", "--delay", "20", text)
+        self.do("key", "Tab")
+
+    def click_tree(self, label, *held):
+        """Click an object in the tree."""
+        trees = [tree for tree in self.person.window.findChildren(self.person.widgets.QTreeWidget) if tree.isVisible()]
+        tree = next(tree for tree in trees if tree.findItems(label, _anywhere(self.person.core)))
+        item = tree.findItems(label, _anywhere(self.person.core))[0]
+        tree.scrollToItem(item)
+        place = tree.visualItemRect(item).center()
+        place.setX(tree.visualItemRect(item).left() + 25)
+        where = tree.viewport().mapToGlobal(place)
+        self.at((where.x(), where.y()), *held)
+
+    def click_face(self, obj, face, *held):
+        """Click a face of an object where it is to be seen in the 3D view."""
+        view = self.person.gui.getDocument(obj.Document.Name).activeView()
+        height = view.getSize()[1]
+        points, triangles = obj.Shape.getElement(face).tessellate(2.0)
+        on_screen = getattr(view, "getPointOnViewport", None) or view.getPointOnScreen
+        for corners in triangles:
+            middle = (points[corners[0]] + points[corners[1]] + points[corners[2]]) / 3.0
+            x, y = on_screen(middle)
+            around = [view.getObjectInfo((x + dx, y + dy)) for dx, dy in ((0, 0), (6, 0), (-6, 0), (0, 6), (0, -6))]
+            if all(info and (info["Object"], info["Component"]) == (obj.Name, face) for info in around):
+                where = self.corner(view)
+                self.at((where.x() + x, where.y() + height - 1 - y), *held)
+                return
+        raise AssertionError(f"{obj.Label} {face} is not to be seen")
+
+    def corner(self, view):
+        """The upper left corner of a 3D view on the screen."""
+        return view.graphicsView().mapToGlobal(self.person.core.QPoint(0, 0))
+
+
+def _anywhere(qt_core):
+    return qt_core.Qt.MatchExactly | qt_core.Qt.MatchRecursive
+
+
+@pytest.fixture
+def hand(person):
+    return Hand(person)
 
 
 @pytest.fixture

@@ -24,7 +24,8 @@ def test_a_wall_on_a_substrate_is_shown_and_its_panel_opens(person, hemisphere):
     document, feature = on_a_pipe(hemisphere)
     toolpath = api.make_toolpath(document, feature)
     assert feature.Status == toolpath.Status == "up to date"
-    assert feature.ViewObject.Proxy.meridian.coordinates.point.getNum() > 100
+    view = feature.ViewObject.Proxy.wall
+    assert view.first.coordinates.point.getNum() > 100 and view.faces.triangles.coordIndex.getNum() > 20
     before = feature.Key
     stage_panel.edit(feature)
     panel = person.panel("RoboticAM_SurfaceFeature")
@@ -43,9 +44,10 @@ def test_another_substrate_is_chosen_in_the_panel(person, hemisphere):
     document.recompute()
     stage_panel.edit(feature)
     panel = person.panel("RoboticAM_SurfaceFeature")
+    person.field(panel, "PickSubstrate").click()
     person.gui.Selection.clearSelection()
     person.gui.Selection.addSelection(block)
-    person.field(panel, "UseSubstrate").click()
+    person.idle()
     assert person.field(panel, "Substrate").text() == "Block"
     person.press("Ok")
     person.panel_closed()

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Colours of a toolpath tell what their legend says, and the legend is there when its toolpath is, and only then."""
+
+import dataclasses
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.process.spacing import local_distances
+from freecad_am.gui import colouring, legend
+from freecad_am.gui.colours import ramp
+
+
+@pytest.fixture
+def toolpath(person, hemisphere):
+    feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=5)
+    made = api.make_toolpath(hemisphere.Document, feature)
+    person.idle()
+    return made
+
+
+def shown(person):
+    """The legends to be seen, each as title and unit."""
+    overlays = [one for one in person.window.findChildren(person.widgets.QWidget, legend.NAME) if one.isVisible()]
+    return [(scale.title, scale.unit) for overlay in overlays for _, scale in overlay.scales]
+
+
+def test_each_colouring_has_its_legend(person, toolpath):
+    vobj = toolpath.ViewObject
+    assert vobj.getEnumerationsOfProperty("Colouring") == list(colouring.KINDS)
+    for kind, unit in zip(colouring.KINDS, ("", "mm", "deg", "mm/s"), strict=True):
+        vobj.Colouring = kind
+        person.idle()
+        assert shown(person) == [(kind, unit)]
+        person.screenshot(f"colouring_{kind.replace(' ', '_')}")
+    vobj.ShowLegend = False
+    person.idle()
+    assert shown(person) == []
+    vobj.ShowLegend = True
+    vobj.Visibility = False
+    person.idle()
+    assert shown(person) == []
+    vobj.Visibility = True
+    person.idle()
+    assert shown(person) == [("speed", "mm/s")]
+
+
+def test_the_legend_is_on_the_screen_and_stays_where_it_is(person, toolpath):
+    import numpy as np
+
+    colours = [tuple(np.rint(255 * ramp([share])[0])) for share in (0.0, 0.25, 0.75, 1.0)]
+    toolpath.ViewObject.LineWidth = 1.0
+    toolpath.ViewObject.Colouring = "speed"  # one speed: a bar of one colour
+    middle = np.rint(255 * ramp([0.5])[0])
+    person.look()
+    whole = person.screen_pixels(middle, 4)
+    assert whole >= 16 * 150  # the bar
+    toolpath.ViewObject.Colouring = "layer"
+    for colour in colours:
+        assert person.screen_pixels(colour, 4) >= 16
+    overlay = next(one for one in person.window.findChildren(person.widgets.QWidget, legend.NAME) if one.isVisible())
+    place = overlay.mapToGlobal(overlay.rect().center())
+    person.gui.activeDocument().activeView().viewTop()
+    person.gui.SendMsgToActiveView("ViewFit")
+    person.idle()
+    assert overlay.isVisible() and overlay.mapToGlobal(overlay.rect().center()) == place
+    for colour in colours:
+        assert person.screen_pixels(colour, 4) >= 16
+
+
+def test_the_legend_follows_undo_deletion_and_views(person, toolpath):
+    document = toolpath.Document
+    assert shown(person) == [("layer", "")]
+    person.gui.runCommand("Std_Undo")
+    person.idle()
+    assert document.getObject("Toolpath") is None and shown(person) == []
+    person.gui.runCommand("Std_Redo")
+    person.idle()
+    assert shown(person) == [("layer", "")]
+    person.gui.runCommand("Std_ViewCreate")
+    person.idle(0.4)
+    overlays = [one for one in person.window.findChildren(person.widgets.QWidget, legend.NAME) if one.scales]
+    assert len(overlays) == 2
+    document.removeObject("Toolpath")
+    person.idle()
+    assert shown(person) == []
+    App.closeDocument(document.Name)
+    person.idle()
+    assert person.window.findChildren(person.widgets.QWidget, legend.NAME) == []
+
+
+def test_local_distances_are_told_by_colour(person, toolpath):
+    """In the band by the ramp, outside of it by a colour of its own, the first layer grey."""
+    path = api.result(toolpath)
+    low = path.layers[3].beads[0]
+    nearer = dataclasses.replace(low, points=low.points - [0.0, 0.0, 2.5])
+    layers = list(path.layers)
+    layers[3] = dataclasses.replace(layers[3], beads=(nearer,))
+    moved = dataclasses.replace(path, layers=tuple(layers))
+    colours, scale = colouring.coloured(moved, "local distance", 0.2)
+    distance = np.concatenate(local_distances(moved))
+    first = len(path.layers[0].beads[0])
+    assert np.isnan(distance[:first]).all() and (colours[:first] == colouring.NONE).all()
+    near, far = distance < 4.0 - 1e-6, distance > 6.0 + 1e-6
+    assert near.any() and far.any() and scale.below and scale.above and scale.without
+    assert (colours[near] == colouring.TOO_NEAR).all() and (colours[far] == colouring.TOO_FAR).all()
+    within = (distance > 4.0 + 1e-6) & (distance < 6.0 - 1e-6)
+    assert np.array_equal(colours[within], ramp((distance[within] - 4.0) / 2.0))
+    assert [number for number, _ in scale.ticks] == pytest.approx([4.0, 4.5, 5.0, 5.5, 6.0])
+    assert scale.least == np.nanmin(distance) and scale.most == np.nanmax(distance)
+    _, undisturbed = colouring.coloured(path, "local distance", 0.2)
+    assert not (undisturbed.below or undisturbed.above)
+
+
+def test_tilt_is_from_the_vertical_of_the_part(person, toolpath):
+    colours, scale = colouring.coloured(api.result(toolpath), "tilt", 0.2)
+    tool = np.concatenate([bead.tool for _, _, bead in api.result(toolpath)])
+    tilt = np.degrees(np.arccos(np.clip(tool[:, 2], -1, 1)))
+    assert (scale.low, scale.high) == pytest.approx((tilt.min(), tilt.max()), abs=1e-9)
+    assert np.array_equal(colours, ramp((tilt - scale.low) / (scale.high - scale.low)))

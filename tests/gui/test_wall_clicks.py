@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A bend on a pipe by the mouse: picked in the 3D view and the tree, previewed, made, undone, kept in its file."""
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+
+ORANGE = (245, 120, 0)  # of first layers
+PANEL = "RoboticAM_SurfaceFeature"
+
+
+@pytest.fixture
+def bend(person, root):
+    """A document with a bend and the pipe it stands on, seen from where both are in sight."""
+    document = App.newDocument("Bend")
+    parts = [api.open_part(document, str(root / "resources" / "examples" / name)) for name in ("tube-on-pipe.step", "pipe.step")]
+    for part, label in zip(parts, ("Bend on it", "Old pipe"), strict=True):
+        part.Label = label
+    for dock in person.window.findChildren(person.widgets.QDockWidget):
+        if dock.objectName() in ("Combo View", "Model", "Tree view"):
+            dock.show()
+    person.idle(0.4)
+    person.look()
+    person.gui.Selection.clearSelection()
+    return parts
+
+
+def outside(pipe):
+    areas = [face.Area for face in pipe.Shape.Faces]
+    return f"Face{areas.index(max(areas)) + 1}"
+
+
+def scene(person):
+    return person.gui.activeDocument().activeView().getSceneGraph().getNumChildren()
+
+
+def previewed(person, panel):
+    def text():
+        note = person.field(panel, "preview")
+        return note.text() if note.isVisible() and note.text().startswith("First layer: ") else ""
+
+    return person.until(text, "the preview", 10)
+
+
+def ok(person, hand, name="Ok"):
+    wanted = getattr(person.widgets.QDialogButtonBox, name)
+    boxes = [box for box in person.window.findChildren(person.widgets.QDialogButtonBox) if box.isVisible()]
+    hand.click(next(box.button(wanted) for box in boxes if box.button(wanted) is not None))
+    person.panel_closed()
+
+
+def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
+    part, pipe = bend
+    document, nodes, steps = part.Document, scene(person), part.Document.UndoCount
+    assert person.screen_pixels(ORANGE) == 0
+    hand.click_face(part, "Face1")
+    assert [(entry.Object, entry.SubElementNames) for entry in person.gui.Selection.getSelectionEx()] == [(part, ("Face1",))]
+    hand.click_tree("Old pipe", "ctrl")
+    hand.click(person.button("RoboticAM_WallOnPart"))
+    panel = person.panel(PANEL)
+    assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == ["Bend on it Face1", "Old pipe"]
+    assert "closed, 97.4 mm" in previewed(person, panel)
+    assert person.screen_pixels(ORANGE) > 150
+    assert document.Objects == bend and document.UndoCount == steps  # nothing is made yet
+    hand.enter(panel, "LayerHeight", "5 mm")
+    previewed(person, panel)
+    person.screenshot("panel_wall_on_part")
+    said = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
+    ok(person, hand)
+    assert scene(person) == nodes + 1  # what is made, and no preview
+    feature = document.getObject("Feature")
+    assert (feature.LayerHeight.Value, feature.Status, document.UndoCount) == (5.0, "up to date", steps + 1)
+    assert (feature.Source, feature.Substrate) == ((part, ["Face1"]), pipe)
+    assert person.screen_pixels(ORANGE) > 150  # what is made shows its first layer itself
+    person.screenshot("wall_on_part")
+
+    key = feature.Key
+    person.gui.getMainWindow().activateWindow()
+    hand.do("key", "ctrl+z")
+    assert document.Objects == bend and person.screen_pixels(ORANGE) == 0
+    console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
+    assert "make_surface_feature" not in said
+    hand.do("key", "ctrl+shift+z")
+    assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
+    call = console[console.index("am.make_surface_feature("):].split("\n>>>")[0].replace("\n", " ")
+    again = eval(call, {"App": App, "am": api})
+    assert again.Key == key  # the recorded call makes the same
+
+    document.removeObject(again.Name)
+    document.saveAs(str(tmp_path / "bend.FCStd"))
+    App.closeDocument(document.Name)
+    opened = App.openDocument(str(tmp_path / "bend.FCStd"))
+    person.idle(0.4)
+    assert opened.Feature.Key == key and opened.Feature.Status == "up to date"
+    person.look()
+    assert person.screen_pixels(ORANGE) > 150
+    assert opened.Feature.ViewObject.Proxy.wall.faces.triangles.coordIndex.getNum() > 100
+
+
+def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
+    part, pipe = bend
+    document, nodes, steps = part.Document, scene(person), part.Document.UndoCount
+    hand.click(person.button("RoboticAM_WallOnPart"))
+    panel = person.panel(PANEL)
+    assert person.field(panel, "PickSource").isChecked()
+    hand.click_face(part, "Face1")
+    assert person.field(panel, "Source").text() == "Bend on it Face1"
+    assert person.gui.Selection.getSelection() == []
+    hand.click_face(part, "Face1")  # a second click takes it back
+    assert person.field(panel, "Source").text() == ""
+    hand.click_face(part, "Face1")
+    hand.click_face(pipe, outside(pipe))  # can only be the substrate
+    assert person.field(panel, "Substrate").text() == "Old pipe"
+    previewed(person, panel)
+    hand.click(person.field(panel, "ClearSubstrate"))
+    person.until(lambda: "Substrate is missing" in person.field(panel, "preview").text(), "what is missing", 5)
+    assert person.screen_pixels(ORANGE) == 0
+    hand.click(person.field(panel, "PickSubstrate"))
+    hand.click_face(pipe, outside(pipe))
+    assert person.field(panel, "Substrate").text() == "Old pipe" and not person.field(panel, "PickSubstrate").isChecked()
+    previewed(person, panel)
+    ok(person, hand, "Cancel")
+    assert (document.Objects, document.UndoCount, scene(person)) == (bend, steps, nodes)
+    assert person.screen_pixels(ORANGE) == 0
+    person.gui.Selection.addSelection(part)  # nobody listens any more
+    person.idle()
+
+
+def test_errors_stand_under_the_field_they_belong_to(person, bend):
+    part, pipe = bend
+    person.select(part)
+    person.gui.Selection.addSelection(pipe)
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel(PANEL)
+    previewed(person, panel)
+    person.type(panel, "LayerHeight", "-3 mm")
+    note = person.field(panel, "LayerHeightNote")
+    person.until(lambda: note.isVisible() and "more than 0 mm" in note.text(), "the note", 5)
+    person.type(panel, "LayerHeight", "rubbish")
+    person.until(lambda: note.isVisible() and "not understood" in note.text(), "the note", 5)
+    person.screenshot("panel_wall_error")
+    person.type(panel, "LayerHeight", "5 mm")
+    previewed(person, panel)
+    assert not note.isVisible()
+    block = part.Document.addObject("Part::Box", "Far")
+    block.Placement.Base = App.Vector(500, 0, 0)
+    part.Document.recompute()
+    person.field(panel, "ClearSubstrate").click()
+    person.field(panel, "PickSubstrate").click()
+    person.gui.Selection.addSelection(block)
+    person.until(lambda: any("does not meet Far" in label.text() and label.isVisible() for label in panel.findChildren(
+        person.widgets.QLabel)), "what is wrong with the far block", 10)
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trace(person, bend):
+    part, pipe = bend
+    feature = api.make_surface_feature(part.Document, part, ["Face1"], pipe, layer_height=5)
+    key, steps, nodes = feature.Key, part.Document.UndoCount, scene(person)
+    person.double_click(feature)
+    panel = person.panel(PANEL)
+    assert person.field(panel, "Substrate").text() == "Old pipe"
+    previewed(person, panel)
+    person.type(panel, "LayerHeight", "2 mm")
+    person.press("Cancel")
+    person.panel_closed()
+    assert (feature.Key, part.Document.UndoCount, scene(person)) == (key, steps, nodes)
+    person.double_click(feature)
+    person.type(person.panel(PANEL), "LayerHeight", "2 mm")
+    person.press("Ok")
+    person.panel_closed()
+    assert feature.LayerHeight.Value == 2.0 and part.Document.UndoCount == steps + 1
+    person.double_click(feature)
+    previewed(person, person.panel(PANEL))
+    App.closeDocument(part.Document.Name)  # the panel outlives it
+    person.idle(0.6)
+    if person.gui.Control.activeDialog():
+        person.press("Cancel")
+
+
+def test_a_disabled_tool_says_what_is_missing(person, bend):
+    person.click("RoboticAM_WallOnPart")
+    person.until(lambda: "First close the task panel" in person.button("RoboticAM_WallOnPart").toolTip(), "the tooltip", 5)
+    person.press("Cancel")
+    person.panel_closed()
+    person.until(lambda: "First" not in person.button("RoboticAM_WallOnPart").toolTip(), "the tooltip", 5)
+    for name in list(App.listDocuments()):
+        App.closeDocument(name)
+    person.until(lambda: "First open a part" in person.button("RoboticAM_WallOnPart").toolTip(), "the tooltip", 5)
+
+
+def test_a_scan_is_a_substrate_and_a_mesh_is_no_wall(person, bend):
+    import Mesh
+
+    part, _ = bend
+    scan = part.Document.addObject("Mesh::Feature", "Scan")
+    scan.Mesh = Mesh.createBox(10.0, 10.0, 10.0)
+    person.select(scan)
+    person.gui.Selection.addSelection(part)
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel(PANEL)
+    assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == ["Bend on it", "Scan"]
+    person.field(panel, "ClearSource").click()
+    person.field(panel, "PickSource").click()
+    person.gui.Selection.addSelection(scan)
+    person.idle()
+    assert "is a mesh" in " ".join(label.text() for label in panel.findChildren(person.widgets.QLabel))
+    assert person.field(panel, "Source").text() == ""
+    person.press("Cancel")
+    person.panel_closed()
+    assert np.isfinite(scan.Mesh.Area)
