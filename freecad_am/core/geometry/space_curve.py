@@ -74,6 +74,16 @@ class SpaceCurve:
         w = self.w[order] + np.where(np.arange(len(order)) >= len(self.w) - 1 - node, self.period, 0.0)
         return SpaceCurve(w, self.points[order], self.into[order], self.out[order], True)
 
+    def stretch(self, first: int, last: int) -> SpaceCurve:
+        """The open curve from one node to another."""
+        nodes = slice(first, last + 1)
+        return SpaceCurve(self.w[nodes], self.points[nodes], self.into[nodes], self.out[nodes], False)
+
+    def reversed(self) -> SpaceCurve:
+        """The same curve run the other way, over the same range of the parameter."""
+        w = self.w[0] + self.w[-1] - self.w[::-1]
+        return SpaceCurve(w, self.points[::-1], -self.out[::-1], -self.into[::-1], self.closed)
+
     def arcs(self, w: Array) -> Index:
         """The arc (n,) that holds each parameter; at a node the one that leaves it."""
         found = np.searchsorted(self.w, self.wrapped(w), side="right") - 1
@@ -159,21 +169,26 @@ class SpaceCurve:
     def walked(self, points: Array, w: Array) -> Array:
         """The parameters (...,) at which the walk downhill from w (...,) along its smooth piece comes nearest to points
         (..., 3)."""
-        w = self.wrapped(w)
-        low, high = (bound[self.arcs(w)] for bound in self._pieces)
+        shape = w.shape
+        done, goal = self.wrapped(w).ravel(), points.reshape(-1, 3)
+        low, high = (bound[self.arcs(done)] for bound in self._pieces)
         farthest = self.period / 50.0
+        w, on = done, np.arange(len(done))  # those still on their way
         for _ in range(STEPS):
             foot, slope, bend = self.at(w)
-            gap = points - foot
+            gap = goal - foot
             pace = dot(slope, slope)
             curvature = pace - dot(gap, bend)
             step = dot(gap, slope) / np.maximum(np.abs(curvature), 1e-4 * pace)  # always downhill
-            new = np.clip(w + np.clip(step, -farthest, farthest), low, high)
-            still = np.abs(new - w).max(initial=0.0) < 1e-13 * self.period
-            w = new
-            if still:
+            step = np.minimum(np.maximum(step, -farthest), farthest)
+            new = np.minimum(np.maximum(w + step, low), high)
+            moving = np.abs(new - w) >= 1e-13 * self.period
+            done[on] = w = new
+            if not moving.any():
                 break
-        return w
+            if not moving.all():
+                on, w, goal, low, high = on[moving], w[moving], goal[moving], low[moving], high[moving]
+        return done.reshape(shape)
 
     @cached_property
     def _pieces(self) -> tuple[Array, Array]:

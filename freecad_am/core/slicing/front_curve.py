@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import Surface, dot, normals
+from ..geometry.surface import dot
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -28,18 +28,6 @@ class Wall(Protocol):
 
     def project(self, points: Array) -> tuple[Array, Array]:
         """Nearest points of the wall and unit normals, (n, 3), the normals to one side all over."""
-
-
-class ParametricWall:
-    """A parametric surface as a wall."""
-
-    def __init__(self, surface: Surface) -> None:
-        self.surface = surface
-
-    def project(self, points: Array) -> tuple[Array, Array]:
-        """Nearest points and unit normals."""
-        u, v = self.surface.inverse(points)
-        return self.surface.point(u, v), normals(self.surface, u, v)
 
 
 class Feet(NamedTuple):
@@ -70,27 +58,34 @@ def _feet(points: Array, foot: Array, front: Index, w: Array) -> Feet:
 
 
 def exact(
-    wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array
-) -> SpaceCurve | None:
+    wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array, ends: Array
+) -> list[SpaceCurve]:
     """The front at `height` mm from the fronts below that runs near the chain of points (n, 3).
 
     A closed chain does not repeat its first point; the curve does. Nodes lie on the wall and at the height to rounding,
-    arcs to WITHIN; corners are nodes. The ends of an open front move along the wall's edge, whose directions there are
-    the unit vectors rims (2, 3). None where hardly a point of the chain finds its distance: between fronts that meet.
+    arcs to WITHIN; corners are nodes. The deposit below lies on the curve's right as seen from where the wall's normals
+    point to. ends: (2, 3) where an open front ends; where that is not known, not a number, its end moves along the wall's
+    edge, whose directions there are the unit vectors rims (2, 3). None or several pieces where points of the chain do
+    not find their distance: between fronts that meet.
     """
     start = points
     points, normal, below = _settled(wall, fronts, height, points, None if closed else rims)
     far = 2.0 * np.median(np.linalg.norm(np.diff(start, axis=0), axis=1))
     sound = (np.abs(below.distance - height) < SETTLED * height) & (np.linalg.norm(points - start, axis=1) < 4.0 * far)
+    known = np.flatnonzero(np.isfinite(ends).all(axis=1))
+    if not closed and len(known):
+        place = np.array([0, len(points) - 1])[known]
+        points[place], normal[place] = ends[known], wall.project(ends[known])[1]
+        below, sound[place] = feet(fronts, points), True
     if sound.sum() < (4 if closed else 2):
-        return None
+        return []
     points, normal = points[sound], normal[sound]
     below = _those(below, sound)
-    tangent = np.cross(normal, below.away)
+    tangent = _unit(np.cross(below.away, normal))
     chord = np.diff(np.vstack([points, points[:1]]), axis=0)[: len(points) if closed else -1]
-    side = 1.0 if dot(tangent[: len(chord)], chord).sum() >= 0.0 else -1.0
-    out = into = side * _unit(tangent)
-    nodes = _Nodes(points, into, out, below)
+    nodes = _Nodes(points, tangent, tangent, below)
+    if dot(tangent[: len(chord)], chord).sum() < 0.0:
+        nodes = _Nodes(points[::-1], tangent[::-1], tangent[::-1], _those(below, np.arange(len(points))[::-1]))
     for _ in range(ROUNDS):
         nodes = _forward(nodes, closed)
         curve = _curve(nodes, closed)
@@ -99,16 +94,25 @@ def exact(
         off = np.maximum(np.abs(feet(fronts, on_wall).distance - height), np.linalg.norm(on_wall - middle, axis=1))
         bad = np.flatnonzero((off > WITHIN) & (curve.span > 1e-6 * curve.period))
         if not len(bad):
-            break
-        corner = _corners(wall, fronts, height, nodes, bad, side)
+            return [curve]
+        corner = _corners(wall, fronts, height, nodes, bad)
         rest = bad[~np.isin(bad, corner[0])]
         spot, spot_normal, spot_below = _settled(wall, fronts, height, on_wall[rest], None)
         sound = np.abs(spot_below.distance - height) < SETTLED * height
         rest, spot, spot_normal = rest[sound], spot[sound], spot_normal[sound]
         spot_below = _those(spot_below, sound)
-        along = side * _unit(np.cross(spot_normal, spot_below.away))
+        along = _unit(np.cross(spot_below.away, spot_normal))
         nodes = _inserted(nodes, [corner, (rest, _Nodes(spot, along, along, spot_below))])
-    return curve
+    return _without(curve, bad)
+
+
+def _without(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
+    """What is left of a curve without some of its arcs: where fronts meet in a gap too narrow to be followed."""
+    if curve.closed:
+        curve = curve.started_at(int(bad[0]) + 1 if bad[0] + 1 < len(curve.span) else 0)
+        bad = (bad - bad[0] - 1) % len(curve.span)
+    ends = np.r_[-1, np.sort(bad), len(curve.span)]
+    return [curve.stretch(int(one) + 1, int(other)) for one, other in zip(ends[:-1], ends[1:]) if other - one > 2]
 
 
 class _Nodes(NamedTuple):
@@ -140,7 +144,7 @@ def _settled(
 
 
 def _corners(
-    wall: Wall, fronts: list[SpaceCurve], height: float, nodes: _Nodes, arcs: Index, side: float
+    wall: Wall, fronts: list[SpaceCurve], height: float, nodes: _Nodes, arcs: Index
 ) -> tuple[Index, _Nodes]:
     """Corners on those of the arcs (k,) whose ends belong to two branches: the arcs that have one, and the corners."""
     n = len(nodes.points)
@@ -176,7 +180,7 @@ def _corners(
         known = dot(nodes.into[end], nodes.out[end]) < SMOOTH
         right &= ~known | (np.linalg.norm(point - nodes.points[end], axis=1) > SAME_PLACE)
     right[right] = np.abs(feet(fronts, point[right]).distance - height) < 1e-7
-    into, out = (side * _unit(np.cross(normal, one.away)) for one in both)
+    into, out = (_unit(np.cross(one.away, normal)) for one in both)
     return arcs[right], _Nodes(point[right], into[right], out[right], _those(both[0], right))
 
 
@@ -226,7 +230,7 @@ def _forward(nodes: _Nodes, closed: bool) -> _Nodes:
         nodes = _Nodes(nodes.points[~drop], nodes.into[~drop], nodes.out[~drop], _those(nodes.below, ~drop))
 
 
-def _those(below: Feet, which: NDArray[np.bool_]) -> Feet:
+def _those(below: Feet, which: NDArray[np.bool_] | Index) -> Feet:
     return Feet(below.distance[which], below.away[which], below.front[which], below.w[which], below.point[which])
 
 

@@ -14,24 +14,57 @@ layers' errors up; here each layer starts from the one before, as the deposit do
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.implicit import Implicit
 from ..geometry.mesh import Mesh
+from ..geometry.patch_wall import FirstCurve, Rim
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from ..issues import InputError
-from .front_curve import Wall, exact, feet
+from .front_curve import exact, feet
+from .rims import Rims, cut_at_rims
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 MOST = 20000  # layers
 SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
 THIN = 0.3  # of the typical edge; nearer points of a level line are one
-STEPS = 30
+BEHIND = 1e-3  # mm; vertices nearer to a first curve lie on it
+SAME = 1e-4  # mm; vertices nearer to a front lie on it, so that the last layer may lie on the wall's edge
+BESIDE = 12  # vertices near a place of a first curve that tell on which side the wall is
+
+
+class FrontWall(Protocol):
+    """What fronts need of a wall; geometry.patch_wall.PatchWall is one."""
+
+    @property
+    def mesh(self) -> Mesh:
+        """A mesh with its vertices on the wall, faces counter-clockwise seen from the side the normals point to."""
+
+    @property
+    def first(self) -> tuple[FirstCurve, ...]:
+        """Where layers start."""
+
+    @property
+    def behind(self) -> Mask:
+        """The vertices (n,) on the other side of that, which are not to be deposited."""
+
+    @property
+    def rims(self) -> tuple[Rim, ...]:
+        """The edges of the wall."""
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Nearest points of the wall and unit normals, (k, 3), the normals to one side all over."""
 
 
 @dataclass(frozen=True)
@@ -42,56 +75,53 @@ class State:
     behind: Mask
 
 
-def start(mesh: Mesh, wall: Wall, substrate: Implicit, label: str = "wall") -> State:
-    """The first layer, where the wall leaves the substrate; all its pieces. InputError NO_INTERSECTION without any."""
-    value = substrate.value(mesh.vertices)[0]
-    fronts = []
-    for line in mesh.level_lines(value, np.arange(len(mesh.faces))):
-        points, normal = wall.project(_thinned(line.points, line.closed, THIN * mesh.typical_edge))
-        for _ in range(STEPS):
-            off, gradient = substrate.value(points)
-            slope = gradient - dot(gradient, normal)[:, None] * normal
-            points, normal = wall.project(points - (off / np.maximum(dot(slope, slope), 1e-6))[:, None] * slope)
-        tangent = np.cross(normal, substrate.value(points)[1])
-        tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-        fronts.append(_through(points, tangent, line.closed))
-    if not fronts:
-        raise InputError("NO_INTERSECTION", label, "the wall does not come out of the substrate: make them intersect")
-    return State(fronts, value < 0.0)
+def start(wall: FrontWall) -> State:
+    """The first layer. All fronts have the wall still to come on their left, seen from where the normals point to."""
+    mesh = wall.mesh
+    fronts = [_facing(wall, one.curve()) for one in wall.first]
+    band = _near(mesh, fronts, mesh.longest_edge)
+    behind = wall.behind.copy()
+    behind[band] |= feet(fronts, mesh.vertices[band]).distance < BEHIND
+    return State(fronts, behind)
 
 
-def step(mesh: Mesh, wall: Wall, state: State, height: float) -> State:
+def step(wall: FrontWall, rims: Rims, state: State, height: float) -> State:
     """The next layer: all fronts at `height` mm from those of the state, which may be none."""
+    mesh = wall.mesh
     reach = height + mesh.longest_edge
-    near = _near(mesh, state.fronts, reach)
-    faces = mesh.faces_at(near)
+    spots = _spots(state.fronts, reach)
+    faces = mesh.faces_at(_around(mesh, spots, reach))
     band = np.unique(mesh.faces[faces])
     below = feet(state.fronts, mesh.vertices[band])
     value = np.full(len(mesh.vertices), np.inf)
     value[band] = np.where(state.behind[band], -below.distance, below.distance) - height
-    low = mesh.joined(faces, value < 0.0, state.behind)  # near in space is not enough: the wall must lead there
+    low = mesh.joined(faces, value < -SAME, state.behind)  # near in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
     value[~np.isfinite(value)] = reach
+    ends = rims.reached(state.fronts, height, spots, reach, SAME)
+    lines = mesh.level_lines(value, faces[np.isfinite(value[mesh.faces[faces]]).all(axis=1)])
     fronts = []
-    for line in mesh.level_lines(value, faces[np.isfinite(value[mesh.faces[faces]]).all(axis=1)]):
+    for line in cut_at_rims(lines, ends, mesh.longest_edge):
         points = _thinned(line.points, line.closed, THIN * mesh.typical_edge)
         if len(points) < (4 if line.closed else 2):
             continue
-        front = exact(wall, state.fronts, height, points, line.closed, line.rims)
-        if front is not None and front.length > SHORTEST * height:
-            fronts.append(front)
+        pieces = exact(wall, state.fronts, height, points, line.closed, line.rims, line.ends)
+        fronts += [front for front in pieces if front.length > SHORTEST * height]
     return State(fronts, state.behind | low)
 
 
-def layers(mesh: Mesh, wall: Wall, first: State, height: float, label: str = "wall") -> list[list[SpaceCurve]]:
+def layers(wall: FrontWall, height: float) -> list[list[SpaceCurve]]:
     """The fronts of all layers, from the first until the wall is covered or its edges are reached."""
-    done, state = [first.fronts], first
+    state, rims = start(wall), Rims.of(wall.rims)
+    done = [state.fronts]
     while not state.behind.all():
-        state = step(mesh, wall, state, height)
+        state = step(wall, rims, state, height)
         if not state.fronts:
             break
         if len(done) >= MOST:
-            raise InputError("LAYER_HEIGHT", label, f"more than {MOST} layers of {height:g} mm: use a larger layer height")
+            raise InputError(
+                "LAYER_HEIGHT", wall.label, f"more than {MOST} layers of {height:g} mm: use a larger layer height"
+            )
         done.append(state.fronts)
     return done
 
@@ -101,15 +131,24 @@ def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) 
     return feet(below, front.at(front.refined(finer))[0]).distance
 
 
-def _near(mesh: Mesh, fronts: list[SpaceCurve], reach: float) -> NDArray[np.intp]:
-    """Vertices within `reach` mm of the fronts, and some more."""
+def _spots(fronts: list[SpaceCurve], reach: float) -> Array:
+    """Points (k, 3) along the fronts, closer together than `reach` mm."""
     spots = []
     for front in fronts:
         count = max(4, int(np.ceil(front.length / (0.5 * reach))))
         spots.append(front.at(np.linspace(front.w[0], front.w[-1], 2 * count))[0])
-    found = mesh.tree.query_ball_point(np.vstack(spots), 1.3 * reach)
-    near: NDArray[np.intp] = np.unique(np.concatenate([np.asarray(one, dtype=np.intp) for one in found]))
+    return np.vstack(spots)
+
+
+def _around(mesh: Mesh, spots: Array, reach: float) -> Index:
+    """Vertices within `reach` mm of the curves the spots are from, and some more."""
+    found: Any = mesh.tree.query_ball_point(spots, 1.3 * reach)
+    near: Index = np.unique(np.fromiter(chain.from_iterable(found), dtype=np.intp))
     return near
+
+
+def _near(mesh: Mesh, fronts: list[SpaceCurve], reach: float) -> Index:
+    return _around(mesh, _spots(fronts, reach), reach)
 
 
 def _thinned(points: Array, closed: bool, least: float) -> Array:
@@ -123,11 +162,11 @@ def _thinned(points: Array, closed: bool, least: float) -> Array:
     return points[keep]
 
 
-def _through(points: Array, tangent: Array, closed: bool) -> SpaceCurve:
-    chord = np.diff(np.vstack([points, points[:1]]), axis=0)[: len(points) if closed else -1]
-    if dot(tangent[: len(chord)], chord).sum() < 0.0:
-        tangent = -tangent
-    if closed:
-        points, tangent = np.vstack([points, points[:1]]), np.vstack([tangent, tangent[:1]])
-    w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return SpaceCurve(w, points, tangent, tangent, closed)
+def _facing(wall: FrontWall, curve: SpaceCurve) -> SpaceCurve:
+    """The curve run so that the vertices still to come are on its left."""
+    place, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
+    left = np.cross(wall.project(place)[1], slope)
+    mesh = wall.mesh
+    beside = np.asarray(mesh.tree.query(place, k=min(BESIDE, len(mesh.vertices)))[1])
+    ahead = np.where(wall.behind[beside], 0.0, dot(mesh.vertices[beside] - place[:, None], left[:, None]))
+    return curve if ahead.sum() >= 0.0 else curve.reversed()
