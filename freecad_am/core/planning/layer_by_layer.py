@@ -25,6 +25,8 @@ Place = tuple[int, int]
 
 # of a joined bead's rotation from start to end, tried besides what the search found best
 OTHER_TURNS = (-1.0, 0.0, 1.0)
+# times the objective of the best, from where another number of turns is not tried
+NOT_MUCH_WORSE = 2.0
 
 
 def plan(
@@ -70,15 +72,21 @@ def plan(
 
 
 def _with_other_turns(start: Array, found: search.Found) -> Array:
-    """(S, B, degree + 1) the starts with the best of each other number of whole turns, NaN where it is the start's own.
+    """(S, B, degree + 1) the starts with the best of each other number of whole turns, NaN where that is not promising.
 
     Which number of turns is best can change with what a higher degree makes of it.
     """
     if start.shape[1] < 2:
         return start[None]
+    each = np.arange(len(start))
+    best = found.best()
+    margin, most = found.margin[best, each], NOT_MUCH_WORSE * found.objective[best, each]
     others = []
     for turns in OTHER_TURNS:
         few = found.of_slope(turns)
-        best = few.coefficients[few.best(), np.arange(len(start))]
-        others.append(np.where(np.abs(best[:, 1:2] - start[:, 1:2]) < 1e-9, np.nan, best))
+        row = few.best()
+        serves = (few.margin[row, each] >= 0.0) & (few.objective[row, each] <= most)
+        promising = np.where(margin >= 0.0, serves, np.isfinite(few.margin[row, each]))
+        other = promising & (np.abs(start[:, 1] - turns) > 1e-9)
+        others.append(np.where(other[:, None], few.coefficients[row, each], np.nan))
     return np.stack([start, *others])
