@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Connected faces as one sheet: a patch for each face and a watertight mesh over all of them, turned to one side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
+import MeshPart
+import numpy as np
+import Part
+from scipy.interpolate import CubicSpline
+from scipy.spatial import cKDTree
+
+from ..core.geometry.collapsed import collapsed
+from ..core.geometry.mesh import Index
+from ..core.geometry.patch import Array, Patch
+from ..core.geometry.patch_wall import PatchWall
+from ..core.geometry.refined import Edges, flipped, refined
+from ..core.geometry.surface import dot
+from ..core.issues import InputError
+from .surface_patch import patch_of
+
+SEWN = 0.01  # mm; edges of faces that lie closer than this are one
+WELDED = 1e-5  # mm; vertices of the tessellations of two faces
+MOST = 1_500_000  # triangles
+STEPS = 8
+ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse mesh
+SHORT = 0.55  # of the longest edge; shorter ones are drawn together
+
+
+def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWall:
+    """The faces as a wall that neither starts nor ends anywhere yet, its edges not longer than `edge` mm.
+
+    Triangles are turned as the faces are, and all to one side. Raises InputError ROUGH_WALL, NOT_ORIENTABLE,
+    TOO_FINE.
+    """
+    names, faces = [name for name, _ in named], [face for _, face in named]
+    shape, order = _sewn(faces)
+    names = [names[k] for k in order]
+    faces = shape.Faces
+    patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
+    vertices, triangles, owner = _tessellated(shape, faces, edge)
+    triangles = _turned(triangles, owner, names, label)
+    curves = _Curves(shape, edge)
+
+    def place(points: Array, beside: Index, _: Index) -> Array:
+        inner = beside[:, 0] == beside[:, 1]
+        placed = points.copy()
+        for k in np.unique(beside[inner, 0]):
+            mine = np.flatnonzero(inner & (beside[:, 0] == k))
+            placed[mine] = patches[k].at(patches[k].inverse(points[mine]))[0]
+        placed[~inner] = curves.nearest(points[~inner])
+        return placed
+
+    made = refined(vertices, triangles, owner, edge, place, MOST)
+    if made is None:
+        raise InputError(
+            "TOO_FINE", label, f"with edges of {edge:.3g} mm the mesh of the wall has more than {MOST} triangles; use a larger "
+            "layer height, round sharp bends more, or deposit the wall in parts",
+        )
+    vertices, triangles, owner = made
+    triangles, owner = collapsed(vertices, triangles, owner, SHORT * edge, edge)
+    triangles = flipped(vertices, triangles, owner)
+    used, index = np.unique(triangles, return_inverse=True)
+    vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
+    uv = np.empty((len(triangles), 3, 2))
+    turned = []
+    for k, patch in enumerate(patches):
+        mine = owner == k
+        used, index = np.unique(triangles[mine], return_inverse=True)
+        found = patch.inverse(vertices[used])
+        uv[mine] = patch.unwrapped(found[np.ravel(index)].reshape(-1, 3, 2))
+        turned.append(_facing(patch, vertices[triangles[mine]]))
+    return PatchWall(
+        vertices, triangles, owner, uv, tuple(turned), (), np.zeros(len(vertices), dtype=bool), (), label, tuple(names)
+    )
+
+
+def _facing(patch: Patch, corners: Array) -> Patch:
+    """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
+    facets = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
+    return replace(patch, sign=patch.sign if dot(facets, normals).sum() > 0.0 else -patch.sign)
+
+
+def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
+    """The faces as one shape that shares edges, and for each of its faces which of the given ones it is."""
+    shape = Part.Compound(faces)
+    if len(faces) > 1:
+        shape.sewShape(SEWN)
+    if len(shape.Faces) != len(faces):
+        shape = Part.Compound(faces)
+    order = []
+    for face in shape.Faces:
+        middle = face.CenterOfMass
+        order.append(min(range(len(faces)), key=lambda k: (
+            faces[k].CenterOfMass.distanceToPoint(middle) + abs(faces[k].Area - face.Area)
+        )))
+    return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
+
+
+def _tessellated(shape: Any, faces: list[Any], edge: float) -> tuple[Array, Index, Index]:
+    """Vertices, triangles and the face of each; vertices that faces share are one."""
+    chord = max(0.1 * edge, 1e-3)
+    # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
+    MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=ANGLE, Relative=False)
+    points, corners, owner, count = [], [], [], 0
+    for k, face in enumerate(faces):
+        own, triangles = face.tessellate(chord)
+        points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
+        corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
+        owner.append(np.full(len(triangles), k, dtype=np.intp))
+        count += len(own)
+    return welded(np.vstack(points), np.vstack(corners), np.concatenate(owner))
+
+
+def welded(points: Array, triangles: Index, owner: Index) -> tuple[Array, Index, Index]:
+    """Vertices closer than WELDED made one; triangles that lose a corner go."""
+    tree = cKDTree(points)
+    first = np.arange(len(points))
+    pairs = tree.query_pairs(WELDED, output_type="ndarray")
+    np.minimum.at(first, pairs.max(axis=1), pairs.min(axis=1))
+    while (first[first] != first).any():
+        first = first[first]
+    kept, index = np.unique(first, return_inverse=True)
+    triangles = np.ravel(index)[triangles]
+    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    triangles, owner = triangles[whole], owner[whole]
+    used, index = np.unique(triangles, return_inverse=True)
+    return points[kept][used], np.ravel(index).reshape(-1, 3).astype(np.intp), owner
+
+
+def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Index:
+    """The triangles with those of some faces turned, so that neighbours agree. InputError NOT_ORIENTABLE."""
+    edges = Edges(triangles)
+    half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
+    forward = half[:, :, 0] < half[:, :, 1]
+    two = np.flatnonzero(edges.count == 2)
+    one, other = edges.faces[two].T
+    ways = [forward[face, np.argmax(edges.of[face] == two[:, None], axis=1)] for face in (one, other)]
+    against = ways[0] == ways[1]
+    count = len(names)
+    links: dict[int, list[tuple[int, bool]]] = {k: [] for k in range(count)}
+    pairs = np.sort(owner[np.stack([one, other], axis=1)], axis=1)
+    for a, b in np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0):
+        turn = bool(against[(pairs == (a, b)).all(axis=1)].mean() > 0.5)
+        links[int(a)].append((int(b), turn))
+        links[int(b)].append((int(a), turn))
+    turned = np.full(count, -1)
+    for start in range(count):
+        if turned[start] >= 0:
+            continue
+        turned[start], waiting = 0, [start]
+        while waiting:
+            at = waiting.pop()
+            for near, turn in links[at]:
+                wanted = int(turned[at]) ^ int(turn)
+                if turned[near] < 0:
+                    turned[near] = wanted
+                    waiting.append(near)
+                elif turned[near] != wanted:
+                    raise InputError(
+                        "NOT_ORIENTABLE", label, f"{names[at]} and {names[near]} cannot be turned to one side (a twisted "
+                        "band has no outside); leave one of the faces out",
+                    )
+    triangles = triangles.copy()
+    flip = turned[owner] == 1
+    triangles[flip] = triangles[flip][:, ::-1]
+    return triangles
+
+
+class _Curves:
+    """The edges of a shape as splines, for the nearest points on them."""
+
+    def __init__(self, shape: Any, edge: float) -> None:
+        self.splines, points, which, at = [], [], [], []
+        for curve in shape.Edges:
+            if curve.Degenerated or curve.Length < 1e-9:
+                continue
+            low, high = curve.ParameterRange
+            count = int(np.clip(np.ceil(4.0 * curve.Length / edge), 32, 4000)) + 1
+            t = np.linspace(low, high, count)
+            own = np.array([tuple(curve.valueAt(one)) for one in t.tolist()])
+            which.append(np.full(count, len(self.splines)))
+            self.splines.append(CubicSpline(t, own))
+            points.append(own)
+            at.append(t)
+        self.tree = cKDTree(np.vstack(points))
+        self.which, self.at = np.concatenate(which), np.concatenate(at)
+
+    def nearest(self, points: Array) -> Array:
+        """Nearest points (n, 3) of all edges."""
+        if not len(points):
+            return points
+        near = self.tree.query(points)[1]
+        found = np.empty_like(points)
+        for k in np.unique(self.which[near]):
+            mine = self.which[near] == k
+            spline, t, p = self.splines[k], self.at[near[mine]], points[mine]
+            for _ in range(STEPS):
+                place, slope, bend = (spline(t, order) for order in range(3))
+                pace = dot(slope, slope)
+                t = t + dot(p - place, slope) / np.maximum(pace - dot(p - place, bend), 0.1 * pace)
+                t = np.clip(t, spline.x[0], spline.x[-1])
+            found[mine] = spline(t)
+        return found
