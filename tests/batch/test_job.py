@@ -251,6 +251,21 @@ build_direction: {mode: symmetry-plane, clearance: none}
 """
 
 
+def test_fixtures(read):
+    job = read(SURFACE + "fixtures:\n- {file: part.step}\n- {file: part.step}\n")
+    assert job.fixtures == (job.part, job.part)
+    assert read(SURFACE).fixtures == ()
+    for entry, code, where in (
+        ("{file: part.step}", "BAD_VALUE", "fixtures"),
+        ("[{file: none.step}]", "NO_FILE", "fixtures[0].file"),
+        ("[{file: part.step}, {file: part.step, faces: [Face1]}]", "BAD_VALUE", "fixtures[1].faces"),
+        ("[{file: part.step}, part.step]", "BAD_VALUE", "fixtures[1]"),
+        ("[{name: part.step}]", "UNKNOWN_KEY", "fixtures[0].name"),
+    ):
+        error = refused(read, f"{SURFACE}fixtures: {entry}\n")
+        assert error.code == code and error.where.endswith(where), error
+
+
 def test_a_wall_on_a_substrate(read):
     job = read(SURFACE)
     assert job.strategy == SurfaceParameters(layer_height=5.0, band=0.1, end="whole")
@@ -265,8 +280,6 @@ def test_a_wall_on_a_substrate(read):
         ("substrate: {file: part.step}", "substrate: {file: none.step}", "NO_FILE", "substrate.file", "none.step"),
         ("step}\nstrategy", "step, faces: [Face1]}\nstrategy", "NOT_YET", "substrate.faces", "whole"),
         ("substrate: {file: part.step}", "substrate: {object: A}", "NO_PART", "substrate.file", "write substrate"),
-        ("clearance: none", "clearance: nozzle", "NOT_YET", "build_direction.clearance", "none"),
-        (", clearance: none", "", "NOT_YET", "build_direction.clearance", "none"),
         ("end: whole", "spacing: arc-length", "BAD_VALUE", "strategy.spacing", "constant-distance"),
         ("end: whole", "wall: outer", "UNKNOWN_KEY", "strategy.wall", "band"),
         ("band: 10 %", "band: 110 %", "BAD_VALUE", "strategy.band", "100 %"),

@@ -218,24 +218,16 @@ def coverage(planned: Planned, wall: Wall, step: float, near_end: float) -> tupl
 
 def _face_samples(face: Part.Face, step: float) -> np.ndarray:
     low_u, high_u, low_v, high_v = face.ParameterRange
-    surface, found = face.Surface, []
+    surface = face.Surface
     middle = 0.5 * (low_v + high_v)
     along = _array([surface.value(u, middle) for u in np.linspace(low_u, high_u, 33)])
     count_u = max(3, math.ceil(np.linalg.norm(np.diff(along, axis=0), axis=1).sum() / step))
     around = _array([surface.value(0.5 * (low_u + high_u), v) for v in np.linspace(low_v, high_v, 33)])
     count_v = max(3, math.ceil(np.linalg.norm(np.diff(around, axis=0), axis=1).sum() / step))
-    whole = len(face.Edges) == len([edge for edge in face.Edges if not edge.Degenerated]) and abs(
-        face.Area - _area(surface, face.ParameterRange)
-    ) < 1e-4 * face.Area
-    for u in low_u + (np.arange(count_u) + 0.5) / count_u * (high_u - low_u):
-        for v in low_v + (np.arange(count_v) + 0.5) / count_v * (high_v - low_v):
-            if whole or face.isPartOfDomain(u, v):
-                found.append(surface.value(u, v))
-    return _array(found)
-
-
-def _area(surface: object, ranges: tuple) -> float:
-    return float(surface.toShape(*ranges).Area)
+    whole = abs(face.Area - surface.toShape(*face.ParameterRange).Area) < 1e-6 * face.Area
+    rows = low_u + (np.arange(count_u) + 0.5) / count_u * (high_u - low_u)
+    columns = low_v + (np.arange(count_v) + 0.5) / count_v * (high_v - low_v)
+    return _array([surface.value(u, v) for u in rows for v in columns if whole or face.isPartOfDomain(u, v)])
 
 
 def _array(vectors: list) -> np.ndarray:

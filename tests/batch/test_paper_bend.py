@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The bend of Chalvin 2019 planned by the command: the figures of the errata, measured without the program's own code.
+
+The errata count layers to the first that lies wholly past 90 deg, so the wall of these jobs goes on to 175 deg.
+"""
+
+import math
+from pathlib import Path
+
+import FreeCAD
+import numpy as np
+import Part
+import pytest
+
+from tests.batch import wall_checks
+from tests.batch.wall_examples import Plans, rod
+
+BEND, TUBE, WIDE, PIPE = 60.0, 15.0, 25.0, 32.0
+PASSED = math.radians(90.0)
+
+
+@pytest.fixture(scope="module")
+def plans(tmp_path_factory):
+    made = Plans(Path(__file__).resolve().parents[2], tmp_path_factory.mktemp("paper"))
+    for name, tube in (("long-tube", TUBE), ("long-wide-tube", WIDE)):
+        torus = Part.Toroid()
+        torus.MajorRadius, torus.MinorRadius = BEND, tube
+        torus.Center, torus.Axis = FreeCAD.Vector(-BEND, 0, 0), FreeCAD.Vector(0, -1, 0)
+        torus.toShape(0.0, math.radians(175.0), 0.0, 2.0 * math.pi).exportStep(str(made.folder / f"{name}.step"))
+    return made
+
+
+@pytest.fixture(scope="module")
+def sliced(plans):
+    """Beads of the layers up to the first wholly past 90 deg: (tube, layer height, spacing, chord error)."""
+    def beads(tube, height, spacing, chord_error):
+        text = plans.exact("tube-on-pipe", chord_error)
+        text = text.replace("layer_height: 5 mm", f"layer_height: {height:g} mm").replace("constant-distance", spacing)
+        text = text.replace("tube-on-pipe.step", "long-tube.step" if tube == TUBE else "long-wide-tube.step")
+        layers = [layer for layer in plans.plan("tube-on-pipe", text).layers]
+        past = next(number for number, layer in enumerate(layers) if angle(layer[0].points).min() > PASSED)
+        assert all(len(layer) == 1 and layer[0].closed for layer in layers[: past + 1])
+        return [layer[0] for layer in layers[: past + 1]]
+
+    return beads
+
+
+def angle(points):
+    """Around the axis of the bend, from where it starts."""
+    return np.arctan2(points[:, 2], points[:, 0] + BEND)
+
+
+def distances(beads):
+    return [wall_checks.nearest(above.points, [below.points]).distance for below, above in zip(beads, beads[1:])]
+
+
+@pytest.mark.parametrize(
+    "tube, height, count, chord_error", [(TUBE, 5.0, 16, 2e-5), (TUBE, 1.0, 72, 5e-5), (WIDE, 5.0, None, 2e-5)]
+)
+def test_corrected_layers(sliced, tube, height, count, chord_error):
+    """Thousands of points around each layer, corners included."""
+    beads = sliced(tube, height, "constant-distance", chord_error)
+    if count is not None:
+        assert len(beads) == count
+    assert min(len(bead.points) for bead in beads) > (1200 if height == 5.0 else 900)
+    assert np.abs(np.concatenate(distances(beads)) - height).max() <= 1e-4
+    for bead in beads:
+        x, y, z = bead.points.T
+        assert np.abs(np.hypot(np.hypot(x + BEND, z) - BEND, y) - tube).max() <= 1e-5
+    assert np.abs(rod(0.0, 0.0, PIPE)(beads[0].points)).max() <= 1e-5
+
+
+@pytest.mark.parametrize("height, count, chord_error", [(5.0, 19, 1e-4), (1.0, 87, 1e-2)])
+def test_layers_of_equation_2(sliced, height, count, chord_error):
+    beads = sliced(TUBE, height, "iso-parameter", chord_error)
+    assert len(beads) == count
+    if height == 5.0:
+        assert min(found.min() for found in distances(beads)) == pytest.approx(2.49, abs=0.005)
+        assert max(found.max() for found in distances(beads)) <= 5.0 + 1e-4
+
+
+@pytest.mark.parametrize("tube, turn", [(TUBE, 97.0), (WIDE, 105.0)])
+def test_the_corner_on_the_outside_of_the_bend(sliced, tube, turn):
+    """It is one point of the last layer, in the plane of the bend, and as sharp as the errata say."""
+    points = sliced(tube, 5.0, "constant-distance", 2e-5)[-1].points[:-1]
+    step = np.diff(points, axis=0, append=points[:1])
+    into = np.roll(step, 1, axis=0)
+    cosine = (into * step).sum(1) / np.linalg.norm(into, axis=1) / np.linalg.norm(step, axis=1)
+    turns = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    corner = int(np.argmax(turns))
+    assert turns[corner] == pytest.approx(turn, abs=0.5)
+    assert np.delete(turns, corner).max() < 1.0
+    assert abs(points[corner, 1]) < 1e-5 and np.hypot(points[corner, 0] + BEND, points[corner, 2]) > BEND
