@@ -10,9 +10,11 @@ from typing import Any
 
 from freecad_am.core.kinematics.limits import Limits
 from freecad_am.core.motion import Motion
+from freecad_am.core.process.spacing import local_distances
+from freecad_am.core.strategies.wall_comparison import Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath
 
-from . import figures, view
+from . import figures, view, wall_figures
 
 _MOST_ISSUES = 200
 _WHOLE = (
@@ -23,6 +25,19 @@ _PER_AXIS = (
     ("range_per_layer_max_deg", "largest range within a layer, deg"), ("limit_margin_deg", "margin to the limit, deg"),
     ("speed_max_deg_s", "largest speed, deg/s"), ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"),
     ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"), ("speed_ratio_max", "largest share of the speed limit"),
+)
+_SPACING = (
+    ("layers", "layers to the end"), ("min_mm", "least distance, mm"), ("mean_mm", "mean, mm"),
+    ("max_mm", "largest, mm"), ("length_mm", "length, mm"), ("turn_max_deg_mm", "sharpest turn beside corners, deg/mm"),
+    ("cornered_layers", "layers with corners"), ("corner_max_deg", "sharpest corner, deg"),
+)
+_MOTION = (
+    ("duration_s", "time of all moves, s"), ("deposit_s", "deposit at the travel speed, s"),
+    ("axis_limited_s", "deposit as fast as the axes can, s"), ("condition_min", "smallest condition"),
+)
+_MOTION_PER_AXIS = (
+    ("speed_ratio_max", "largest share of the speed limit"),
+    ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"), ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
 )
 _STYLE = """
 :root{--ink:#1d2430;--soft:#667085;--line:#dfe3ea;--paper:#fff;--ground:#f3f5f8;--good:#1a7f4b;--bad:#b8322a;--warn:#9a6700}
@@ -51,6 +66,7 @@ svg .grid{stroke:var(--line)}
 svg .frame{fill:none;stroke:var(--soft);opacity:.5}
 svg .curve{fill:none;stroke-linejoin:round}svg .forbidden{fill:var(--bad);opacity:.13}
 svg .limit{stroke:var(--bad);stroke-dasharray:5 4}
+svg .asked{stroke:var(--soft);stroke-dasharray:5 4}
 svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}
 svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
 svg .far{stroke-width:1.2;opacity:.6}svg .direction{stroke:var(--ink);stroke-width:1.1;opacity:.6}
@@ -71,6 +87,7 @@ class Content:
     speed_ratio: Array | None = None
     condition: Array | None = None
     threshold: Array | None = None
+    compared: tuple[Compared | Refused, ...] = ()
 
 
 def render(content: Content) -> str:
@@ -84,6 +101,7 @@ def render(content: Content) -> str:
         "short strokes show the build direction.</figcaption></figure>",
         *_joints(content),
         _process(content),
+        _spacings(content),
         _comparison(report),
         _criteria(report),
         _pairs("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
@@ -153,6 +171,45 @@ def _process(content: Content) -> str:
     if content.spacing:
         plots.insert(0, figures.spacing_plot(content.spacing, content.toolpath.layer_height))
     return f'<h2>Layers and path</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
+
+
+def _spacings(content: Content) -> str:
+    """What each spacing of a wall costs and gains: the paper's plots, the figures, the robot's motion."""
+    rows = content.report["spacing_comparison"]
+    if not rows:
+        return ""
+    toolpath, done = content.toolpath, [one for one in content.compared if isinstance(one, Compared)]
+    height = toolpath.layer_height
+    plots = wall_figures.distance_plots(done, height) if done else []
+    plots += [wall_figures.step_plot(one, height) for one in done if one.method == "constant-distance"]
+    plots.append(wall_figures.deposit_plot(toolpath, local_distances(toolpath)))
+    grid = "".join(f"<figure>{plot}</figure>" for plot in plots)
+    both = wall_figures.both_paths(done)
+    if both:
+        both = (f'<figure style="margin-top:10px">{both}<figcaption>Both paths: along the lines up the wall, and at a '
+                "constant distance from the layer below.</figcaption></figure>")
+    names = [row["method"] + (" (planned)" if row["planned"] else "") for row in rows]
+    table = _table([("", names)] + [(word, [_figure(row[key]) for row in rows]) for key, word in _SPACING])
+    reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
+    return (
+        '<h2>What spacing costs</h2><p class="sub">Distance of each point to the nearest point of the layer below, around '
+        f'the wall; every curve is a layer, dark ones first.</p><div class="grid">{grid}</div>{both}{table}{reasons}'
+        f"{_spacing_motion(content.report)}"
+    )
+
+
+def _spacing_motion(report: dict[str, Any]) -> str:
+    rows = [row for row in report["spacing_comparison"] if row["motion"]]
+    if len(rows) < 2:
+        return ""
+    whole = [("", [row["method"] for row in rows])] + [
+        (word, [_figure(row["motion"][key]) for row in rows]) for key, word in _MOTION
+    ]
+    axes = [("", ["", *report["machine"]["axes"]])] + [
+        (word if number == 0 else "", [row["method"], *(_figure(value) for value in row["motion"][key] or ())])
+        for key, word in _MOTION_PER_AXIS for number, row in enumerate(rows)
+    ]
+    return f"<h2>What spacing gains in motion</h2>{_table(whole)}{_table(axes)}"
 
 
 def _criteria(report: dict[str, Any]) -> str:

@@ -39,9 +39,10 @@ def build(
         },
         "length_mm": toolpath.length,
         "duration_s": motion.total_time + _standing(toolpath, process),
-        "spacing_mm": _spread(spacing),
+        "spacing_mm": spread(spacing),
         "joints": None,
         "comparison": [],
+        "spacing_comparison": [],
         "process": _process(process),
         "machine": None,
         "timing_s": {},
@@ -99,7 +100,8 @@ def _standing(toolpath: Toolpath, process: ProcessParameters) -> float:
     return between + (process.lead_on + process.lead_off) * toolpath.bead_count
 
 
-def _spread(spacing: Sequence[Array]) -> dict[str, float | None]:
+def spread(spacing: Sequence[Array]) -> dict[str, float | None]:
+    """Least, mean and largest of all values, None where there are none."""
     if not spacing:
         return {"min": None, "mean": None, "max": None}
     values = np.concatenate(spacing)

@@ -30,6 +30,7 @@ class Stages:
     """The stages as far as they got: document objects and the findings about them."""
 
     document: Any
+    feature: Any = None
     toolpath: Any = None
     joint_path: Any = None
     program: Any = None
@@ -140,6 +141,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
             feature = api.make_surface_feature(
                 document, part, job.part.faces, substrate, strategy=job.strategy, build_direction=job.build_direction
             )
+    stages.feature = feature
     stages.issues += api.issues(feature)
     with stages.timed("toolpath", session):
         stages.toolpath = api.make_toolpath(document, feature, cell, process=job.process)
@@ -188,25 +190,50 @@ def _write(
         content = report.build(job.name, toolpath, motion, distances, job.process, stages.issues)
         if planned is not None:
             report.add_joints(content, planned.joint_path, cell, job.joints, stages.joint_path.Seconds)
+    with stages.timed("spacing_comparison", session):
+        compared = _compare_spacings(job, stages, content, toolpath, distances, planned, cell, session)
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])
     if page:
         with stages.timed("page", session):
-            files.write(outputs.PAGE, [_page(job, content, toolpath, motion, distances, planned, cell)])
+            files.write(outputs.PAGE, [_page(job, content, toolpath, motion, distances, planned, cell, compared)])
     written = files.publish(outputs.earlier_outputs(files.folder))
     return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
 
 
-def _page(job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any) -> str:
+def _compare_spacings(
+    job: Job, stages: Stages, content: dict[str, Any], toolpath: Any, distances: Any, planned: Any, cell: Any, session: Any
+) -> Any:
+    """Fill in what other spacings of a wall would be; what the page draws of them."""
+    from freecad_am import api
+
+    from . import spacing_comparison
+
+    wall = api.result(stages.feature)
+    compared = spacing_comparison.compare(wall, job)
+    rows = spacing_comparison.rows(compared, job, toolpath, distances)
+    if rows and planned is not None:
+        rows[0]["motion"] = spacing_comparison.motion_of(planned.joint_path, planned.motion, cell, job.joints)
+        others = spacing_comparison.motions(wall, job, session)
+        for row in rows[1:]:
+            found = others.get(row["method"])
+            row["reason" if isinstance(found, str) else "motion"] = found or row["motion"]
+    content["spacing_comparison"] = rows
+    return compared
+
+
+def _page(
+    job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any, compared: Any
+) -> str:
     from . import page, report
 
     if planned is None:
-        return page.render(page.Content(content, toolpath, motion, distances))
+        return page.render(page.Content(content, toolpath, motion, distances, compared=compared))
     condition, threshold = report.along_motion(planned.joint_path, motion)
     return page.render(page.Content(
         content, toolpath, motion, distances, job.cell.platform_diameter if job.cell else None, cell.limits,
-        report.speed_ratio(motion, cell), condition, threshold,
+        report.speed_ratio(motion, cell), condition, threshold, compared,
     ))
 
 

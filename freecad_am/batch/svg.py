@@ -39,12 +39,12 @@ def path_data(x: Array, y: Array, decimals: int = 1) -> str:
     return "".join(pieces)
 
 
-def thinned(x: Array, y: Array) -> tuple[Array, Array]:
+def thinned(x: Array, y: Array, columns: int = _MOST_COLUMNS) -> tuple[Array, Array]:
     """A curve with fewer points that looks the same: least and largest value of each column of the picture."""
-    if len(x) <= 4 * _MOST_COLUMNS:
+    if len(x) <= 4 * columns:
         return x, y
     keep: list[int] = []
-    for part in np.array_split(np.arange(len(x)), _MOST_COLUMNS):
+    for part in np.array_split(np.arange(len(x)), columns):
         finite = part[np.isfinite(y[part])]
         if len(finite) == 0:
             keep.append(int(part[0]))

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from html import escape
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from . import svg
 WIDTH, HEIGHT, MARGIN = 960, 620, 34
 _AZIMUTH, _ELEVATION = math.radians(-62.0), math.radians(24.0)
 _MOST_POINTS = 60_000
+_MOST_OVERLAID = 12_000  # points of one group
 _TICKS = 260  # build directions shown
 
 
@@ -38,6 +41,22 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
         f'<svg class="view" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="the path, coloured by layer">'
         f'{"".join(parts)}</svg>'
     )
+
+
+def overlaid(groups: Sequence[tuple[str, str, Sequence[Array]]]) -> str:
+    """Curves (n, 3) in one picture, seen alike: groups of a name, a colour and curves; NaN lifts the pen."""
+    every = np.concatenate([curve for _, _, curves in groups for curve in curves])
+    scale, shift = _fit(_seen(every[np.isfinite(every[:, 0])]))
+    parts = []
+    for number, (name, stroke, curves) in enumerate(groups):
+        step = max(1, sum(map(len, curves)) // _MOST_OVERLAID)
+        data = "".join(svg.path_data(*(_seen(curve[::step])[:, :2] * scale + shift).T) for curve in curves)
+        parts.append(f'<path class="curve" stroke="{stroke}" stroke-width="1.3" d="{data}"/>')
+        at = 20 * number - 22
+        parts.append(f'<circle cx="{MARGIN}" cy="{at - 4}" r="4" fill="{stroke}"/>')
+        parts.append(f'<text class="key" x="{MARGIN + 12}" y="{at}">{escape(name)}</text>')
+    label = escape(" and ".join(name for name, _, _ in groups))
+    return f'<svg class="view" viewBox="0 -40 {WIDTH} {HEIGHT + 40}" role="img" aria-label="{label}">{"".join(parts)}</svg>'
 
 
 def _seen(points: Array) -> Array:

@@ -28,9 +28,9 @@ class Compared:
     """A wall cut by one method. Lengths mm, angles rad.
 
     layers: up to the first one wholly past the end. least, mean, most: of the distance of each point to the nearest of
-    the layer below. turn: sharpest turn within the wall per mm, corners included. corners: layers that have some;
-    corner: the sharpest. length: of all layers below the end. Per layer but the first: around (n,), the share of the way
-    around the wall from 0 to 1, distance (n,) and step (n,), how far the layer lies above the one below along the line
+    the layer below. turn: sharpest turn within the wall per mm, away from corners. corners: layers that have some;
+    corner: the sharpest. length: of all layers below the end. Per layer but the first: around (n,), v as a share of its
+    period from -0.5 to 0.5, distance (n,) and step (n,), how far the layer lies above the one below along the line
     v = const (Delta_ij); NaN where there is nothing to deposit. curves: points (n, 3) of all layers, NaN likewise.
     """
 
@@ -82,9 +82,13 @@ def _measured(method: str, surface: Placed, fronts: Sequence[WallLayer], first: 
         u, base = above.heights(surface, v)[0], below.heights(surface, v)[0]
         there = u > first.heights(surface, v)[0]
         rise = np.linalg.norm(surface.point(u, v) - surface.point(base, v), axis=1)
-        around.append((v - v[0]) / above.curve.period)
-        distance.append(np.where(there, apart, np.nan))
-        step.append(np.where(there, rise, np.nan))
+        share = v[:-1] / above.curve.period
+        share -= np.round(share)
+        order = np.argsort(share, kind="stable")
+        order = np.r_[order, order[0]]
+        around.append(np.r_[share[order[:-1]], share[order[0]] + 1.0])
+        distance.append(np.where(there, apart, np.nan)[order])
+        step.append(np.where(there, rise, np.nan)[order])
     # nodes gather at corners: each place counts by the stretch it stands for
     weight, values = np.concatenate([np.gradient(one) for one in around]), np.concatenate(distance)
     weight, values = weight[np.isfinite(values)], values[np.isfinite(values)]
@@ -92,8 +96,11 @@ def _measured(method: str, surface: Placed, fronts: Sequence[WallLayer], first: 
     cornered = 0
     for front in fronts[1:]:  # the first is the substrate's
         inside = (front.u <= end) & (front.u >= first.heights(surface, front.v)[0])
-        turn = max(turn, float(turns_in_wall(surface, front)[inside[:-1] & inside[1:]].max(initial=0.0)))
-        sharpest = float(front.curve.turns[front.curve.corners[inside[front.curve.corners]]].max(initial=0.0))
+        corners = front.curve.corners
+        sharpest = float(front.curve.turns[corners[inside[corners]]].max(initial=0.0))
+        smooth = inside[:-1] & inside[1:]
+        smooth[corners] = False
+        turn = max(turn, float(turns_in_wall(surface, front)[smooth].max(initial=0.0)))
         cornered, corner = cornered + (sharpest > 0.0), max(corner, sharpest)
     curves = tuple(_deposited(surface, front, first, end) for front in fronts)
     length = sum(float(np.nansum(np.linalg.norm(np.diff(curve, axis=0), axis=1))) for curve in curves)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What each spacing of a wall's layers costs and gains: the rows of the report, with the robot's motion where asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.issues import AmError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.cell import Cell
+from freecad_am.core.motion import Motion
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.planning import comparison
+from freecad_am.core.planning.joint_path import JointPath
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.task import Task
+from freecad_am.core.strategies import wall_comparison
+from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared, Refused
+from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.objects import user_machines
+from freecad_am.objects.toolpath import planned
+
+from . import report
+from .job import Job
+
+_MOTION = (
+    "condition_min", "range_per_layer_max_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3",
+    "speed_ratio_max",
+)
+_NO_PARAMETER = "the wall is not one surface with one closed parameter, along which such layers are cut"
+_NOT_PLANNED = "walls of several faces are cut by one method at a time: choose it as strategy.spacing"
+
+
+def compare(wall: Any, job: Job) -> tuple[Compared | Refused, ...]:
+    """The wall of a job cut by every method; walls without one closed parameter by none, parts of revolution not at all."""
+    if job.strategy.spacing not in METHODS:
+        return ()
+    if isinstance(wall, SurfaceWall):
+        return wall_comparison.compare(wall, job.strategy)
+    others = [method for method in METHODS if method != job.strategy.spacing]
+    return tuple(
+        Refused(method, _NO_PARAMETER if method in (NORMAL, "iso-parameter") else _NOT_PLANNED) for method in others
+    )
+
+
+def rows(
+    found: Sequence[Compared | Refused], job: Job, toolpath: Toolpath, distances: Sequence[Array]
+) -> list[dict[str, Any]]:
+    """The rows of report.json without motion; that of the method planned comes first."""
+    known = {one.method: _row(one) for one in found}
+    own = job.strategy.spacing
+    if found and own not in known:  # a wall cut by this method alone
+        spread = report.spread(distances)
+        known[own] = _empty(own) | {
+            "layers": len(toolpath.layers), "min_mm": spread["min"], "mean_mm": spread["mean"], "max_mm": spread["max"],
+            "length_mm": toolpath.length,
+        }
+    return [row | {"planned": method == own} for method, row in sorted(known.items(), key=lambda item: item[0] != own)]
+
+
+def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParameters) -> dict[str, Any]:
+    """How the robot moves while it deposits. axis_limited_s: the deposit's time if each step took as long as the slowest
+    axis needs."""
+    figures = comparison.figures(Task(cell, opw.branch_index(path.branch), joints), path.beads)
+    deposit = motion.deposit & (motion.point > 0)
+    share = np.nanmax(report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
+    time = motion.duration[deposit]
+    return {
+        "feasible": path.feasible, "duration_s": motion.total_time, "deposit_s": float(time.sum()),
+        "axis_limited_s": float((time * np.maximum(share, 1.0)).sum()), **{key: figures[key] for key in _MOTION},
+    }
+
+
+def motions(wall: Any, job: Job, session: Any) -> dict[str, dict[str, Any] | str]:
+    """The motion of every further spacing of strategy.compare, or why there is none."""
+    found: dict[str, dict[str, Any] | str] = {}
+    for spacing in dict.fromkeys(job.strategy.compare):
+        if spacing == job.strategy.spacing:
+            continue
+        session.progress(f"spacing comparison: {spacing} ...")
+        try:
+            found[spacing] = _planned(wall, job, spacing)
+        except AmError as error:
+            found[spacing] = error.message
+    return found
+
+
+def _planned(wall: Any, job: Job, spacing: str) -> dict[str, Any]:
+    strategy = replace(job.strategy, spacing=spacing, compare=())
+    toolpath = planned(wall, strategy, job.build_direction, job.process, job.cell)
+    cell = cells.resolve(job.cell, toolpath.frame, toolpath.family, user_machines.folders())
+    path = plan_joints(toolpath, cell, replace(job.joints, compare=()))
+    return motion_of(path, assemble(path, cell, job.process)[0], cell, job.joints)
+
+
+def _row(one: Compared | Refused) -> dict[str, Any]:
+    if isinstance(one, Refused):
+        return _empty(one.method) | {"reason": one.reason}
+    return _empty(one.method) | {
+        "layers": one.layers, "min_mm": one.least, "mean_mm": one.mean, "max_mm": one.most, "length_mm": one.length,
+        "turn_max_deg_mm": float(np.degrees(one.turn)), "cornered_layers": one.corners,
+        "corner_max_deg": float(np.degrees(one.corner)),
+    }
+
+
+def _empty(method: str) -> dict[str, Any]:
+    keys = (
+        "layers", "min_mm", "mean_mm", "max_mm", "length_mm", "turn_max_deg_mm", "cornered_layers", "corner_max_deg",
+        "reason", "motion",
+    )
+    return {"method": method, **dict.fromkeys(keys)}
