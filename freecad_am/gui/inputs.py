@@ -133,6 +133,31 @@ class ObjectChoice(ShapeChoice):
         return {self.link.key: "None" if self.present is None else recorded.reference(self.present[0])}
 
 
+class ObjectsChoice(ShapeChoice):
+    """Several whole objects with a shape or a mesh: what is selected, renewed by a button; nothing selected, none."""
+
+    def __init__(self, link: Link, present: Any) -> None:
+        self.objects, self.told = list(present or ()), bool(present)
+        super().__init__(link, None, take_now=False)
+        self.text.setPlaceholderText("none")
+
+    def take(self, *_: Any) -> None:
+        """Take what is selected now."""
+        found = Gui.Selection.getSelection(self.document.Name)
+        self.objects = [obj for obj in found if stage_of(obj) is None and (hasattr(obj, "Shape") or hasattr(obj, "Mesh"))]
+        self._show()
+
+    def _show(self) -> None:
+        text = ", ".join(obj.Label for obj in self.objects)
+        self.text.setText(text)
+        self.text.setToolTip(text)
+
+    def arguments(self) -> dict[str, str]:
+        if not self.objects and not self.told:
+            return {}
+        return {self.link.key: f"[{', '.join(recorded.reference(obj) for obj in self.objects)}]"}
+
+
 class NameChoice(Input):
     """The name of a program."""
 
@@ -154,6 +179,8 @@ def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
         present = None if obj is None else getattr(obj, link.name)
         if link.kind:
             found.append(StageChoice(link, present))
+        elif link.type_name == "App::PropertyLinkList":
+            found.append(ObjectsChoice(link, present))
         elif link.type_name == "App::PropertyLink":
             found.append(ObjectChoice(link, present))
         else:

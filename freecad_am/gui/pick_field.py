@@ -25,6 +25,7 @@ class PickField(Input):
         self.several = link.type_name == _LIST
         self.element = "" if link.type_name != _SUB else EDGE if "Edge" in link.name else FACE
         self.picks = self._present(present)
+        self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(link.help)
         self.text = QtGui.QLineEdit()
@@ -112,6 +113,8 @@ class PickField(Input):
 
     def arguments(self) -> dict[str, str]:
         references = [recorded.reference(pick.obj) for pick in self.picks]
+        if not references and not self.told:
+            return {}
         if self.several:
             return {self.link.key: f"[{', '.join(references)}]"}
         if not self.picks:

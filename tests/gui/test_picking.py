@@ -17,7 +17,8 @@ def assembly():
     part.Placement = App.Placement(App.Vector(30, 0, 0), App.Rotation(App.Vector(0, 0, 1), 40))
     body = document.addObject("PartDesign::Body", "Body")
     part.addObject(body)
-    box, bore = document.addObject("PartDesign::AdditiveBox", "Pad"), document.addObject("PartDesign::SubtractiveCylinder", "Bore")
+    box = document.addObject("PartDesign::AdditiveBox", "Pad")
+    bore = document.addObject("PartDesign::SubtractiveCylinder", "Bore")
     for feature in (box, bore):
         body.addObject(feature)
     box.Length = box.Width = box.Height = 10

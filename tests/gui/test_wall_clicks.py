@@ -15,7 +15,8 @@ PANEL = "RoboticAM_SurfaceFeature"
 def bend(person, root):
     """A document with a bend and the pipe it stands on, seen from where both are in sight."""
     document = App.newDocument("Bend")
-    parts = [api.open_part(document, str(root / "resources" / "examples" / name)) for name in ("tube-on-pipe.step", "pipe.step")]
+    folder = root / "resources" / "examples"
+    parts = [api.open_part(document, str(folder / name)) for name in ("tube-on-pipe.step", "pipe.step")]
     for part, label in zip(parts, ("Bend on it", "Old pipe"), strict=True):
         part.Label = label
     for dock in person.window.findChildren(person.widgets.QDockWidget):
