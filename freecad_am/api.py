@@ -62,27 +62,29 @@ def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | Non
 
 def make_feature(
     doc: Any, source: Any, faces: Sequence[str] = (), label: str = "Feature", *, axis: Any = None,
-    strategy: RevolutionParameters | None = None, build_direction: BuildDirectionParameters | None = None,
-    **values: Any,
+    fixtures: Sequence[Any] = (), strategy: RevolutionParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
 ) -> Any:
     """A feature of revolution of an object with a shape, or of some of its faces.
 
     `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
+    fixtures: objects, solids or meshes, that the nozzle must not touch.
     """
-    links = {"Source": _with_faces(source, faces), "Axis": axis}
+    links = {"Source": _with_faces(source, faces), "Axis": axis, "Fixtures": list(fixtures)}
     return _make(doc, RevolutionFeature, "Feature", label, links, [strategy, build_direction], values)
 
 
 def make_surface_feature(
     doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
-    strategy: SurfaceParameters | None = None, build_direction: BuildDirectionParameters | None = None,
-    **values: Any,
+    fixtures: Sequence[Any] = (), strategy: SurfaceParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
 ) -> Any:
     """A wall, of an object's faces, that grows on a solid object.
 
-    `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5, clearance="none")`
+    `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
+    that the nozzle must not touch either.
     """
-    links = {"Source": _with_faces(source, faces), "Substrate": substrate}
+    links = {"Source": _with_faces(source, faces), "Substrate": substrate, "Fixtures": list(fixtures)}
     return _make(doc, SurfaceFeature, "Feature", label, links, [strategy, build_direction], values)
 
 

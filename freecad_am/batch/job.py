@@ -23,7 +23,7 @@ STRATEGIES: dict[str, type] = {"revolution": RevolutionParameters, "surface": Su
 PLANNED_STRATEGIES = ("developable",)  # names the interface promises; refused until they exist
 PLANNED_SETUPS = ("rotary-table", "tool-on-robot+positioner")
 SECTIONS = (
-    "version", "name", "part", "substrate", "strategy", "build_direction", "cell", "joints", "process", "program",
+    "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "cell", "joints", "process", "program",
 )
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
 _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
@@ -48,6 +48,7 @@ class Job:
     name: str
     part: PartSource
     substrate: PartSource | None
+    fixtures: tuple[PartSource, ...]
     strategy: RevolutionParameters | SurfaceParameters
     build_direction: BuildDirectionParameters
     joints: JointParameters
@@ -94,6 +95,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
         name=_name(values.get("name"), path),
         part=_part(fields.mapping(values["part"], "part"), path),
         substrate=_substrate(values.get("substrate"), strategy, path),
+        fixtures=_fixtures(values.get("fixtures"), path),
         strategy=strategy,
         build_direction=build_direction,
         joints=_joints(values.get("joints") or {}),
@@ -123,13 +125,7 @@ def _name(value: Any, path: str) -> str:
 
 
 def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
-    if isinstance(strategy, SurfaceParameters):
-        if build_direction.clearance != "none":
-            raise InputError(
-                "NOT_YET", "build_direction.clearance", "the nozzle is not yet kept clear of substrate and deposit for "
-                "strategy surface; write clearance: none, and look at the report",
-            )
-    elif build_direction.mode == "symmetry-plane":
+    if isinstance(strategy, RevolutionParameters) and build_direction.mode == "symmetry-plane":
         raise InputError(
             "NOT_FOR_FAMILY", "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
@@ -150,6 +146,20 @@ def _substrate(section: Any, strategy: Any, path: str) -> PartSource | None:
     if section is not None:
         raise InputError("NOT_FOR_FAMILY", "substrate", "only strategy.kind surface grows on a substrate; leave it out")
     return None
+
+
+def _fixtures(section: Any, path: str) -> tuple[PartSource, ...]:
+    entries = [] if section is None else section
+    if not isinstance(entries, list):
+        raise InputError("BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]")
+    found = []
+    for number, entry in enumerate(entries):
+        key = f"fixtures[{number}]"
+        fixture = _part(fields.mapping(entry, key), path, key)
+        if fixture.faces:
+            raise InputError("BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces")
+        found.append(fixture)
+    return tuple(found)
 
 
 def _part(section: dict[str, Any], path: str, key: str = "part") -> PartSource:

@@ -87,7 +87,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
             session.issues(stages.issues)
             return result
     except InputError as error:
-        if error.where.split(".")[0] in SECTIONS:
+        if error.where.split(".")[0].split("[")[0] in SECTIONS:
             raise job.tree.placed(error) from None
         raise
 
@@ -128,6 +128,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     with stages.timed("part", session):
         part = bring(document, job.part)
         substrate = None if job.substrate is None else bring(document, job.substrate, "substrate")
+        fixtures = [bring(document, fixture, f"fixtures[{number}]") for number, fixture in enumerate(job.fixtures)]
     cell = None
     if job.cell is not None:
         with stages.timed("cell", session):
@@ -135,11 +136,13 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     with stages.timed("feature", session):
         if substrate is None:
             feature = api.make_feature(
-                document, part, job.part.faces, strategy=job.strategy, build_direction=job.build_direction
+                document, part, job.part.faces, fixtures=fixtures, strategy=job.strategy,
+                build_direction=job.build_direction,
             )
         else:
             feature = api.make_surface_feature(
-                document, part, job.part.faces, substrate, strategy=job.strategy, build_direction=job.build_direction
+                document, part, job.part.faces, substrate, fixtures=fixtures, strategy=job.strategy,
+                build_direction=job.build_direction,
             )
     stages.feature = feature
     stages.issues += api.issues(feature)

@@ -138,7 +138,10 @@ class _Reader:
             return self.mapping(node, key)
         if isinstance(node, self.yaml.SequenceNode):
             self._enter(node, key)
-            values = [self.value(item, key) for item in node.value]
+            values = [
+                self.value(item, f"{key}[{number}]" if isinstance(item, self.yaml.MappingNode) else key)
+                for number, item in enumerate(node.value)
+            ]
             self.open.pop()
             return values
         return self._scalar(node, key)

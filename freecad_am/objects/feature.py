@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import FreeCAD as App
@@ -11,6 +12,7 @@ from ..brep.revolution import find_wall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
+from .shapes import FIXTURES, digits, fingerprint, fixtures_of, global_shape, shape_fingerprint
 from .stage import Link, Outcome, Section, Stage
 
 
@@ -29,6 +31,7 @@ class RevolutionFeature(Stage):
             "A sketch is turned about its vertical axis unless another one is chosen.",
             required=False, type_name="App::PropertyLinkSub",
         ),
+        FIXTURES,
     )
     figures = (
         ("WallFaces", "App::PropertyStringList", "Faces of the wall, from the platform up."),
@@ -42,27 +45,17 @@ class RevolutionFeature(Stage):
         source, faces = source_of(obj)
         wall = find_wall(global_shape(source), faces, strategy.wall, axis_of(obj), source.Label)
         figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
-        return Outcome(wall, wall.issues, figures)
+        return Outcome(dataclasses.replace(wall, surroundings=fixtures_of(obj)), wall.issues, figures)
 
     def further_inputs(self, obj: Any) -> list[str]:
         source, faces = source_of(obj)
         axis = axis_of(obj)
-        return [shape_fingerprint(global_shape(source)), " ".join(faces), "" if axis is None else _digits(*axis)]
+        return [
+            shape_fingerprint(global_shape(source)), " ".join(faces), "" if axis is None else digits(*axis),
+            *(fingerprint(fixture) for fixture in obj.Fixtures),
+        ]
 
 _LINES = ("Part::GeomLine", "Part::GeomLineSegment")
-
-
-def global_shape(source: Any) -> Any:
-    """The shape of an object in the coordinates of the document, wherever it is nested. InputError 'NO_SHAPE'."""
-    shape = getattr(source, "Shape", None)
-    if shape is None or shape.isNull():
-        raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
-    if hasattr(source, "getGlobalPlacement") and hasattr(source, "Placement"):
-        outer = source.getGlobalPlacement().multiply(source.Placement.inverse())
-        if not outer.isIdentity():
-            shape = shape.copy()
-            shape.Placement = outer.multiply(shape.Placement)
-    return shape
 
 
 def axis_of(obj: Any) -> tuple[Any, Any] | None:
@@ -92,22 +85,6 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
     raise InputError(
         "BAD_AXIS", f"{obj.Label}.Axis", f"{target.Label} {name} is no straight line; choose a straight edge or an axis"
     )
-
-
-def shape_fingerprint(shape: Any) -> str:
-    """A text that changes with the shape but not with the last digits that saving drops."""
-    lines = [f"{shape.ShapeType} {len(shape.Faces)} {len(shape.Edges)} {len(shape.Vertexes)}"]
-    for face in shape.Faces:
-        inertia = face.MatrixOfInertia
-        kind = f"{face.Surface.TypeId} {face.Orientation}"
-        lines.append(f"{kind} {face.Area:.8g} {_digits(face.CenterOfMass)} {inertia.A11:.6g} {inertia.A33:.6g}")
-    lines += [f"{edge.Length:.8g}" for edge in shape.Edges]
-    lines += [_digits(vertex.Point) for vertex in shape.Vertexes]
-    return "\n".join(lines)
-
-
-def _digits(*vectors: Any) -> str:
-    return " ".join(f"{round(number, 6) + 0.0:.6f}" for vector in vectors for number in vector)
 
 
 def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:

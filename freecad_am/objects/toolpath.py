@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
 
+from ..core.geometry.surroundings import disc
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
-from ..core.strategies import revolution, surface
+from ..core.strategies import revolution, surface, surface_directions, wall_clearance
 from ..core.toolpath import Toolpath as CoreToolpath
 from .stage import Link, Outcome, Section, Stage, stage_of
 from .surface_feature import SurfaceFeature
@@ -57,9 +59,28 @@ def planned(
 ) -> CoreToolpath:
     """The toolpath of a wall, the result of a feature, cut by the strategy of its family."""
     if isinstance(strategy, SurfaceParameters):
-        return surface.plan(wall, strategy, build, process)
-    return revolution.plan(
+        return _kept_clear(surface.plan(wall, strategy, build, process), wall, build, cell)
+    toolpath = revolution.plan(
         wall, strategy, build, process, NozzleParameters() if cell is None else cell.nozzle,
         0.0 if cell is None else cell.platform_diameter,
         np.eye(4) if cell is not None and cell.mount == "part" else None,
     )
+    return _kept_clear(toolpath, wall, build, cell)
+
+
+def _kept_clear(
+    toolpath: CoreToolpath, wall: Any, build: BuildDirectionParameters, cell: CellParameters | None
+) -> CoreToolpath:
+    """The toolpath with what stands around its wall, and tools tilted clear of that; on parts of revolution it is looked
+    at, the rest being settled with the layers."""
+    toolpath = dataclasses.replace(toolpath, surroundings=wall.surroundings)
+    nozzle = NozzleParameters() if cell is None else cell.nozzle
+    if build.clearance == "none":
+        return toolpath
+    if toolpath.family == "revolution":
+        found = wall_clearance.touched_at(toolpath, wall.surroundings, nozzle)
+        return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
+    bodies = list(wall.surroundings)
+    if cell is not None and cell.platform_diameter > 0.0:
+        bodies.append(disc(cell.platform_diameter, toolpath.frame))
+    return wall_clearance.kept_clear(toolpath, bodies, nozzle, build, surface_directions.plane(wall, build))

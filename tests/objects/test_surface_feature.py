@@ -2,7 +2,9 @@
 """A wall on a substrate in a document: made, renewed when either shape changes, refused where it must be."""
 
 import FreeCAD as App
+import Mesh
 import numpy as np
+import Part
 import pytest
 
 from freecad_am import api
@@ -64,11 +66,47 @@ def test_saved_and_read_back(doc, tube, tmp_path):
         App.closeDocument(again.Name)
 
 
-def test_what_is_not_there_yet_is_refused(doc, tube):
-    feature = made(doc, tube, clearance="nozzle")
-    with pytest.raises(InputError) as caught:
-        api.make_toolpath(doc, feature)
-    assert caught.value.code == "NOT_YET"
+def post(doc, as_mesh):
+    """A post beside the branch, 18 mm from its axis, moved by its own placement and that of a group."""
+    shape = Part.makeBox(6, 6, 100, App.Vector(-3, -3, -50))
+    if as_mesh:
+        found = doc.addObject("Mesh::Feature", "Post")
+        found.Mesh = Mesh.Mesh(shape.tessellate(0.1))
+    else:
+        found = doc.addObject("Part::Feature", "Post")
+        found.Shape = shape
+    found.Placement = App.Placement(App.Vector(18, 0, 0), App.Rotation())
+    group = doc.addObject("App::Part", "Group")
+    group.addObject(found)
+    group.Placement = App.Placement(App.Vector(0, 0, 80), App.Rotation())
+    return found
+
+
+@pytest.mark.parametrize("as_mesh", [False, True], ids=["solid", "mesh"])
+def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
+    fixture = post(doc, as_mesh)
+    feature = made(doc, tube, clearance="nozzle", fixtures=[fixture])
+    substrate, clamp = api.result(feature).surroundings
+    assert (substrate.name, clamp.name) == ("Pipe", "Post")
+    assert clamp.vertices.min(axis=0) == pytest.approx([15, -3, 30]) and clamp.vertices[:, 2].max() == pytest.approx(130)
+    toolpath = api.make_toolpath(doc, feature)
+    assert [issue.code for issue in api.issues(toolpath)].count("TILT_BACK") == 1
+    assert api.result(toolpath).surroundings == api.result(feature).surroundings
+    fixture.Placement = App.Placement(App.Vector(200, 0, 0), App.Rotation())
+    assert feature.Status == toolpath.Status == "stale"
+    api.recompute(doc)
+    assert not [issue for issue in api.issues(toolpath) if issue.code == "TILT_BACK"]
+    api.change(feature, fixtures=[])
+    assert len(api.result(feature).surroundings) == 1
+
+
+def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
+    fixture = post(doc, False)
+    feature = api.make_feature(doc, tube[0], ["Face1"], layer_height=5, fixtures=[fixture])
+    found = [issue for issue in api.issues(api.make_toolpath(doc, feature)) if issue.level == "error"]
+    assert [issue.code for issue in found] == ["CLEARANCE"] and "Post" in found[0].message and found[0].layer is not None
+    api.change(feature, fixtures=[])
+    assert not [issue for issue in api.issues(doc.Toolpath) if issue.level == "error"]
 
 
 def test_needs_a_solid_substrate(doc, tube):

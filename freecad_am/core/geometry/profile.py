@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..issues import Issue
+from .surroundings import Body
 
 Array = NDArray[np.float64]
 
@@ -173,7 +174,7 @@ class RevolvedWall:
 
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). start, end: azimuths in
     rad about the axis, end > start; `full` when the wall closes on itself. issues: what was found out on the way.
-    label: what the user calls the part. faces: names of the wall's faces, from the platform up.
+    label: what the user calls the part. faces: names of the wall's faces, from the platform up. surroundings: fixtures.
     """
 
     meridian: Meridian
@@ -184,6 +185,7 @@ class RevolvedWall:
     issues: tuple[Issue, ...] = ()
     label: str = "part"
     faces: tuple[str, ...] = ()
+    surroundings: tuple[Body, ...] = ()
 
     def __post_init__(self) -> None:
         frame = np.array(self.frame, dtype=np.float64)

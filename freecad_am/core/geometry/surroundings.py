@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+DISC_SIDES = 72
+
 
 @dataclass(frozen=True)
 class Body:
@@ -26,3 +28,13 @@ class Body:
         """(m, 3, 3) the three corners of each triangle."""
         corners: Array = self.vertices[self.triangles]
         return corners
+
+
+def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
+    """A flat disc in the plane z = 0 of the frame (4, 4), as a polygon about its circle."""
+    angle = np.linspace(0.0, 2.0 * np.pi, DISC_SIDES, endpoint=False)
+    radius = 0.5 * diameter / np.cos(np.pi / DISC_SIDES)
+    flat = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(DISC_SIDES)], axis=1)
+    vertices = np.vstack([np.zeros((1, 3)), flat]) @ frame[:3, :3].T + frame[:3, 3]
+    rim = np.arange(1, DISC_SIDES + 1)
+    return Body(name, vertices, np.stack([np.zeros_like(rim), rim, np.roll(rim, -1)], axis=1).astype(np.int64))

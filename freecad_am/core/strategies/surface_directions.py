@@ -26,17 +26,17 @@ class Along:
 
 
 def refuse(wall: SurfaceWall, build: BuildDirectionParameters) -> None:
-    """InputError for what these walls do not have: clearance, or a plane of symmetry."""
-    if build.clearance != "none":
-        raise InputError(
-            "NOT_YET", "build_direction.clearance", "the nozzle is not yet kept clear of substrate and deposit for strategy "
-            "surface; look at the report and set clearance: none",
-        )
+    """InputError for a plane of symmetry that the wall does not have."""
     if build.mode == "symmetry-plane" and wall.symmetry_normal is None:
         raise InputError(
             "NO_SYMMETRY_PLANE", "build_direction.mode", f"{wall.label} is no bend of a torus, so its plane of symmetry is "
             "not known; use local, layer or fixed",
         )
+
+
+def plane(wall: SurfaceWall, build: BuildDirectionParameters) -> Array | None:
+    """Unit normal (3,) of the plane that tool axes stay in, None where they may lean any way."""
+    return wall.symmetry_normal if build.mode == "symmetry-plane" else None
 
 
 def directions(wall: SurfaceWall, along: Along, build: BuildDirectionParameters) -> tuple[Array, Array, float]:

@@ -188,8 +188,5 @@ def test_refusals():
         planned(bend(), layer_height=100.0)
     assert caught.value.code == "LAYER_HEIGHT"
     with pytest.raises(InputError) as caught:
-        surface.plan(bend(), SurfaceParameters(), BuildDirectionParameters(), ProcessParameters())
-    assert (caught.value.code, caught.value.where) == ("NOT_YET", "build_direction.clearance")
-    with pytest.raises(InputError) as caught:
         planned(bend(end=0.2))
     assert caught.value.code == "TOO_LOW"
