@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers of constant local distance against a straightforward bisection of every point against every segment below.
+"""Layers of constant local distance against a straightforward bisection of every point against every segment below, and
+what twice the points cost.
 
 The torus of 1 mm layers of Chalvin 2019 (R = 60, r = 15 on a pipe of 32 mm). The bisection is timed on a few layers and a
 part of their points and scaled up; its polyline below is refined four times, or its chord error would exceed the
@@ -22,6 +23,8 @@ from rows import Row
 
 HEIGHT, POINTS, TOLERANCE, ROUNDS = 1.0, 360, 1e-4, 3
 SAMPLED, EVERY = (10, 40, 70), 6
+DOUBLED = (720, 1440, 2880)  # points of a layer whose time per point is compared with that before
+LINEAR = 0.8  # a doubling may cost up to 2 / 0.8 times as much, for what a shared machine does to a time
 REFINED = 4
 
 
@@ -36,7 +39,27 @@ def run() -> list[Row]:
         times.append(perf_counter() - start)
     peer = np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1)
     name = f"constant distance, {len(layers)} layers of {POINTS} points, {TOLERANCE:g} mm, against bisection"
-    return [Row(name, float(np.median(times)), float(peer), "s", 50.0)]
+    return [Row(name, float(np.median(times)), float(peer), "s", 50.0), *_doublings(torus)]
+
+
+def _doublings(torus: Torus) -> list[Row]:
+    """Time per point of layers 5 mm apart with twice as many points each time; the peer is the row before."""
+    grids = (POINTS, *DOUBLED)
+    firsts = [
+        on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, points))
+        for points in grids
+    ]
+    best = [np.inf] * len(grids)
+    for _ in range(ROUNDS):  # in turn, so that what else the machine does meets all of them
+        for i, (points, first) in enumerate(zip(grids, firsts)):
+            start = perf_counter()
+            layers = constant_distance.layers(torus, first, 5.0 * HEIGHT, 0.5 * np.pi, points)
+            best[i] = min(best[i], (perf_counter() - start) / sum(len(layer.v) for layer in layers))
+    return [
+        Row(f"constant distance, time per point of {points} points around against {grids[i]}", 1e6 * best[i + 1],
+            1e6 * best[i], "us", LINEAR)
+        for i, points in enumerate(DOUBLED)
+    ]
 
 
 def _bisected(torus: Torus, below: WallLayer, above: WallLayer) -> float:
