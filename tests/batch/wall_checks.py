@@ -170,6 +170,20 @@ def seam_steps(planned: Planned) -> np.ndarray:
     return np.array([np.linalg.norm(high.points[0] - low.points[0]) for low, high in starts])
 
 
+def nozzle_depth(one: Pass, depth: Callable[[np.ndarray], np.ndarray], tip: float, length: float, half_angle: float) -> float:
+    """How far the nozzle, a cone (mm, rad) around the tool axes of a bead, stays away from the substrate; less than
+    nothing inside of it."""
+    across = np.cross(one.tool, np.eye(3)[np.argmin(np.abs(one.tool), axis=1)])
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    sideways, least = np.cross(one.tool, across), np.inf
+    for height in np.r_[0.0, 0.5, 1.0, 2.0, np.arange(3.0, length + 1.0, 3.0)]:
+        radius = tip + height * np.tan(half_angle)
+        for turn in np.arange(24) * np.pi / 12.0:
+            skin = height * one.tool + radius * (np.cos(turn) * across + np.sin(turn) * sideways)
+            least = min(least, float(depth(one.points + skin).min()))
+    return least
+
+
 @dataclass(frozen=True)
 class Wall:
     """A wall from its STEP file. `depth`: distance (n,) of points (n, 3) from the substrate's skin, positive outside."""
