@@ -262,7 +262,7 @@ def _verify_poses(
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = _joint_path(cell, joints, 0.0)
     issues += _point_issues(planned, path)
-    told, asked, tools = _text_path(cell, read)
+    told, asked, tools = _text_path(cell, program, read)
     if read.joints is not None:
         issues += _joint_issues(cell, planned, read, np.array(program.endless))
     issues += _point_issues(planned, told)
@@ -283,19 +283,23 @@ def _verify_poses(
     return Verification(tuple(issues + solver_issues), at_points, between, float(told.bound.max()), solvers)
 
 
-def _text_path(cell: Cell, read: ReadMoves) -> tuple[_Path, Array, Array]:
+def _text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[_Path, Array, Array]:
     """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for.
 
-    Texts without frames of their own count on those of the cell. Every frame is off by half a digit: its origin by at
-    most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about itself has no lever.
+    Texts without frames of their own count on the user frame that the program tells of. Every frame is off by half a
+    digit: its origin by at most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about
+    itself has no lever.
     """
     assert read.position is not None and read.rotation is not None
     count, lever = 1, np.zeros(len(read.position))
-    seen, tools = cell.station @ frames.pose(read.rotation, read.position), np.broadcast_to(cell.carried, (len(lever), 4, 4))
+    user = cell.station if program.station is None else cell.machine.base @ frames.bryant(program.station)
+    seen, tools = user @ frames.pose(read.rotation, read.position), np.broadcast_to(cell.carried, (len(lever), 4, 4))
     if read.frame is not None and read.tool is not None:
         count, tools = 3, read.tool
         seen = cell.machine.base @ read.frame @ frames.pose(read.rotation, read.position)
         lever = np.linalg.norm(read.position, axis=1)
+        if read.lever is not None and read.lever.any():
+            count, lever = 4, lever + read.lever
     asked = seen @ frames.inverse(tools)
     bound = count * np.sqrt(3.0) * read.position_digits + 3.0 * read.rotation_digits * lever + COMPUTED_MM
     tool_bound = np.full(len(bound), 3.0 * count * read.rotation_digits + COMPUTED_AXIS)

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from freecad_am import verify as verification
 from freecad_am.core.geometry.profile import Meridian, RevolvedWall
@@ -46,14 +47,14 @@ def planned():
     assert not has_errors(path.issues)
     motion, issues = assemble(path, cell, ProcessParameters())
     assert not has_errors(issues)
-    return cell, motion
+    return cell, motion, [bead.bead for bead in path.beads]
 
 
 @pytest.fixture(scope="module", params=["joint", "cartesian"])
 def written(planned, request):
-    cell, motion = planned
+    cell, motion, beads = planned
     if request.param == "cartesian":
-        motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR)
+        motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post="staubli", motion=request.param, max_points=500)
     program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
     return cell, motion, program, staubli.write(program)
@@ -72,23 +73,23 @@ def test_both_variants_pass_with_both_solvers(written):
 
 
 def test_without_the_added_points_the_moving_tool_leaves_the_bead(planned):
-    cell, motion = planned
+    cell, motion, _ = planned
     parameters = ProgramParameters(post="staubli", motion="cartesian")
     program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
     result = verify(cell, motion, program, staubli.write(program))
     assert {issue.code for issue in result.issues} == {"VERIFY_BETWEEN"} and result.between_mm > 1.5 * CHORD_ERROR
 
 
-def test_added_points_lie_on_the_segments_and_the_arm_reaches_them(planned):
-    cell, motion = planned
-    finer = moving_tool.kept_straight(motion, cell, CHORD_ERROR)
+def test_added_points_lie_on_the_circles_and_the_arm_reaches_them(planned):
+    cell, motion, beads = planned
+    finer = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
     assert len(finer) > 1.5 * len(motion) and finer.total_time == pytest.approx(motion.total_time)
     for layer, bead in {(0, 0), (int(motion.layer.max()), 0)}:
         rows, more = ((m.deposit & (m.layer == layer) & (m.bead == bead)) for m in (motion, finer))
         assert finer.point[more].tolist() == list(range(int(more.sum())))
-        steps = (np.diff(motion.position[rows], axis=0), np.diff(finer.position[more], axis=0))
-        length, other = (np.linalg.norm(step, axis=1).sum() for step in steps)
-        assert other == pytest.approx(length, abs=1e-9)
+        radius, height = (np.hypot(finer.position[more, 0], finer.position[more, 1]), finer.position[more, 2])
+        assert np.abs(radius - radius[0]).max() < 1e-6 < CHORD_ERROR / 100 and np.ptp(height) < 1e-9
+        assert int(rows.sum()) <= int(more.sum())
     tip, tool = cell.tip_in_part(KdlArm(cell.machine).forward(finer.joints))
     assert np.abs(tip - finer.position).max() < 1e-6 and np.abs(tool - finer.tool).max() < 1e-6
 
@@ -121,3 +122,43 @@ def test_another_deposition_point_than_the_planned_one_is_caught(written):
     moved = {name: content.replace(b'x="300.0000"', b'x="300.0500"') for name, content in files.items()}
     assert moved != files
     assert "VERIFY_POINT" in {issue.code for issue in verify(cell, motion, program, moved).issues}
+
+
+ORIGIN = (12.5, -7.25, 31.0, 0.3, -0.2, 1.1)
+
+
+def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
+    """Two origins: other gauges, the same flange in space; from the text alone, by frames multiplied here."""
+    cell, motion, beads = planned
+    motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
+    texts, flanges = [], []
+    for origin in ("auto", ORIGIN):
+        parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)
+        program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
+        files = staubli.write(program)
+        result = verify(cell, motion, program, files)
+        assert result.issues == () and 0.0 < result.at_points_mm <= result.bound_mm < 0.001
+        read = staubli.read(files)
+        linear = read.deposit
+        texts.append(files)
+        flanges.append(read.frame @ np.linalg.inv(read.tool[linear]))
+        assert np.abs(flanges[-1] - cell.machine.chain.forward(motion.joints[motion.moves])[linear]).max() < 1e-3
+        # a gauge is the point of the part seen from the origin
+        moves = np.concatenate([run.position for run in program.moves if run.kind == "deposit"])
+        seen = (motion.position[motion.moves][linear] - (np.array(origin[:3]) if origin != "auto" else cell.mount[:3, 3]))
+        assert np.abs(np.linalg.norm(moves, axis=1) - np.linalg.norm(seen, axis=1)).max() < 1e-9
+    assert texts[0]["dome/dome.dtx"] != texts[1]["dome/dome.dtx"]
+    assert np.abs(flanges[0] - flanges[1]).max() < 5e-4
+
+
+def test_an_origin_of_zero_gauge_comes_to_the_deposition_point(planned):
+    """The point of the part that is the origin has the gauge 0 0 0, and its axes those of the target."""
+    cell, motion, _ = planned
+    row = int(np.flatnonzero(motion.deposit)[5])
+    flange = cell.machine.chain.forward(motion.joints[row : row + 1])
+    there = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
+    origin = (*there[0, :3, 3], *Rotation.from_matrix(there[0, :3, :3]).as_euler("XYZ"))
+    parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)
+    program = programs.build(motion, cell, ProcessParameters(), parameters, "dome")
+    run = next(block for block in program.moves if block.kind == "deposit")
+    assert np.abs(run.position[4]).max() < 1e-9 and np.abs(run.rotation[4] - np.eye(3)).max() < 1e-9

@@ -79,7 +79,8 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return _list(spec, field, value, key)
     if spec.kind in (f.POSE, f.ANGLE_RANGE):
         wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
-        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a list; give {wanted}")
+        also = "".join(f" or {word}" for word in spec.words)
+        raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a list; give {wanted}{also}")
     if spec.kind in quantity.WANTED:
         return _number(value, spec, key)
     return _plain(spec, value, key)

@@ -25,9 +25,9 @@ class Moves:
 
     kind: 'deposit' or 'rapid'. layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
     values, rad. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the deposition
-    point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3) of the tool in the
-    user frame or, with the part on the robot, of the deposition point on the flange; and configuration, one
-    (shoulder, elbow, wrist) per point.
+    point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3), seen from the program's
+    origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one (shoulder, elbow,
+    wrist) per point.
     """
 
     kind: str
@@ -96,9 +96,9 @@ class Program:
     name: as the user named the job; a post derives its own file names or refuses. machine: title of the machine.
     endless: for each axis, whether it turns without end (continuous turn). remarks: lines a post writes as
     comments. motion: 'joint' or 'cartesian'. deposit points run at constant speed at the deposition point.
-    max_speed: rad/s of each axis, infinite where not known. station, carried: X Y Z mm, RX RY RZ rad of the deposition
-    point (part on robot) or the platform (tool on robot) in the maker's base frame, and of the platform or the
-    nozzle's tip on the flange.
+    max_speed: rad/s of each axis, infinite where not known. station, carried: X Y Z mm, RX RY RZ rad. With the part on
+    the robot, of the deposition point in the maker's base frame and of the program's origin on the flange; with the tool
+    on the robot, of the program's origin in the maker's base frame and of the nozzle's tip on the flange.
     """
 
     name: str
@@ -136,7 +136,8 @@ class ReadMoves:
     share: (n,) of the axes' largest speeds that the fastest axis runs at, NaN where the text gives a time or a path
     speed; share_digits: half of its last digit.
     Where the text holds its own frames: frame (4, 4), in the maker's base frame, is what `position` is seen in;
-    tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. All mm.
+    tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. lever: (n,) how far out a tool
+    stands on another one that carries it. All mm.
     """
 
     joints: Array | None
@@ -153,3 +154,4 @@ class ReadMoves:
     share_digits: float = 0.0
     frame: Array | None = None
     tool: Array | None = None
+    lever: Array | None = None

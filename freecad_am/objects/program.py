@@ -55,11 +55,13 @@ class Program(Stage):
             cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family, user_machines.folders()
         )
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
-        motion = joint_object.Proxy.value(joint_object).motion
+        planned = joint_object.Proxy.value(joint_object)
+        motion = planned.motion
         post = catalogue.load(parameters.post)
         post.refuse_setup(parameters.motion, cell.setup)
         if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
-            motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error)
+            beads = [path.bead for path in planned.joint_path.beads]
+            motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
         program = programs.build(motion, cell, process, parameters, obj.ProgramName)
         files = post.write(program)
         checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)

@@ -73,11 +73,13 @@ class Row:
             return value.strip()
         if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
             return value
+        if self.spec.kind == f.POSE:
+            return _pose(value, where)
         return _number(self.spec, value, where)
 
     def outer(self, value: Any) -> Any:
         """The value in outer units as a Python literal, such as a panel shows and a macro passes."""
-        if self.form == f.POSE or (self.form == LENGTH_OR_POSE and _is_list(value)):
+        if _is_list(value) and (self.spec.kind == f.POSE or self.form == LENGTH_OR_POSE):
             return tuple(float(number) for number in value[:3]) + tuple(degrees(angle) for angle in value[3:])
         if self.form == TEXT_LIST:
             return tuple(value)

@@ -179,7 +179,8 @@ def _withdrawn(parts: list[list[Piece]]) -> list[list[Piece]]:
 
 def _own_remarks(program: Program) -> Iterator[str]:
     if program.motion == "cartesian" and program.setup == "part-on-robot":
-        yield "pTarget is the deposition point; each tPath is the point of the part that comes there"
+        yield "pTarget is the deposition point, tCarried the program origin on the flange"
+        yield "each tPath is the point of the part that comes to pTarget, seen from the program origin"
     if program.dry_run:
         yield "dry run: no deposit"
 
@@ -223,6 +224,7 @@ def _application(
 
 _POINT = 'shoulder="ssame" elbow="esame" wrist="wsame" fatherId="fStation[0]"'
 _TOOL = 'fatherId="flange[0]"'
+_GAUGE = 'fatherId="tCarried[0]"'
 
 
 def _single(six: Six | None, more: str) -> list[str]:
@@ -256,7 +258,7 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
         places = numbers.frames(moves.position[rows], moves.rotation[rows])
         if program.setup == "part-on-robot":
             pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
-            values = text.frames(places, _TOOL)
+            values = text.frames(places, _GAUGE)
         else:
             pattern, array, kind = "movel(pPath[{point}],tCarried,mPath[{speed}])", "pPath", "pointRx"
             values = text.frames(places, _POINT)

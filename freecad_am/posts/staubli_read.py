@@ -208,21 +208,32 @@ class _Values:
 
     def frame(self, app: Application, name: str, where: str) -> Array:
         """(4, 4) the frame that the points of an array are in; it must stand in the world."""
+        return self._one(app, name, "frame", "world[0]", where, f"the points of {name} are not all in one frame")
+
+    def carrier(self, app: Application, name: str, where: str) -> Array:
+        """(4, 4) what the tools of an array stand on: the flange, or one other tool that stands on it."""
+        if self.father(app, name) == _FLANGE:
+            return np.eye(4)
+        return self._one(app, name, "tool", _FLANGE, where, f"the tools of {name} are not all on one tool")
+
+    def _one(self, app: Application, name: str, kind: str, ground: str, where: str, otherwise: str) -> Array:
         match = re.fullmatch(r"(\w+)\[0\]", self.father(app, name))
         data = app.data.get(match[1], Data("", ())) if match else Data("", ())
-        if match is None or data.kind != "frame" or len(data.values) != 1 or self.father(app, match[1]) != "world[0]":
-            raise unreadable(where, f"the points of {name} are not all in one frame that stands in the world")
-        frame: Array = poses(self.six(app, match[1]))[0]
-        return frame
+        if match is None or data.kind != kind or len(data.values) != 1 or self.father(app, match[1]) != ground:
+            raise unreadable(where, f"{otherwise} that stands {'in the world' if kind == 'frame' else 'on the flange'}")
+        found: Array = poses(self.six(app, match[1]))[0]
+        return found
 
 
 _LENGTHS, _ANGLES = POSE[:3], POSE[3:]
+_FLANGE = "flange[0]"
 
 
 def _moves(steps: list[_Step]) -> ReadMoves:
     total = sum(len(step.point) for step in steps)
     values = _Values()
-    joints, point, tools = np.full((total, 6), np.nan), np.full((total, 6), np.nan), np.zeros((total, 6))
+    joints, point = np.full((total, 6), np.nan), np.full((total, 6), np.nan)
+    tools, lever = np.tile(np.eye(4), (total, 1, 1)), np.zeros(total)
     share, speed, deposit = np.full(total, np.nan), np.full(total, np.nan), np.zeros(total, dtype=bool)
     frame: Array | None = None
     row = 0
@@ -238,13 +249,17 @@ def _moves(steps: list[_Step]) -> ReadMoves:
             if frame is not None and not np.array_equal(own, frame):
                 raise unreadable(step.where, "positions of more than one frame are mixed")
             frame = own
-            point[rows], tools[rows] = values.six(app, target)[step.point], values.six(app, tool)[step.tool]
+            point[rows] = values.six(app, target)[step.point]
+            taken = values.six(app, tool)[step.tool]
+            tools[rows] = values.carrier(app, tool, step.where) @ poses(taken)
+            if values.father(app, tool) != _FLANGE:
+                lever[rows] = np.linalg.norm(taken[:, :3], axis=1)
             speed[rows] = most
             known = (percent == 100.0) & (most > 0.0) & (most_turn >= _UNLIMITED)
         else:
             joints[rows], share[rows] = values(app, target, AXES)[step.point], percent / 100.0
             known = (percent > 0.0) & (percent <= 100.0) & (most >= _UNLIMITED) & (most_turn >= _UNLIMITED)
-        if not known.all() or values.father(app, tool) != "flange[0]":
+        if not known.all() or (not step.linear and values.father(app, tool) != _FLANGE):
             raise unreadable(step.where, "its speed is limited, or its tool fixed, in a way that is not understood")
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
@@ -254,7 +269,7 @@ def _moves(steps: list[_Step]) -> ReadMoves:
         position_digits=values.digits(_LENGTHS),
         rotation_digits=float(np.radians(values.digits(_ANGLES))),
         speed=speed, speed_digits=values.digits(_SPEEDS), share=share, share_digits=values.digits(_SHARE) / 100.0,
-        frame=frame, tool=poses(tools) if linear else None,
+        frame=frame, tool=tools if linear else None, lever=lever if linear else None,
     )
 
 

@@ -212,7 +212,7 @@ ATTRIBUTES = {
     },
 }
 ATTRIBUTES["frame"] = dict.fromkeys(("x", "y", "z", "rx", "ry", "rz"), NUMBER) | {"fatherId": r"world\[0\]"}
-ATTRIBUTES["tool"] = ATTRIBUTES["frame"] | {"fatherId": r"flange\[0\]"}
+ATTRIBUTES["tool"] = ATTRIBUTES["frame"] | {"fatherId": r"(?:flange|tCarried)\[0\]"}
 ATTRIBUTES["pointRx"] = ATTRIBUTES["frame"] | {
     "fatherId": r"fStation\[0\]", "shoulder": "ssame", "elbow": "esame", "wrist": "wsame",
 }

@@ -158,7 +158,12 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
         return
     assert np.abs(read.speed - speed)[linear].max() <= 5e-4 + 1e-9
     position, rotation = (np.concatenate([getattr(run, name) for run in program.moves]) for name in ("position", "rotation"))
-    seen, turned, other = read.tool[linear][:, :3, 3], read.tool[linear][:, :3, :3], read.position[linear]
+    carried = np.eye(4)
+    carried[:3, :3], carried[:3, 3] = (
+        Rotation.from_euler("XYZ", np.round(np.degrees([0.3, 0.2, 0.1]), 5), degrees=True).as_matrix(), [1.0, 2.0, 105.0]
+    )
+    gauge = np.linalg.inv(carried) @ read.tool[linear]
+    seen, turned, other = gauge[:, :3, 3], gauge[:, :3, :3], read.position[linear]
     if setup == "tool-on-robot":
         seen, turned, other = read.position[linear], read.rotation[linear], read.tool[linear][:, :3, 3] - [1.0, 2.0, 105.0]
     assert np.abs(seen - position[linear]).max() <= 5e-5 + 1e-9 and np.abs(other).max() == 0.0

@@ -94,8 +94,9 @@ def _check_one(spec: Spec, value: Any, key: str) -> None:
         if not isinstance(value, str):
             raise InputError("BAD_VALUE", key, f"{value!r} is not a text")
     elif spec.kind == POSE:
-        if len(value) != 6 or not all(math.isfinite(number) for number in value):
-            raise InputError("BAD_VALUE", key, f"{value!r} is not a pose; give six numbers x y z RX RY RZ")
+        if isinstance(value, str) or len(value) != 6 or not all(math.isfinite(number) for number in value):
+            also = "".join(f" or {word}" for word in spec.words)
+            raise InputError("BAD_VALUE", key, f"{value!r} is not a pose; give six numbers x y z RX RY RZ{also}")
     elif spec.kind == ANGLE_RANGE:
         if len(value) != 2 or not value[0] < value[1]:
             raise InputError("BAD_VALUE", key, f"{value!r} is not a range; give two angles, the smaller first")

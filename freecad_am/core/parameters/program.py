@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from . import field as f
+from .cell import Pose
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,10 @@ class ProgramParameters:
         "joint", f.CHOICE, "Points as joint values, or as positions of the tool.", choices=("joint", "cartesian")
     )
     max_points: int = f.parameter(2000, f.COUNT, "Most points of one program file; longer ones are chained.", low=10)
+    origin: str | Pose = f.parameter(
+        "auto", f.POSE, "What the positions of Cartesian programs are relative to, in the part's coordinates: x y z mm, "
+        "RX RY RZ deg; auto: the frame that sits on the platform.", words=("auto",),
+    )
     dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
     start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
     blend: int = f.parameter(100, f.COUNT, "FANUC: CNT value of the moves within a bead.", low=0, high=100, advanced=True)
@@ -36,4 +41,6 @@ class ProgramParameters:
     deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
 
     def __post_init__(self) -> None:
+        if self.origin is None:  # an empty property of a document
+            object.__setattr__(self, "origin", "auto")
         f.check(self, "program")

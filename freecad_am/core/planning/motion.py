@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.surroundings import Body
 from ..issues import ERROR, NOTE, Issue
 from ..kinematics import opw
 from ..kinematics.cell import Cell
@@ -46,18 +47,20 @@ class _Rows:
     duration: Array
 
 
-def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> tuple[Motion, tuple[Issue, ...]]:
+def assemble(
+    joint_path: JointPath, cell: Cell, process: ProcessParameters, bodies: Sequence[Body] = ()
+) -> tuple[Motion, tuple[Issue, ...]]:
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
     Between two beads the tool is withdrawn along its axis by `between_layers.lift`, goes to the same height above the
     next start and down onto it; an endless axis that turns far on the way does so in several moves. Where the nozzle
-    would meet the deposit on its way it is withdrawn further, as far as it takes; where no height does, or the robot
-    cannot reach it, that is an issue.
+    would meet the deposit, the platform or one of the bodies (in part coordinates) on its way it is withdrawn further, as
+    far as it takes; where no height does, or the robot cannot reach it, that is an issue.
     """
     lift = process.between_layers.lift
     lifts = np.full(len(joint_path.beads), lift)
     motion = _with_rapids(joint_path, cell, process, lifts)
-    met = collisions(motion, cell)
+    met = collisions(motion, cell, bodies=bodies)
     for factor in HIGHER if lift > 0.0 else ():
         if not met:
             break
@@ -72,7 +75,7 @@ def assemble(joint_path: JointPath, cell: Cell, process: ProcessParameters) -> t
                 higher[number] = lifts[number]
         lifts = higher
         motion = _with_rapids(joint_path, cell, process, lifts)
-        met = collisions(motion, cell, {(int(i.layer or 0), int(i.bead or 0)) for i in met})
+        met = collisions(motion, cell, {(int(i.layer or 0), int(i.bead or 0)) for i in met}, bodies)
     return motion, (*met, *_out_of_reach(joint_path, motion), *_lift_notes(joint_path, lifts, lift))
 
 
@@ -98,7 +101,7 @@ def _lift_notes(joint_path: JointPath, lifts: Array, lift: float) -> list[Issue]
     if not len(raised):
         return []
     text = (f"before {len(raised)} beads the tool is withdrawn by up to {lifts.max():g} mm instead of {lift:g} mm to pass "
-            f"clear of the deposit")
+            "clear")
     return [Issue(NOTE, "RAPID_LIFTED", text, joint_path.beads[raised[0]].layer)]
 
 

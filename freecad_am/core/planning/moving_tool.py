@@ -10,6 +10,7 @@ chord error is inside.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +18,18 @@ from numpy.typing import NDArray
 from ..geometry import frames
 from ..kinematics.cell import Cell
 from ..motion import Motion
+from ..toolpath import Bead
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 
-def kept_straight(motion: Motion, cell: Cell, chord_error: float) -> Motion:
+def kept_straight(motion: Motion, cell: Cell, chord_error: float, beads: Sequence[Bead]) -> Motion:
     """The motion with as many points added to its beads as it takes to stay within the chord error (mm) of them.
 
-    For the part on the robot. Added points lie on the segments of the bead, evenly in length and in rotation; the
-    points of a bead are numbered anew. Segments without joint values at their ends stay as they are.
+    beads: all those of the motion, in its order. For the part on the robot. Added points lie on the curves of the beads,
+    evenly in length and in rotation; the points of a bead are numbered anew. Segments without joint values at their ends
+    stay as they are.
     """
     pieces = _pieces(motion, cell, chord_error)
     row = np.repeat(np.arange(len(motion)), pieces)
@@ -37,7 +40,8 @@ def kept_straight(motion: Motion, cell: Cell, chord_error: float) -> Motion:
         return motion
     columns = {field.name: getattr(motion, field.name)[row] for field in dataclasses.fields(motion)}
     start, end, along = row[added] - 1, row[added], share[added, None]
-    for name in ("position", "build", "joints"):
+    columns["position"][added] = _on_curves(motion, beads, end, along[:, 0])
+    for name in ("build", "joints"):
         column = getattr(motion, name)
         columns[name][added] = column[start] + along * (column[end] - column[start])
     columns["width"][added] += (1.0 - along[:, 0]) * (motion.width[start] - motion.width[end])
@@ -49,6 +53,16 @@ def kept_straight(motion: Motion, cell: Cell, chord_error: float) -> Motion:
     first = np.repeat(np.maximum.accumulate(np.where(motion.point == 0, np.cumsum(pieces) - pieces, 0)), pieces)
     columns["point"] = np.arange(len(row)) - first
     return Motion(**columns)
+
+
+def _on_curves(motion: Motion, beads: Sequence[Bead], end: Rows, share: Array) -> Array:
+    """(n, 3) points of the beads a share (n,) of the way along the segments that end at the rows (n,)."""
+    number = np.cumsum(motion.deposit & (motion.point == 0)) - 1
+    result = np.empty((len(end), 3))
+    for bead in np.unique(number[end]):
+        mine = number[end] == bead
+        result[mine] = beads[bead].outline.at(motion.point[end[mine]] - 1, share[mine])[0]
+    return result
 
 
 def _pieces(motion: Motion, cell: Cell, chord_error: float) -> Rows:

@@ -54,10 +54,10 @@ def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: Pr
         tool_frame=parameters.tool_frame,
         deposit_output=parameters.deposit_output,
         dry_run=parameters.dry_run,
-        remarks=_remarks(cell, process),
+        remarks=_remarks(cell, process, parameters),
         max_speed=tuple(cell.machine.max_speed.tolist()),
-        station=_six(_station(cell)),
-        carried=_six(cell.carried),
+        station=_six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0]),
+        carried=_six(_frames(cell, parameters)[1]),
     )
 
 
@@ -153,11 +153,9 @@ def _moves(
     position = rotation = None
     configuration = None
     if parameters.motion == "cartesian":
-        flange = cell.machine.chain.forward(motion.joints[rows])
-        if cell.setup == PART_ON_ROBOT:
-            seen = frames.inverse(flange) @ cell.station
-        else:
-            seen = frames.inverse(cell.station) @ flange @ cell.carried
+        station, carried = _frames(cell, parameters)
+        tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
+        seen = frames.inverse(tip) @ station if cell.setup == PART_ON_ROBOT else frames.inverse(station) @ tip
         position, rotation = seen[:, :3, 3], seen[:, :3, :3]
         arm = cell.machine.opw
         assert arm is not None
@@ -169,8 +167,14 @@ def _moves(
     )
 
 
-def _station(cell: Cell) -> Array:
-    return frames.inverse(cell.machine.base) @ cell.station
+def _frames(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
+    """(4, 4) what stands in base_link and what the flange carries, whichever is the part taken at the program's origin."""
+    if isinstance(parameters.origin, str):
+        return cell.station, cell.carried
+    origin = frames.inverse(cell.mount) @ frames.bryant(parameters.origin)
+    if cell.setup == PART_ON_ROBOT:
+        return cell.station, cell.carried @ origin
+    return cell.station @ origin, cell.carried
 
 
 def _six(pose: Array) -> Six:
@@ -179,15 +183,20 @@ def _six(pose: Array) -> Six:
     return (x, y, z, rx, ry, rz)
 
 
-def _remarks(cell: Cell, process: ProcessParameters) -> tuple[str, ...]:
-    x, y, z, *angles = _six(_station(cell))
-    rx, ry, rz = np.degrees(angles) + 0.0
-    where = "Deposition point" if cell.setup == PART_ON_ROBOT else "Platform"
+def _remarks(cell: Cell, process: ProcessParameters, parameters: ProgramParameters) -> tuple[str, ...]:
+    moved = not isinstance(parameters.origin, str)
+    where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
     return (
         cell.machine.title,
         f"Limits: {cell.limits.name}",
-        f"{where} {x:.3f} {y:.3f} {z:.3f}",
-        f"RX RY RZ {rx:.3f} {ry:.3f} {rz:.3f}",
+        *_pose_remarks(where, _six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0])),
+        *(() if isinstance(parameters.origin, str) else _pose_remarks("Program origin on the part", parameters.origin)),
         f"Travel speed {process.travel_speed:g} mm/s",
         *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
     )
+
+
+def _pose_remarks(what: str, six: Six) -> tuple[str, str]:
+    x, y, z, *angles = six
+    rx, ry, rz = np.degrees(angles) + 0.0
+    return f"{what} {x:.3f} {y:.3f} {z:.3f}", f"RX RY RZ {rx:.3f} {ry:.3f} {rz:.3f}"

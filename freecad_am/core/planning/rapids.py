@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Looks whether the nozzle stays clear of deposit and platform on the rapid moves between beads.
+"""Looks whether the nozzle stays clear of deposit, platform and bodies on the rapid moves between beads.
 
 While depositing, clearance is settled before the joints are planned. A rapid runs straight in the joints, so where the
-nozzle goes is known only now: it is driven through in small steps, against everything deposited by then.
+nozzle goes is known only now: it is driven through in small steps, against everything deposited by then, and against the
+triangles of the bodies around the part.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.frustum import Frustum
+from ..geometry.obstacles import of_bodies
+from ..geometry.surroundings import Body
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
@@ -24,10 +28,14 @@ GRAIN = 1.5
 PLATFORM_GRAIN = 4.0
 # how deep a point must be inside the nozzle to count: beads are followed to their chord error, mm
 TOUCH = 0.05
+# the same for bodies, whose triangles are as far from their true faces
+BODY_TOUCH = 0.1
 
 
-def collisions(motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | None = None) -> list[Issue]:
-    """An issue for every travel between two beads on which the nozzle would meet deposit or platform.
+def collisions(
+    motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | None = None, bodies: Sequence[Body] = ()
+) -> list[Issue]:
+    """An issue for every travel between two beads on which the nozzle would meet deposit, platform or bodies.
 
     Only the travels to the beads `among` (layer, bead) are looked at, where they are given.
 
@@ -41,22 +49,45 @@ def collisions(motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | 
     if among is not None:
         chosen = [(int(motion.layer[row]), int(motion.bead[row])) in among for row in travels]
         travels = travels[np.array(chosen, dtype=bool)]
+    travels = travels[~np.isnan(motion.joints[travels - 1] + motion.joints[travels]).any(axis=1)]
+    if not len(travels):
+        return []
+    ways = [_way(motion, cell, row) for row in travels]
     obstacles, laid = _obstacles(motion, cell)
-    found = []
-    for row in travels:
-        start, end = motion.joints[row - 1], motion.joints[row]
-        if np.isnan(start).any() or np.isnan(end).any():
-            continue
-        looks = 1 + int(np.ceil(np.abs(end - start).max() / STEP))
-        joints = start + np.linspace(0.0, 1.0, looks + 1)[:, None] * (end - start)
-        tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
-        if _met(tip, axis, obstacles[laid < row], cell):
-            found.append(Issue(
-                ERROR, "RAPID_COLLISION",
-                "on its way from the bead before the nozzle would meet the deposit or the platform; raise "
-                "process.between_layers.lift", int(motion.layer[row]), int(motion.bead[row]),
-            ))
-    return found
+    met = np.array([_met(tip, axis, obstacles[laid < row], cell) for row, (tip, axis) in zip(travels, ways, strict=True)])
+    hit = _hits_bodies(ways, bodies, cell)
+    what = ", ".join(["the deposit", *(body.name for body in bodies)]) + " or the platform"
+    return [
+        Issue(
+            ERROR, "RAPID_COLLISION",
+            f"on its way from the bead before the nozzle would meet {what}; raise process.between_layers.lift",
+            int(motion.layer[row]), int(motion.bead[row]),
+        )
+        for row in travels[met | hit]
+    ]
+
+
+def _way(motion: Motion, cell: Cell, row: int) -> tuple[Array, Array]:
+    """Tip and tool axis (k, 3) at looks along the travel to a row, in part coordinates."""
+    start, end = motion.joints[row - 1], motion.joints[row]
+    looks = 1 + int(np.ceil(np.abs(end - start).max() / STEP))
+    joints = start + np.linspace(0.0, 1.0, looks + 1)[:, None] * (end - start)
+    return cell.tip_in_part(cell.machine.chain.forward(joints))
+
+
+def _hits_bodies(ways: Sequence[tuple[Array, Array]], bodies: Sequence[Body], cell: Cell) -> NDArray[np.bool_]:
+    """Whether the nozzle meets a body on each of the ways."""
+    if not bodies:
+        return np.zeros(len(ways), dtype=bool)
+    nozzle = cell.nozzle
+    solid = Frustum(
+        max(0.5 * nozzle.diameter - BODY_TOUCH, 0.0), float(np.tan(nozzle.half_angle)), BODY_TOUCH, nozzle.length
+    )
+    tip, axis = (np.concatenate(parts) for parts in zip(*ways, strict=True))
+    touched = of_bodies(bodies, tip, solid.reach).touched(solid, tip, axis)
+    begin = np.r_[0, np.cumsum([len(way[0]) for way in ways])[:-1]]
+    hits: NDArray[np.bool_] = np.logical_or.reduceat(touched, begin)
+    return hits
 
 
 def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, NDArray[np.int64]]:

@@ -60,19 +60,7 @@ def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath
     def middle(column: Array) -> Array:
         return np.insert(column, at, 0.5 * (column[segments] + column[at]), axis=0)
 
-    def middle_direction(column: Array) -> Array:
-        mean = column[segments] + column[at]
-        return np.insert(column, at, mean / np.linalg.norm(mean, axis=1, keepdims=True), axis=0)
-
-    bead = path.bead
-    points, tangents = bead.outline.at(segments, 0.5)
-    finer = dataclasses.replace(
-        bead, points=np.insert(bead.points, at, points, axis=0),
-        build=middle_direction(bead.build), tool=middle_direction(bead.tool),
-        parameter=middle(bead.parameter), speed=np.insert(bead.speed, at, bead.speed[at]),
-        width=None if bead.width is None else middle(bead.width),
-        tangents=None if bead.tangents is None else np.insert(bead.tangents, at, tangents[:, None], axis=0),
-    )
+    finer = path.bead.halved(segments)
     phi = middle(path.phi)
     new = at + np.arange(len(at))
     flange = task.cell.flange_poses(finer.points[new], finer.tool[new], phi[new])

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Axis paths of five-axis machines: branch, poles, turns, and the four-axis mode (Dai 2020, sections 3 and 5).
+
+There is no freedom left to use but the choice between two branches and whole turns. Within a bead the branch changes only
+where a direction lies along an axis and the way straight on leads there; elsewhere a change would be a jump.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..issues import ERROR, NOTE, Issue
+from ..kinematics.cell import Cell
+from ..kinematics.five_axis import FiveAxis
+from ..parameters.joints import JointParameters
+from ..toolpath import Bead
+from .joint_path import BeadPath
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+TURN = 2.0 * np.pi
+BETWEEN = np.array([0.25, 0.5, 0.75])
+ROUNDS = 10
+ROUNDING = 1e-6  # mm, and of directions: what rounding may leave between points
+RESERVE = math.radians(0.05)  # kept free beside a limit, as for robots; and as many mm
+STRAY = math.radians(0.5)  # between two points the tool may lean this far from the direction asked for
+
+
+def plan(
+    cell: Cell, beads: Sequence[Bead], places: Sequence[tuple[int, int]], parameters: JointParameters, chord_error: float,
+    progress: Progress,
+) -> tuple[list[BeadPath], list[Issue]]:
+    """The axis values of all beads, with points added where axes running straight would leave them, and findings."""
+    arm = FiveAxis(cell.machine.chain)
+    held = _on_flange(cell, beads)
+    lock = _lock(arm, cell, parameters, [tools for _, tools in held])
+    paths: list[BeadPath] = []
+    issues: list[Issue] = []
+    before: Array | None = None
+    for number, (bead, place) in enumerate(zip(beads, places, strict=True)):
+        progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
+        bead, axes, found = _bead(arm, cell, bead, lock, before, chord_error, place)
+        issues += found
+        paths.append(_path(cell, bead, axes, place))
+        if np.isfinite(axes).all():
+            before = axes[-1]
+    if lock is not None:
+        issues.append(_residual_note(arm, cell, lock, paths))
+    return paths, issues
+
+
+@dataclasses.dataclass(frozen=True)
+class Lock:
+    """axis: 0 or 1, which of the turning axes stands still. angle: rad, where."""
+
+    axis: int
+    angle: float
+
+
+def _on_flange(cell: Cell, beads: Sequence[Bead]) -> list[tuple[Array, Array]]:
+    return [cell.on_flange(bead.points, bead.tool) for bead in beads]
+
+
+def _lock(arm: FiveAxis, cell: Cell, parameters: JointParameters, tools: Sequence[Array]) -> Lock | None:
+    """The axis that stands still and where: as asked, or where the largest residual is least."""
+    if parameters.lock == "none":
+        return None
+    axis = 0 if parameters.lock == "first" else 1
+    if not isinstance(parameters.lock_at, str):
+        return Lock(axis, parameters.lock_at)
+    directions = np.unique(np.round(np.concatenate(tools), 9), axis=0)
+    torch = cell.station[:3, 2]
+
+    def worst(angles: Array) -> Array:
+        return np.array([arm.locked(axis, float(a), directions, torch).residual.max() for a in angles])
+
+    low, high = -math.pi, math.pi
+    for _ in range(8):  # the residual of a direction has one valley on either side: look close, then closer
+        angles = np.linspace(low, high, 41)
+        best = angles[int(np.argmin(worst(angles) + 1e-9 * np.abs(angles)))]
+        width = (high - low) / 20.0
+        low, high = best - width, best + width
+    return Lock(axis, float(best))
+
+
+def _bead(
+    arm: FiveAxis, cell: Cell, bead: Bead, lock: Lock | None, before: Array | None, chord_error: float,
+    place: tuple[int, int],
+) -> tuple[Bead, Array, list[Issue]]:
+    """The bead, finer where it must be, its axes (n, 5) in the turns and the branch that suit best, and what is wrong."""
+    for _ in range(ROUNDS):
+        axes = _chosen(arm, cell, _courses(arm, cell, bead, lock), before)
+        if not np.isfinite(axes).all():
+            lost = np.flatnonzero(~np.isfinite(axes).all(axis=1))
+            return bead, axes, [Issue(
+                ERROR, "UNREACHABLE", f"{len(lost)} of {len(axes)} directions cannot be turned to the torch on this machine; "
+                "tilt less, or mount the part otherwise", *place, int(lost[0]),
+            )]
+        away, leaning = _between(cell, bead, axes)
+        # with an axis locked the tool leans anyhow; that is told once for all
+        off = (away > chord_error + ROUNDING) | ((leaning > STRAY) & (lock is None))
+        if not off.any():
+            return bead, axes, _limit_findings(cell, axes, place)
+        bead = bead.finer(np.flatnonzero(off))
+    return bead, axes, [Issue(
+        ERROR, "NOT_STRAIGHT", f"the axes leave the bead by {away.max():.3g} mm, its direction by "
+        f"{math.degrees(leaning.max()):.3g} deg between two points however many are added: near a pole; tilt away from it",
+        *place, int(np.argmax(off)) + 1,
+    )]
+
+
+def _courses(arm: FiveAxis, cell: Cell, bead: Bead, lock: Lock | None) -> list[Array]:
+    """All ways (n, 5) to run the bead, up to whole turns."""
+    points, tools = cell.on_flange(bead.points, bead.tool)
+    if lock is not None:
+        turned = np.full((len(points), 2), lock.angle)
+        turned[:, 1 - lock.axis] = np.unwrap(arm.locked(lock.axis, lock.angle, tools, cell.station[:3, 2]).angle)
+        return [arm.placed(turned, points, cell.station)]
+    found = arm.turns(tools, cell.station[:3, 2])
+    turned = np.stack([found.first, found.second], axis=-1)
+    for axis, free in enumerate((found.first_free, found.second_free)):
+        turned[:, :, axis] = _kept(turned[:, :, axis], free)
+    return [arm.placed(course, points, cell.station) for course in continuous(turned)]
+
+
+def continuous(turned: Array) -> list[Array]:
+    """Two courses (n, 2) through the branches (2, n, 2), one begun on each, that go straight on through a pole."""
+    step = np.diff(turned, axis=1)
+    across = turned[::-1, 1:] - turned[:, :-1]
+    stay, change = (np.abs(np.remainder(way + np.pi, TURN) - np.pi).sum(axis=(0, 2)) for way in (step, across))
+    swaps = np.r_[0, np.cumsum(change < stay - 1e-6)] % 2
+    rows = np.arange(turned.shape[1])
+    return [np.unwrap(turned[(start + swaps) % 2, rows], axis=0) for start in range(2)]
+
+
+def _kept(angles: Array, free: NDArray[np.bool_]) -> Array:
+    """Angles (2, n) with those that are free as they were before, or as they come to be where none was before."""
+    known = np.flatnonzero(~free)
+    if not len(known):
+        return angles
+    source = known[np.clip(np.searchsorted(known, np.arange(len(free)), side="right") - 1, 0, None)]
+    return angles[:, source]
+
+
+def _chosen(arm: FiveAxis, cell: Cell, courses: Sequence[Array], before: Array | None) -> Array:
+    """Of all courses and whole turns the one within the limits that starts nearest to where the axes are; without one
+    within the limits, the one that leaves them least."""
+    limits = cell.limits
+    turning = list(arm.turning)
+    ranked = []
+    for course in courses:
+        if not np.isfinite(course).all():
+            ranked.append((math.inf, math.inf, course))
+            continue
+        start = np.zeros(5) if before is None else before
+        moved = course.copy()
+        for axis in turning:
+            moved[:, axis] += TURN * _turns(course[:, axis], start[axis], limits.lower[axis], limits.upper[axis])
+        over = np.maximum(limits.lower + RESERVE - moved, moved - limits.upper + RESERVE).max()
+        way = float((np.abs(moved[0] - start) / cell.machine.max_speed).max())
+        ranked.append((max(float(over), 0.0), way, moved))
+    best = min(range(len(ranked)), key=lambda k: ranked[k][:2])
+    return ranked[best][2]
+
+
+def _turns(values: Array, start: float, lower: float, upper: float) -> float:
+    """Whole turns that bring an axis near where it is, within its limits where there is room."""
+    wanted = np.round((start - values[0]) / TURN)
+    lowest = np.ceil((lower + RESERVE - values.min()) / TURN - 1e-12)
+    highest = np.floor((upper - RESERVE - values.max()) / TURN + 1e-12)
+    return float(np.clip(wanted, lowest, highest)) if lowest <= highest else float(np.round(
+        (0.5 * (lower + upper) - 0.5 * (values.min() + values.max())) / TURN))
+
+
+def _between(cell: Cell, bead: Bead, axes: Array) -> tuple[Array, Array]:
+    """How far (n - 1,) mm the tip leaves each segment and by what angle (n - 1,) rad the tool strays from the directions
+    at its ends while the axes run straight."""
+    way = np.diff(axes, axis=0)[:, None]
+    flange = cell.machine.chain.forward((axes[:-1, None] + BETWEEN[:, None] * way).reshape(-1, axes.shape[1]))
+    tip, tool = (column.reshape(len(way), len(BETWEEN), 3) for column in cell.tip_in_part(flange))
+    along = np.diff(bead.points, axis=0)[:, None]
+    gap = tip - bead.points[:-1, None]
+    share = np.clip((gap * along).sum(-1) / np.maximum((along * along).sum(-1), 1e-18), 0.0, 1.0)
+    away = np.linalg.norm(gap - share[..., None] * along, axis=-1).max(axis=1)
+    asked = bead.tool[:-1, None] + BETWEEN[:, None] * np.diff(bead.tool, axis=0)[:, None]
+    sine = np.linalg.norm(np.cross(asked, tool), axis=-1)
+    return away, np.arctan2(sine, (asked * tool).sum(-1)).max(axis=1)
+
+
+def _path(cell: Cell, bead: Bead, axes: Array, place: tuple[int, int]) -> BeadPath:
+    """The bead with its axes. A machine with five axes has no condition to keep: its poles are told apart above."""
+    count = len(bead)
+    limits = cell.limits
+    half = 0.5 * (limits.upper - limits.lower)
+    room = np.minimum(axes - limits.lower, limits.upper - axes) / np.where(np.isfinite(half), half, 1.0)
+    margin = float(np.where(np.isfinite(half), room, np.inf).min()) if np.isfinite(axes).all() else -math.inf
+    moved = np.abs(np.diff(axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
+    return BeadPath(
+        place[0], place[1], bead, np.zeros(count), axes, np.ones(count), np.zeros(count), float(np.linalg.norm(moved)), margin,
+        reason="closed form",
+    )
+
+
+def _limit_findings(cell: Cell, axes: Array, place: tuple[int, int]) -> list[Issue]:
+    limits = cell.limits
+    over = np.maximum(limits.lower - axes, axes - limits.upper)
+    found = []
+    for axis in np.flatnonzero((over > 1e-9).any(axis=0)):
+        point = int(over[:, axis].argmax())
+        value, unit = axes[point, axis] / cell.machine.unit_values[axis], cell.machine.units[axis]
+        bound = limits.lower[axis] if axes[point, axis] < limits.lower[axis] else limits.upper[axis]
+        found.append(Issue(
+            ERROR, "LIMIT", f"{limits.labels[axis]} would be at {value:.2f} {unit}, its limit is "
+            f"{bound / cell.machine.unit_values[axis]:g} {unit}; move the part on the table", *place, point,
+        ))
+    return found
+
+
+def _residual_note(arm: FiveAxis, cell: Cell, lock: Lock, paths: Sequence[BeadPath]) -> Issue:
+    worst, where = 0.0, (0, 0, 0)
+    for path in paths:
+        if not path.reachable:
+            continue
+        tool = cell.tip_in_part(cell.machine.chain.forward(path.joints))[1]
+        missed = np.arctan2(np.linalg.norm(np.cross(tool, path.bead.tool), axis=1), (tool * path.bead.tool).sum(axis=1))
+        if missed.max() > worst:
+            worst, where = float(missed.max()), (path.layer, path.index, int(missed.argmax()))
+    name = cell.machine.axes[arm.turning[lock.axis]]
+    return Issue(
+        NOTE, "FOUR_AXES", f"axis {name} stands at {math.degrees(lock.angle):.4g} deg; the tool is up to "
+        f"{math.degrees(worst):.3g} deg off the direction asked for", *where,
+    )
+
+
+def lifted(cell: Cell, axes: Array, point: Array, tool: Array, lift: float) -> Array:
+    """Axis values (5,) with the tip withdrawn from `point` (3,) by `lift` mm along `tool` (3,): nothing turns."""
+    arm = FiveAxis(cell.machine.chain)
+    above, _ = cell.on_flange((point + lift * tool)[None], tool[None])
+    return np.asarray(arm.placed(axes[None, list(arm.turning)], above, cell.station)[0])
+
+
+def turned_tool(cell: Cell, joints: Array) -> Array:
+    """The tool axes (n, 3) in the part that axis values (n, 5) really give."""
+    return cell.tip_in_part(cell.machine.chain.forward(joints))[1]
+
+
+_ = frames
