@@ -116,6 +116,26 @@ class Bead:
             tangents=None if self.tangents is None else self.tangents[order],
         )
 
+    def halved(self, segments: NDArray[np.intp]) -> Bead:
+        """The bead with a point in the middle of each of the segments (k,), rising: on the curve that the points outline,
+        not on its chords, and with directions halfway between its neighbours'."""
+        at = segments + 1
+
+        def middle(column: Array) -> Array:
+            return np.insert(column, at, 0.5 * (column[segments] + column[at]), axis=0)
+
+        def middle_direction(column: Array) -> Array:
+            mean = column[segments] + column[at]
+            return np.insert(column, at, mean / np.linalg.norm(mean, axis=1, keepdims=True), axis=0)
+
+        points, tangents = self.outline.at(segments, 0.5)
+        return dataclasses.replace(
+            self, points=np.insert(self.points, at, points, axis=0), build=middle_direction(self.build),
+            tool=middle_direction(self.tool), parameter=middle(self.parameter),
+            speed=np.insert(self.speed, at, self.speed[at]), width=None if self.width is None else middle(self.width),
+            tangents=None if self.tangents is None else np.insert(self.tangents, at, tangents[:, None], axis=0),
+        )
+
     def part(self, rows: slice) -> Bead:
         """Some of its points, two or more in a row, as an open bead of their own."""
         columns = {
