@@ -51,6 +51,8 @@ def random_value(row, rng):
         return rng.choice([rng.uniform(0, 50), pose])
     if row.form == rows.TEXT_LIST:
         return tuple(rng.sample(METHODS, rng.randint(0, len(METHODS))))
+    if row.key == "origin":
+        return rng.choice(["auto", tuple(rng.uniform(-3, 3) for _ in range(6))])
     if row.key == "branch":
         return rng.choice(["auto", ("back", "down", "noflip"), ("front", "up", "flip")])
     if spec.optional and rng.random() < 0.3:
