@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Draws window.png of the README: FreeCAD's window with the planned hemisphere of the examples.
+"""Draws window.png and wall-window.png of the README: FreeCAD's window with the planned hemisphere of the examples, and
+with the panel of a bend on a pipe.
 
     python3 docs/images/make_window.py
 
 Needs FreeCAD (of Qt 5, as Debian 12 has it) and xvfb-run. A fresh FreeCAD profile is made for it, as the tests of the
-window do; the same file is run a second time inside FreeCAD, where it opens the part, clicks New Job and OK, and takes
-the picture.
+window do; the same file is run again inside FreeCAD for each picture, where it opens the parts, clicks what the README
+tells, and takes the picture.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ TIMEOUT = "180"
 CLOSER = 0.86  # part of the height that shows all with its margins
 
 
-def start() -> int:
-    """Run FreeCAD on this file in a window of its own; its exit status."""
+def start(name: str) -> int:
+    """Run FreeCAD on this file in a window of its own to take a picture; its exit status."""
     here = Path(__file__).resolve()
     sys.dont_write_bytecode = True
     sys.path.insert(0, str(here.parents[2] / "tests"))
@@ -41,7 +42,7 @@ def start() -> int:
         text = profile.read_text(encoding="utf-8")
         text = text.replace('<FCBool Name="Maximized" Value="1"/>', DOCKS).replace('<FCParamGroup Name="View">', LIGHT)
         profile.write_text(text, encoding="utf-8")
-        env[PICTURE] = str(here.parent / "window.png")
+        env[PICTURE] = str(here.parent / name)
         env.pop("VIRTUAL_ENV", None)
         window = ["xvfb-run", "-a", "-s", run.SCREEN, "timeout", "-k", "5", TIMEOUT, "freecad", str(here)]
         return subprocess.run(window, env=env, stdin=subprocess.DEVNULL, check=False).returncode
@@ -67,14 +68,44 @@ class Photographer:
         return next(one for one in self.gui.getMainWindow().findChildren(kind, name) if one.isVisible())
 
     def picture(self, path: str) -> None:
-        """Open the part, make the job, look at it from the front above and keep what the screen shows."""
+        """Make what the picture of this name shows, look at it from the front above and keep what the screen shows."""
+        if Path(path).name == "window.png":
+            self._hemisphere()
+        else:
+            self._wall()
+        self.idle(1.0)
+        if not self.widgets.QApplication.primaryScreen().grabWindow(0).save(path):
+            raise RuntimeError(f"{path} is not written")
+
+    def _open(self, title: str, **files: str) -> list[Any]:
+        """Example parts by label in a new document."""
         import FreeCAD as App
 
         from freecad_am import api
 
-        document = App.newDocument("Hemisphere")
+        document = App.newDocument(title)
         examples = Path(__file__).resolve().parents[2] / "resources" / "examples"
-        part = api.open_part(document, str(examples / "hemisphere.step"))
+        parts = []
+        for label, file in files.items():
+            parts.append(api.open_part(document, str(examples / file)))
+            parts[-1].Label = label
+        return parts
+
+    def _wall(self) -> None:
+        bend, pipe = self._open("Bend", Bend="tube-on-pipe.step", Pipe="pipe.step")
+        self.gui.Selection.addSelection("Bend", bend.Name, "Face1")
+        self.gui.Selection.addSelection(pipe)
+        self.gui.runCommand("RoboticAM_WallOnPart")
+        self.idle(0.5)
+        panel = self.find(self.widgets.QWidget, "RoboticAM_SurfaceFeature")
+        panel.findChild(self.widgets.QWidget, "LayerHeight").findChild(self.widgets.QLineEdit).setText("5 mm")
+        self._look()
+
+    def _hemisphere(self) -> None:
+        from freecad_am import api
+
+        part, = self._open("Hemisphere", hemisphere="hemisphere.step")
+        document = part.Document
         self.gui.Selection.addSelection(part)
         self.gui.runCommand("RoboticAM_NewJob")
         self.idle(0.5)
@@ -87,9 +118,6 @@ class Photographer:
         self.gui.Selection.clearSelection()
         self.gui.Selection.addSelection(document.Toolpath)
         self._look()
-        self.idle(1.0)
-        if not self.widgets.QApplication.primaryScreen().grabWindow(0).save(path):
-            raise RuntimeError(f"{path} is not written")
 
     def _look(self) -> None:
         view = self.gui.ActiveDocument.ActiveView
@@ -123,4 +151,4 @@ if PICTURE in os.environ:
 
     QtCore.QTimer.singleShot(1000, take)
 elif __name__ == "__main__":
-    sys.exit(start())
+    sys.exit(max(start(name) for name in ("window.png", "wall-window.png")))

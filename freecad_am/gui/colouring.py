@@ -64,14 +64,11 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
 
 
 def automatic(values: Array, title: str, unit: str) -> Scale:
-    """A scale from the least to the most value; whole numbers where all are."""
+    """A scale from the least to the most value, with round numbers beside it."""
     low, high = float(values.min()), float(values.max())
     if high - low <= _ALIKE * max(1.0, abs(high)):
         return Scale(title, unit, low, low, ((low, f"{low:.4g}"),), low, high)
-    ticks = np.linspace(low, high, TICKS)
-    if title == LAYER:
-        ticks = np.unique(np.rint(ticks))
-    return Scale(title, unit, low, high, _texts(ticks), low, high)
+    return Scale(title, unit, low, high, _texts(_round(low, high, least=1.0 if title == LAYER else 0.0)), low, high)
 
 
 def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
@@ -95,10 +92,20 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     return colours, scale
 
 
+def _round(low: float, high: float, least: float) -> Array:
+    """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `least` or more."""
+    apart = (high - low) / TICKS
+    power = 10.0 ** np.floor(np.log10(apart))
+    step = max(least, next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= apart * (1.0 - _ALIKE)))
+    numbers = np.arange(np.ceil(low / step - _ALIKE), np.floor(high / step + _ALIKE) + 1.0)
+    found: Array = numbers * step + 0.0  # no minus before zero
+    return found
+
+
 def _texts(ticks: Array) -> tuple[tuple[float, str], ...]:
     """Numbers with as many decimals as tell them apart."""
     step = float(ticks[1] - ticks[0]) if len(ticks) > 1 else 0.0
-    decimals = max(0, 1 - int(np.floor(np.log10(step)))) if step > 0.0 else 3
-    if np.allclose(ticks, np.rint(ticks), atol=1e-9):
-        decimals = 0
+    decimals = max(0, -int(np.floor(np.log10(step) + _ALIKE))) if step > 0.0 else 3
+    while not np.allclose(ticks, np.round(ticks, decimals), rtol=0.0, atol=1e-3 * step + _ALIKE):
+        decimals += 1
     return tuple((float(tick), f"{tick:.{decimals}f}") for tick in ticks)

@@ -13,12 +13,13 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
 
-from .colouring import NONE, TOO_FAR, TOO_NEAR, Scale
+from .colouring import DISTANCE, NONE, TOO_FAR, TOO_NEAR, Scale
 from .colours import ramp
 
 NAME = "RoboticAM_Legend"
+_FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
 _MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
-_GROUND, _INK = QtGui.QColor(255, 255, 255, 225), QtGui.QColor(29, 36, 48)
+_GROUND, _EDGE, _INK = QtGui.QColor(255, 255, 255, 225), QtGui.QColor(150, 155, 165), QtGui.QColor(29, 36, 48)
 
 
 class Overlay(QtGui.QWidget):
@@ -51,9 +52,9 @@ class Overlay(QtGui.QWidget):
         left = 0
         for entry in self.scales:
             width = self._width(*entry)
-            painter.setPen(QtCore.Qt.NoPen)
+            painter.setPen(_EDGE)
             painter.setBrush(_GROUND)
-            painter.drawRoundedRect(left, 0, width, self._height(entry), 5, 5)
+            painter.drawRoundedRect(left, 0, width - 1, self._height(entry) - 1, 5, 5)
             self._draw(painter, left + _PAD, *entry)
             left += width + _MARGIN
         painter.end()
@@ -65,9 +66,8 @@ class Overlay(QtGui.QWidget):
         return [*([name] if len(self.scales) > 1 else []), title]
 
     def _foot(self, scale: Scale) -> str:
-        digits = max(4, int(np.ceil(-np.log10(max(scale.most - scale.least, 1e-6)))) + 1)
-        digits = min(digits, 6)
-        return f"{scale.least:.{digits}g} … {scale.most:.{digits}g}" if scale.title == "local distance" else ""
+        decimals = 3 if scale.most - scale.least > _FINE else 5
+        return f"{scale.least:.{decimals}f} … {scale.most:.{decimals}f}" if scale.title == DISTANCE else ""
 
     def _line(self) -> int:
         return int(self.fontMetrics().height())

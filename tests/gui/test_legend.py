@@ -48,8 +48,6 @@ def test_each_colouring_has_its_legend(person, toolpath):
 
 
 def test_the_legend_is_on_the_screen_and_stays_where_it_is(person, toolpath):
-    import numpy as np
-
     colours = [tuple(np.rint(255 * ramp([share])[0])) for share in (0.0, 0.25, 0.75, 1.0)]
     toolpath.ViewObject.LineWidth = 1.0
     toolpath.ViewObject.Colouring = "speed"  # one speed: a bar of one colour
@@ -120,3 +118,22 @@ def test_tilt_is_from_the_vertical_of_the_part(person, toolpath):
     tilt = np.degrees(np.arccos(np.clip(tool[:, 2], -1, 1)))
     assert (scale.low, scale.high) == pytest.approx((tilt.min(), tilt.max()), abs=1e-9)
     assert np.array_equal(colours, ramp((tilt - scale.low) / (scale.high - scale.low)))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "texts"),
+    [
+        (0, 70, ["0", "20", "40", "60"]), (11.2, 88.9, ["20", "40", "60", "80"]),
+        (0.01, 0.013, ["0.010", "0.011", "0.012", "0.013"]),
+        (-3, 2, ["-3", "-2", "-1", "0", "1", "2"]), (6, 6, ["6"]),
+    ],
+)
+def test_numbers_beside_the_bar_are_round_and_true(person, low, high, texts):
+    scale = colouring.automatic(np.array([low, high], dtype=float), "speed", "mm/s")
+    assert [text for _, text in scale.ticks] == texts
+    for number, text in scale.ticks:
+        assert abs(number - float(text)) < 1e-9 and low - 1e-9 <= number <= high + 1e-9
+
+
+def test_layers_are_whole_numbers(person):
+    assert [text for _, text in colouring.automatic(np.array([0.0, 1.0]), "layer", "").ticks] == ["0", "1"]
