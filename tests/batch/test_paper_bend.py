@@ -37,7 +37,7 @@ def sliced(plans):
         text = plans.exact("tube-on-pipe", chord_error)
         text = text.replace("layer_height: 5 mm", f"layer_height: {height:g} mm").replace("constant-distance", spacing)
         text = text.replace("tube-on-pipe.step", "long-tube.step" if tube == TUBE else "long-wide-tube.step")
-        layers = [layer for layer in plans.plan("tube-on-pipe", text).layers]
+        layers = plans.plan("tube-on-pipe", text).layers
         past = next(number for number, layer in enumerate(layers) if angle(layer[0].points).min() > PASSED)
         assert all(len(layer) == 1 and layer[0].closed for layer in layers[: past + 1])
         return [layer[0] for layer in layers[: past + 1]]

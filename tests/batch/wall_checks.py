@@ -170,7 +170,9 @@ def seam_steps(planned: Planned) -> np.ndarray:
     return np.array([np.linalg.norm(high.points[0] - low.points[0]) for low, high in starts])
 
 
-def nozzle_depth(one: Pass, depth: Callable[[np.ndarray], np.ndarray], tip: float, length: float, half_angle: float) -> float:
+def nozzle_depth(
+    one: Pass, depth: Callable[[np.ndarray], np.ndarray], tip: float, length: float, half_angle: float
+) -> float:
     """How far the nozzle, a cone (mm, rad) around the tool axes of a bead, stays away from the substrate; less than
     nothing inside of it."""
     across = np.cross(one.tool, np.eye(3)[np.argmin(np.abs(one.tool), axis=1)])
