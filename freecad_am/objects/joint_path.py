@@ -50,7 +50,7 @@ class JointPath(Stage):
         )
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
         joint_path = plan_joints(toolpath, cell, self.parameters(obj, JointParameters), progress.report)
-        motion, rapid_issues = assemble(joint_path, cell, process)
+        motion, rapid_issues = assemble(joint_path, cell, process, toolpath.surroundings)
         condition = np.concatenate([bead.condition for bead in joint_path.beads])
         smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
         figures = (("Duration", float(np.nansum(motion.duration))), ("SmallestCondition", smallest))
