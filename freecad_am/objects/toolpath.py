@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.surroundings import disc
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
-from ..core.strategies import revolution, surface, surface_directions, wall_clearance
+from ..core.strategies import revolution, surface, surface_directions, wall_clearance, wall_fronts
 from ..core.toolpath import Toolpath as CoreToolpath
 from .stage import Link, Outcome, Section, Stage, stage_of
 from .surface_feature import SurfaceFeature
@@ -59,7 +60,8 @@ def planned(
 ) -> CoreToolpath:
     """The toolpath of a wall, the result of a feature, cut by the strategy of its family."""
     if isinstance(strategy, SurfaceParameters):
-        return _kept_clear(surface.plan(wall, strategy, build, process), wall, build, cell)
+        family = wall_fronts if isinstance(wall, PatchWall) else surface
+        return _kept_clear(family.plan(wall, strategy, build, process), wall, build, cell)
     toolpath = revolution.plan(
         wall, strategy, build, process, NozzleParameters() if cell is None else cell.nozzle,
         0.0 if cell is None else cell.platform_diameter,

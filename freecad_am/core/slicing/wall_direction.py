@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.surface import Surface, dot, normals
+from ..geometry.surface import dot
 from ..issues import InputError
-from .wall_layer import WallLayer
 
 Array = NDArray[np.float64]
 
+LEAST = 1e-6  # a direction shorter than this after projection points nowhere
 HALVINGS = 30  # of the width over which directions are spread
 ROUNDING = 1e-9  # rad
 
@@ -40,43 +40,45 @@ def local(normal: Array, into: Array, out: Array, up: Array) -> Array:
     return _unit(_unit(upright[0]) + _unit(upright[1]))
 
 
-def on_layer(surface: Surface, layer: WallLayer) -> Array:
-    """Local build directions (m, 3) at the nodes of a layer, towards rising u."""
-    _, along, _ = surface.derivatives(layer.u, layer.v)
-    return local(normals(surface, layer.u, layer.v), layer.curve.into, layer.curve.out, along)
-
-
 def in_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
-    """Directions projected onto the plane of symmetry with the normal `plane` (3,): one rotation about that normal is left.
+    """Directions projected onto the plane of symmetry with the unit normal `plane` (3,): one rotation about that normal is
+    left.
 
-    InputError NO_PROJECTION where a direction stands across the plane.
+    InputError NO_DIRECTION where a direction stands across the plane.
     """
-    plane = np.asarray(plane, float) / np.linalg.norm(plane)
     flat = directions - (directions @ plane)[:, None] * plane
-    if np.linalg.norm(flat, axis=1).min() < 1e-3:
+    if np.linalg.norm(flat, axis=1).min() < LEAST:
         raise InputError(
-            "NO_PROJECTION", label, "a build direction stands across the plane of symmetry and has no projection on it: "
-            "choose another plane, or the mode local",
+            "NO_DIRECTION", "build_direction.mode",
+            f"a build direction of {label} is normal to its plane of symmetry; use local",
         )
     return _unit(flat)
 
 
-def fixed(direction: Array, count: int) -> Array:
-    """One direction for all points, (count, 3)."""
-    return np.tile(_unit(np.asarray(direction, float)[None]), (count, 1))
-
-
-def held(build: Array, tangent: Array, outside: Array, lead: float, tilt: float) -> Array:
+def held(build: Array, forward: Array, outside: Array, lead: float, tilt: float) -> Array:
     """Tool axes (n, 3): build directions turned by `lead` forward along the bead, then by `tilt` to the outside, rad.
 
-    tangent: (n, 3) along the bead. outside: (n, 3) normals of the wall that point to its outside.
+    forward: (n, 3) unit vectors along the bead. outside: (n, 3) normals of the wall that point to its outside.
     """
     if lead == 0.0 and tilt == 0.0:
         return build
-    out = _unit(outside - dot(outside, build)[:, None] * build)
-    forward = np.cross(build, out)
-    forward = forward * np.where(dot(forward, tangent) < 0.0, -1.0, 1.0)[:, None]
-    return _unit(np.cos(tilt) * (np.cos(lead) * build + np.sin(lead) * forward) + np.sin(tilt) * out)
+    forward = _unit(forward - dot(forward, build)[:, None] * build)
+    out = np.cross(build, forward)
+    out *= np.sign(dot(out, outside))[:, None]
+    leaning = np.cos(lead) * build + np.sin(lead) * forward
+    return _unit(np.cos(tilt) * leaning + np.sin(tilt) * out)
+
+
+def capped(vectors: Array, most: float) -> tuple[Array, float]:
+    """Directions turned back to `most` rad from the vertical where they lean over more, and by how much the farthest is."""
+    level = np.hypot(vectors[:, 0], vectors[:, 1])
+    angle = np.arctan2(level, vectors[:, 2])
+    over = angle > most + 1e-12
+    if not over.any():
+        return vectors, 0.0
+    away = np.divide(vectors[:, :2], level[:, None], out=np.tile([1.0, 0.0], (len(vectors), 1)), where=level[:, None] > 0.0)
+    turned = np.column_stack([np.sin(most) * away, np.full(len(vectors), np.cos(most))])
+    return np.where(over[:, None], turned, vectors), float((angle - most).max())
 
 
 def turn_rates(points: Array, directions: Array) -> Array:

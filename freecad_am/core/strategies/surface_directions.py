@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Build directions and tool axes on a wall (Chalvin 2019, section II D): tangent to the wall, normal to the bead."""
+"""Build directions and tool axes of beads on a wall (Chalvin 2019, section II D), as the parameters ask for them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.patch_wall import PatchWall
 from ..geometry.surface_wall import Array, SurfaceWall
 from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
+from ..slicing.wall_direction import LEAST, capped, held, in_plane, limited
 
-LEAST = 1e-6  # a direction shorter than this after projection points nowhere
 UP = np.array([0.0, 0.0, 1.0])
+SAME = 1e-9  # rad
 
 
-@dataclass(frozen=True)
-class Along:
+class Along(NamedTuple):
     """What is known at the points of a bead, each (n, 3) unit vectors: the way the bead runs, up the wall at right
     angles to it, out of the wall."""
 
@@ -24,25 +25,46 @@ class Along:
     up: Array
     out: Array
 
+    def reversed(self) -> Along:
+        """Of the bead run the other way."""
+        return Along(-self.forward[::-1], self.up[::-1], self.out[::-1])
 
-def refuse(wall: SurfaceWall, build: BuildDirectionParameters) -> None:
-    """InputError for a plane of symmetry that the wall does not have."""
-    if build.mode == "symmetry-plane" and wall.symmetry_normal is None:
+
+class Directions(NamedTuple):
+    """Build directions and tool axes (n, 3) of a bead; by how much (rad) max_tilt has turned the farthest of them back, and
+    max_turn has spread them."""
+
+    build: Array
+    tool: Array
+    back: float
+    spread: float
+
+
+def plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
+    """Unit normal (3,) of the plane that tool axes stay in, None where they may lean any way.
+
+    InputError NO_SYMMETRY_PLANE where a plane of symmetry is asked for that the wall is not known to have.
+    """
+    if build.mode != "symmetry-plane":
+        return None
+    given = build.plane_normal()
+    if given is not None:
+        return np.asarray(np.array(given) / np.linalg.norm(given))
+    normal = wall.symmetry_normal if isinstance(wall, SurfaceWall) else None
+    if normal is None:
         raise InputError(
             "NO_SYMMETRY_PLANE", "build_direction.mode", f"{wall.label} is no bend of a torus, so its plane of symmetry is "
-            "not known; use local, layer or fixed",
+            "not known; give its normal as build_direction.plane, or use local, layer or fixed",
         )
+    return normal
 
 
-def plane(wall: SurfaceWall, build: BuildDirectionParameters) -> Array | None:
-    """Unit normal (3,) of the plane that tool axes stay in, None where they may lean any way."""
-    return wall.symmetry_normal if build.mode == "symmetry-plane" else None
+def directions(
+    points: Array, closed: bool, along: Along, build: BuildDirectionParameters, normal: Array | None, label: str
+) -> Directions:
+    """The directions at the points (n, 3) of a bead. normal: of the `plane` that they are projected onto, if any.
 
-
-def directions(wall: SurfaceWall, along: Along, build: BuildDirectionParameters) -> tuple[Array, Array, float]:
-    """Build directions and tool axes (n, 3) of a bead, and by how much (rad) max_tilt has turned the furthest back.
-
-    symmetry-plane: both projected onto the plane of the bend, so that the tool turns about one axis alone.
+    InputError NO_DIRECTION where one is normal to that plane, TURN_LIMIT where they cannot be made to turn slower.
     """
     up = along.up
     if build.mode == "fixed":
@@ -51,57 +73,31 @@ def directions(wall: SurfaceWall, along: Along, build: BuildDirectionParameters)
         mean = up.mean(axis=0)
         size = np.linalg.norm(mean)
         up = np.tile(mean / size if size > LEAST else UP, (len(up), 1))
-    tool = _held(up, along, build.lead, build.tilt)
-    normal = wall.symmetry_normal
-    if build.mode == "symmetry-plane" and normal is not None:
-        up, tool = _projected(up, normal, wall.label), _projected(tool, normal, wall.label)
-    up, _ = _capped(up, build.max_tilt)
-    tool, back = _capped(tool, build.max_tilt)
-    return up, tool, back
+    tool = held(up, along.forward, along.out, build.lead, build.tilt)
+    alike = tool is up
+    if normal is not None:
+        up, tool = in_plane(up, normal, label), in_plane(tool, normal, label)
+    rate, spread = float(build.max_turn), 0.0
+    if rate < np.inf:
+        up, departure = limited(points, up, closed, rate)
+        tool, other = (up, departure) if alike else limited(points, tool, closed, rate)
+        spread = float(max(departure.max(), other.max()))
+    up, _ = capped(up, build.max_tilt)
+    tool, back = capped(tool, build.max_tilt)
+    return Directions(up, tool, back, spread)
 
 
-def cap_note(back: float, layer: int) -> list[Issue]:
-    """Says that max_tilt turned directions back."""
-    if back <= 1e-9:
-        return []
-    return [Issue(
-        NOTE, "TILT_CAPPED", f"tool axes are turned back by up to {np.degrees(back):.3g} deg to stay within "
-        "build_direction.max_tilt", layer,
-    )]
-
-
-def _held(build: Array, along: Along, lead: float, tilt: float) -> Array:
-    """Turned by `lead` forward along the bead, then by `tilt` to the outside of the wall, rad."""
-    if lead == 0.0 and tilt == 0.0:
-        return build
-    forward = _unit(along.forward - np.einsum("ij,ij->i", along.forward, build)[:, None] * build)
-    out = np.cross(build, forward)
-    out *= np.sign(np.einsum("ij,ij->i", out, along.out))[:, None]
-    leaning = np.cos(lead) * build + np.sin(lead) * forward
-    return _unit(np.cos(tilt) * leaning + np.sin(tilt) * out)
-
-
-def _projected(vectors: Array, normal: Array, label: str) -> Array:
-    flat = vectors - (vectors @ normal)[:, None] * normal
-    if np.linalg.norm(flat, axis=1).min() < LEAST:
-        raise InputError(
-            "NO_DIRECTION", "build_direction.mode",
-            f"a build direction of {label} is normal to its plane of symmetry; use local",
-        )
-    return _unit(flat)
-
-
-def _capped(vectors: Array, most: float) -> tuple[Array, float]:
-    level = np.hypot(vectors[:, 0], vectors[:, 1])
-    angle = np.arctan2(level, vectors[:, 2])
-    over = angle > most + 1e-12
-    if not over.any():
-        return vectors, 0.0
-    away = np.divide(vectors[:, :2], level[:, None], out=np.tile([1.0, 0.0], (len(vectors), 1)), where=level[:, None] > 0.0)
-    turned = np.column_stack([np.sin(most) * away, np.full(len(vectors), np.cos(most))])
-    return np.where(over[:, None], turned, vectors), float((angle - most).max())
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-    return unit
+def notes(found: list[tuple[int, Directions]]) -> list[Issue]:
+    """Says how far directions depart from what was asked for: by layer of each bead."""
+    issues = []
+    for code, values, cause in (
+        ("TILT_CAPPED", [one.back for _, one in found], "turned back by up to {0:.3g} deg to stay within "
+         "build_direction.max_tilt"),
+        ("TURN_LIMITED", [one.spread for _, one in found], "spread along the bead, by up to {0:.3g} deg, to turn no faster "
+         "than build_direction.max_turn"),
+    ):
+        worst = int(np.argmax(values))
+        if values[worst] > SAME:
+            text = f"tool axes are {cause.format(np.degrees(values[worst]))}"
+            issues.append(Issue(NOTE, code, text, found[worst][0]))
+    return issues

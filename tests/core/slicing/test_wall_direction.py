@@ -14,6 +14,12 @@ from freecad_am.core.slicing.wall_layer import even_grid
 TORUS = Torus(60.0, 15.0)
 
 
+def on_layer(layer):
+    """Local build directions (m, 3) at the nodes of a layer of the bend."""
+    _, along, _ = TORUS.derivatives(layer.u, layer.v)
+    return wall_direction.local(normals(TORUS, layer.u, layer.v), layer.curve.into, layer.curve.out, along)
+
+
 @pytest.fixture(scope="module")
 def layers():
     pipe = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
@@ -22,7 +28,7 @@ def layers():
 
 def test_local_directions_are_tangent_to_the_wall_and_normal_to_the_bead(layers):
     for layer in layers:
-        build = wall_direction.on_layer(TORUS, layer)
+        build = on_layer(layer)
         smooth = layer.curve.turns < 1e-6
         smooth[-1] = smooth[0]
         _, along, _ = TORUS.derivatives(layer.u, layer.v)
@@ -36,7 +42,7 @@ def test_local_directions_are_tangent_to_the_wall_and_normal_to_the_bead(layers)
 def test_local_directions_point_away_from_the_nearest_point_below(layers):
     """A front moves at right angles to itself: the way from the foot, brought into the wall, is the direction."""
     below, above = layers[1:3]
-    build = wall_direction.on_layer(TORUS, above)
+    build = on_layer(above)
     way = above.curve.points - below.curve.nearest(above.curve.points)[1]
     normal = normals(TORUS, above.u, above.v)
     way = way - (way * normal).sum(axis=1)[:, None] * normal
@@ -46,19 +52,19 @@ def test_local_directions_point_away_from_the_nearest_point_below(layers):
 
 def test_at_a_corner_the_direction_is_the_bisector(layers):
     """By symmetry it lies in the plane Y = 0, along the bend."""
-    build = wall_direction.on_layer(TORUS, layers[-1])[0]
+    build = on_layer(layers[-1])[0]
     u = layers[-1].u[0]
     assert build == pytest.approx([-np.sin(u), 0.0, np.cos(u)], abs=1e-6)
 
 
 def test_projected_directions_turn_about_one_axis_only(layers):
-    build = wall_direction.on_layer(TORUS, layers[-1])
-    flat = wall_direction.in_plane(build, [0.0, 2.0, 0.0])
+    build = on_layer(layers[-1])
+    flat = wall_direction.in_plane(build, np.array([0.0, 1.0, 0.0]))
     assert flat[:, 1] == pytest.approx(0.0, abs=1e-15)
     assert np.linalg.norm(flat, axis=1) == pytest.approx(1.0)
     assert np.cross(flat, build)[:, [0, 2]] == pytest.approx(-build[:, [1]] * flat[:, [2, 0]] * [1, -1], abs=1e-12)
     with pytest.raises(InputError, match="plane of symmetry"):
-        wall_direction.in_plane(np.array([[0.0, 1.0, 0.0]]), [0, 1, 0])
+        wall_direction.in_plane(np.array([[0.0, 1.0, 0.0]]), np.array([0.0, 1.0, 0.0]))
 
 
 def test_the_tool_axis_leads_and_tilts_by_the_angles_asked():
@@ -78,7 +84,7 @@ def test_the_tool_axis_leads_and_tilts_by_the_angles_asked():
 @pytest.mark.parametrize("degrees", [1.0, 2.0, 6.0])
 def test_the_turn_stays_below_its_limit_and_departs_no_farther_than_told(layers, degrees):
     curve, rate = layers[-1].curve, np.radians(degrees)
-    build = wall_direction.on_layer(TORUS, layers[-1])
+    build = on_layer(layers[-1])
     assert wall_direction.turn_rates(curve.points, build).max() > 5.0 * rate
     found, departure = wall_direction.limited(curve.points, build, True, rate)
     assert wall_direction.turn_rates(curve.points, found).max() <= rate
@@ -109,4 +115,13 @@ def test_a_limit_that_cannot_be_kept_is_refused():
     with pytest.raises(InputError, match="mode fixed") as refused:
         wall_direction.limited(10.0 * circle, circle, True, 0.05)
     assert refused.value.code == "TURN_LIMIT"
-    assert wall_direction.fixed(np.array([0.0, 0.0, 2.0]), 3) == pytest.approx(np.tile([0.0, 0.0, 1.0], (3, 1)))
+
+
+def test_directions_that_lean_over_too_far_are_turned_back_to_the_limit_alone():
+    angle = np.linspace(0.0, 2.5, 26)
+    leaning = np.stack([np.sin(angle) * 0.6, np.sin(angle) * 0.8, np.cos(angle)], axis=1)
+    found, back = wall_direction.capped(leaning, 1.0)
+    assert back == pytest.approx(1.5)
+    assert np.arccos(found[:, 2]) == pytest.approx(np.minimum(angle, 1.0))
+    assert np.cross(found, leaning)[:, 2] == pytest.approx(0.0, abs=1e-12)  # in the same plane with the vertical
+    assert wall_direction.capped(leaning, 2.6)[0] is leaning

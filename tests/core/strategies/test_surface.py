@@ -33,8 +33,8 @@ def tube(height=20.0):
     return SurfaceWall(CONE, (10.0, 0.0), np.eye(4), height, first, label="Tube")
 
 
-def planned(wall, mode="local", process=None, lead=0.0, tilt=0.0, max_tilt=np.pi, **strategy):
-    build = BuildDirectionParameters(mode, lead, tilt, max_tilt, "none")
+def planned(wall, mode="local", process=None, lead=0.0, tilt=0.0, max_tilt=np.pi, max_turn="inf", plane="auto", **strategy):
+    build = BuildDirectionParameters(mode, lead, tilt, max_tilt, max_turn, plane, "none")
     return surface.plan(wall, SurfaceParameters(**{"layer_height": 5.0, **strategy}), build, process or ProcessParameters())
 
 
@@ -147,6 +147,45 @@ def test_fixed_layer_and_capped_directions():
     capped = planned(bend(), max_tilt=np.radians(60.0))
     assert max(np.arccos(bead.tool[:, 2]).max() for _, _, bead in capped) == pytest.approx(np.radians(60.0), abs=1e-9)
     assert "TILT_CAPPED" in codes(capped)
+
+
+def turns(bead, vectors):
+    """Turn per mm from point to point, rad."""
+    cosine = np.clip((vectors[1:] * vectors[:-1]).sum(axis=1), -1.0, 1.0)
+    return np.arccos(cosine) / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+
+
+@pytest.mark.parametrize(
+    ("mode", "lead", "degrees"), [("local", 0.0, 10.0), ("local", 0.3, 10.0), ("symmetry-plane", 0.2, 2.0)]
+)
+def test_directions_turn_no_faster_than_their_limit(mode, lead, degrees):
+    """Fronts turn by up to 97 degrees at their corners (ERRATA), and the free directions with them."""
+    most = np.radians(degrees)
+    free, limited = (planned(bend(), mode=mode, lead=lead, max_turn=turn) for turn in ("inf", most))
+    fastest = [max(turns(bead, bead.tool).max() for _, _, bead in one) for one in (free, limited)]
+    assert fastest[0] > 1.5 * most and fastest[1] <= most + 1e-6
+    departure = max(np.arccos(np.clip((a.tool * b.tool).sum(axis=1), -1.0, 1.0)).max()
+                    for (_, _, a), (_, _, b) in zip(free, limited, strict=True))
+    note = codes(limited)["TURN_LIMITED"]
+    assert f"{np.degrees(departure):.3g} deg" in note.message and "TURN_LIMITED" not in codes(free)
+    for (_, _, a), (_, _, b) in zip(free, limited, strict=True):
+        assert np.abs(a.points - b.points).max() < 1e-12
+        assert np.linalg.norm(b.tool, axis=1) == pytest.approx(1.0)
+        if mode == "symmetry-plane":
+            assert np.abs(b.tool[:, 1]).max() < 1e-9
+        if b.closed:
+            assert b.tool[0] == pytest.approx(b.tool[-1], abs=1e-9)
+    assert all(np.abs(a.tool - b.tool).max() < 1e-9 for a, b in zip(  # no corner yet
+        free.layers[1].beads, limited.layers[1].beads, strict=True)) or lead
+
+
+def test_a_plane_may_be_given():
+    toolpath = planned(tube(), mode="symmetry-plane", plane="0 3 0", tilt=0.3)
+    assert all(np.abs(bead.tool[:, 1]).max() < 1e-12 for _, _, bead in toolpath)
+    assert max(np.abs(bead.tool[:, 0]).max() for _, _, bead in toolpath) == pytest.approx(np.sin(0.3), abs=0.01)
+    with pytest.raises(InputError) as caught:
+        planned(tube(), mode="symmetry-plane", plane="0 0 0")
+    assert caught.value.where == "build_direction.plane"
 
 
 def turning(bead):

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls on an existing part that no closed parameter runs around: several faces, open shells, openings, branches.
+
+Layers are fronts of constant local distance (slicing.fronts), which split, merge, close and end at rims by themselves. Every
+bead of a layer lies on beads of the layer below, so layers follow each other; within a layer the bead comes next
+that begins nearest to where the last one ended.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.patch_wall import PatchWall
+from ..issues import NOTE, InputError, Issue
+from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import SurfaceParameters
+from ..slicing import fronts
+from ..slicing.curve_points import within_chord
+from ..slicing.front_curve import feet
+from ..slicing.rims import Rims
+from ..toolpath import Bead, Layer, Toolpath
+from . import surface_directions
+from .front_seams import Middle, seam
+from .front_tree import Piece, events, shorn, tree, whole
+from .wall_beads import along, bead, corner_notes, short_note, spacing_issues, traced
+
+Array = NDArray[np.float64]
+
+FINER = 4  # places per arc of a front at which its distance from the layer below is measured
+
+
+def plan(
+    wall: PatchWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters
+) -> Toolpath:
+    """The toolpath of a wall of any connected smooth pieces, in part coordinates.
+
+    Closed beads start at the seam's angle about the middle line of the wall, which runs through the centres of the closed
+    beads, from the X of the part carried along it without twist. Counter-clockwise is meant as seen against the
+    build direction of a tube; on any wall it keeps the layer below on the right, seen from outside. Raises InputError
+    'NO_PARAMETER', 'NOT_YET', 'LAYER_HEIGHT', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
+    """
+    _refuse(strategy)
+    normal = surface_directions.plane(wall, build)
+    height = strategy.layer_height
+    curves = fronts.layers(wall, height)
+    distances = [
+        np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
+        for below, layer in zip(curves[:-1], curves[1:], strict=True)
+    ]
+    issues = spacing_issues(distances, strategy) + corner_notes(curves)
+    pieces = tree(curves, Rims.of(wall.rims))
+    issues += events(pieces)
+    pieces, notes = _kept(wall, pieces, strategy)
+    layers, found = _layers(wall, pieces, strategy, build, process, normal)
+    return Toolpath(layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface")
+
+
+def _refuse(strategy: SurfaceParameters) -> None:
+    if strategy.spacing == "iso-parameter":
+        raise InputError(
+            "NO_PARAMETER", "strategy.spacing", "this wall has no closed parameter whose lines layers could follow (several "
+            "faces, openings, a side or a slanted end); use constant-distance",
+        )
+    if strategy.spacing == "smooth":
+        raise InputError(
+            "NOT_YET", "strategy.spacing", "smooth layers are made on walls of one surface that closes around and ends on a "
+            "line of it, and this is none; use constant-distance",
+        )
+
+
+def _kept(wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters) -> tuple[list[list[Piece]], list[Issue]]:
+    """The pieces that are deposited: all, or those below the first that an end of the wall cuts off."""
+    if strategy.end == "whole":
+        kept = whole(pieces)
+        if not kept:
+            raise InputError("TOO_LOW", wall.label, "its end cuts the first layer off; make it longer")
+        left = _left(wall, kept)
+        text = f"up to {left:.4g} mm of the wall are left above the last whole layer"
+        note = Issue(NOTE, "REMAINDER", text, len(kept) - 1)
+        return kept, [note] if left > 1e-4 * strategy.layer_height else []
+    kept, dropped = shorn(pieces, 0.5 * strategy.layer_height)
+    return kept, short_note(dropped)
+
+
+def _left(wall: PatchWall, kept: list[list[Piece]]) -> float:
+    """Largest distance (mm) of the wall's upper edges from the last layers."""
+    ends = [rim.points for rim in wall.rims if rim.end]
+    last = [piece.curve for layer in kept for piece in layer if not piece.children]
+    return float(feet(last, np.vstack(ends)).distance.max()) if ends and last else 0.0
+
+
+@dataclass(frozen=True)
+class _Way:
+    """One way to run a piece: from where on, and whether against its curve."""
+
+    piece: Piece
+    start: float
+    backwards: bool
+    begin: Array
+
+
+def _layers(
+    wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters, build: BuildDirectionParameters,
+    process: ProcessParameters, normal: Array | None,
+) -> tuple[tuple[Layer, ...], list[Issue]]:
+    layers, found, here = [], [], None
+    middles: dict[int, Middle] = {}
+    for index, layer in enumerate(pieces):
+        angle = process.seam.angle + index * process.seam.step
+        ways = [_ways(piece, angle, middles, process, index) for piece in layer]
+        beads: list[Bead] = []
+        while ways:
+            way, at = _nearest(ways, here)
+            ways.pop(at)
+            curve = way.piece.curve
+            w = within_chord(curve, way.start, way.start + curve.period, strategy.chord_error)
+            line = traced(curve, w, curve.closed)
+            out = wall.project(line.points)[1]
+            over = along(line, out, np.cross(out, line.tangents.sum(axis=1)))  # up is on the left
+            if way.backwards:
+                line, over = line.reversed(), over.reversed()
+            one = surface_directions.directions(line.points, curve.closed, over, build, normal, wall.label)
+            found.append((index, one))
+            beads.append(bead(line, one, curve.closed, process.travel_speed))
+            here = line.points[-1]
+        layers.append(Layer(tuple(beads)))
+    return tuple(layers), surface_directions.notes(found)
+
+
+def _ways(
+    piece: Piece, angle: float, middles: dict[int, Middle], process: ProcessParameters, layer: int
+) -> list[_Way]:
+    """The ways in which a piece may be run. Fronts are counter-clockwise, see `fronts.start`."""
+    curve = piece.curve
+    if curve.closed:
+        start = seam(piece, angle, middles)
+        clockwise = process.direction == "clockwise" or (process.direction == "alternate" and layer % 2 == 1)
+        return [_Way(piece, start, clockwise, curve.at(np.array([start]))[0][0])]
+    ways = [_Way(piece, float(curve.w[0]), False, curve.points[0])]
+    if process.direction == "alternate":
+        ways.append(_Way(piece, float(curve.w[0]), True, curve.points[-1]))
+    return ways
+
+
+def _nearest(ways: list[list[_Way]], here: Array | None) -> tuple[_Way, int]:
+    """The way that begins nearest to a place, and the number of its piece; at first simply the first."""
+    if here is None:
+        return ways[0][0], 0
+    every = [(float(np.linalg.norm(way.begin - here)), at, k) for at, some in enumerate(ways) for k, way in enumerate(some)]
+    _, at, k = min(every)
+    return ways[at][k], at
+
+
