@@ -79,7 +79,7 @@ class Plans:
         return (self.folder / f"{job}.yaml").read_text(encoding="utf-8")
 
     def exact(self, job, chord_error):
-        """The job without its cell and clearance: the fronts alone, their points so dense that chords stand for the curve."""
+        """The job without cell and clearance: the fronts alone, points so dense that chords stand for the curve."""
         text = self.text(job).split("\ncell:")[0].replace("  clearance: none\n", "") + "\n"
         text = text.replace("build_direction:\n", "build_direction:\n  clearance: none\n")
         return re.sub(r"(  layer_height: .*\n)", rf"\1  chord_error: {chord_error:.6f} mm\n", text)
