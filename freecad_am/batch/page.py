@@ -70,6 +70,9 @@ svg .asked{stroke:var(--soft);stroke-dasharray:5 4}
 svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}
 svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
 svg .far{stroke-width:1.2;opacity:.6}svg .direction{stroke:var(--ink);stroke-width:1.1;opacity:.6}
+svg .body{stroke-width:.6;stroke-linejoin:round}
+svg .b0,svg .b1{fill:#9aa4b5;stroke:#9aa4b5}svg .b2{fill:#a8b1c0;stroke:#a8b1c0}svg .b3{fill:#b5bdca;stroke:#b5bdca}
+svg .b4{fill:#c2c9d4;stroke:#c2c9d4}svg .b5{fill:#ced4dd;stroke:#ced4dd}svg .b6{fill:#d9dee5;stroke:#d9dee5}
 svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-side{fill:var(--soft);opacity:.55}
 """
 

@@ -18,29 +18,73 @@ _AZIMUTH, _ELEVATION = math.radians(-62.0), math.radians(24.0)
 _MOST_POINTS = 60_000
 _MOST_OVERLAID = 12_000  # points of one group
 _TICKS = 260  # build directions shown
+_MOST_TRIANGLES = 6000  # of a body
 
 
 def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
-    """The inline SVG of a toolpath; the axis of the feature stands upright."""
+    """The inline SVG of a toolpath; the axis of the feature stands upright. What a wall grows on lies behind it."""
     inverse = np.linalg.inv(toolpath.frame)
     beads = [(layer, bead.points @ inverse[:3, :3].T + inverse[:3, 3], bead.build @ inverse[:3, :3].T)
              for layer, _, bead in toolpath]
     platform = _disc(platform_diameter)
     length = 0.07 * float(np.ptp(np.concatenate([points for _, points, _ in beads]), axis=0).max())
-    tips = np.concatenate([points + length * build for _, points, build in beads])
-    scale, shift = _fit(np.concatenate((_seen(tips), _seen(platform)[:, :])))
-    parts = [_platform(platform, scale, shift)]
+    shown = [side for _, points, build in beads for side in (points, points + length * build)]
+    if platform.any():
+        shown.append(platform)
+    scale, shift = _fit(_seen(np.concatenate(shown)))
+    bodies = [body.corners() @ inverse[:3, :3].T + inverse[:3, 3] for body in toolpath.surroundings]
+    parts = [_platform(platform, scale, shift), *(_body(corners, scale, shift) for corners in bodies)]
     step = max(1, toolpath.point_count // _MOST_POINTS)
     last = max(1, len(toolpath.layers) - 1)
     every = max(1, toolpath.point_count // _TICKS)
+    facing = _facing(beads, toolpath.family)
     # what lies farther away is drawn first; the far half of each layer lies behind the near half of all others
-    far = [_half(points, step, scale, shift, svg.colour(layer / last), near=False) for layer, points, _ in beads]
-    near = [_half(points, step, scale, shift, svg.colour(layer / last), near=True) for layer, points, _ in beads]
-    parts += [*far, *near, _directions(beads, every, length, scale, shift), _scale_bar(last)]
+    far, near = (
+        [_half(points, step, scale, shift, svg.colour(layer / last), towards, side)
+         for (layer, points, _), towards in zip(beads, facing, strict=True)]
+        for side in (False, True)
+    )
+    parts += [*far, *near, _directions(beads, facing, every, length, scale, shift), _scale_bar(last)]
     return (
         f'<svg class="view" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="the path, coloured by layer">'
         f'{"".join(parts)}</svg>'
     )
+
+
+def _facing(beads: list[tuple[int, Array, Array]], family: str) -> list[Array]:
+    """Per bead, (n,): more than 0 where the wall faces the eye. About the axis of parts of revolution that is a side of
+    it; elsewhere the outside of the bead tells, which is the side away from the middle of its layer."""
+    level = math.cos(_ELEVATION)
+    eye = np.array([math.cos(_AZIMUTH) * level, math.sin(_AZIMUTH) * level, math.sin(_ELEVATION)])
+    if family != "surface":
+        return [points[:, :2] @ eye[:2] for _, points, _ in beads]
+    found = []
+    middles = {
+        number: np.concatenate([points for layer, points, _ in beads if layer == number]).mean(axis=0)
+        for number in {layer for layer, _, _ in beads}
+    }
+    for layer, points, build in beads:
+        outside = np.cross(np.gradient(points, axis=0), build)
+        away = float((outside * (points - middles[layer])).sum())
+        found.append(outside @ eye * (1.0 if away >= 0.0 else -1.0))
+    return found
+
+
+def _body(corners: Array, scale: float, shift: Array) -> str:
+    """The triangles (m, 3, 3) of a body that face the eye, in a few shades."""
+    corners = corners[:: max(1, len(corners) // _MOST_TRIANGLES)] if len(corners) > _MOST_TRIANGLES else corners
+    seen = _seen(corners.reshape(-1, 3)).reshape(-1, 3, 3)
+    normal = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
+    slant = -normal[:, 2] / np.maximum(np.linalg.norm(normal, axis=1), 1e-12)  # the picture's second axis points down
+    at = seen[:, :, :2] * scale + shift
+    inside = ((at.max(axis=1) > 0.0) & (at.min(axis=1) < [WIDTH, HEIGHT])).all(axis=1) & (slant > 0.0)
+    order = np.argsort(seen[:, :, 2].mean(axis=1), kind="stable")
+    parts = []
+    for k in order[inside[order]]:
+        (a, b), (c, d), (e, f) = at[k].tolist()
+        shade = round(6.0 * float(slant[k]))
+        parts.append(f'<path class="body b{shade}" d="M{a:.1f} {b:.1f}L{c:.1f} {d:.1f}L{e:.1f} {f:.1f}Z"/>')
+    return "".join(parts)
 
 
 def overlaid(groups: Sequence[tuple[str, str, Sequence[Array]]]) -> str:
@@ -91,11 +135,10 @@ def _platform(disc: Array, scale: float, shift: Array) -> str:
     )
 
 
-def _half(points: Array, step: int, scale: float, shift: Array, stroke: str, near: bool) -> str:
-    """The part of a bead on the near or the far side of the feature's axis."""
-    kept = points if step == 1 else points[np.unique(np.r_[0 : len(points) : step, len(points) - 1])]
-    seen = _seen(kept)
-    towards = kept[:, 0] * math.cos(_AZIMUTH) + kept[:, 1] * math.sin(_AZIMUTH)
+def _half(points: Array, step: int, scale: float, shift: Array, stroke: str, towards: Array, near: bool) -> str:
+    """The part of a bead that faces the eye or the part that faces away."""
+    kept = slice(None) if step == 1 else np.unique(np.r_[0 : len(points) : step, len(points) - 1])
+    seen, towards = _seen(points[kept]), towards[kept]
     mine = towards >= 0.0 if near else towards <= 0.0
     mine |= np.roll(mine, 1) & np.r_[False, np.ones(len(mine) - 1, dtype=bool)]  # joins the halves
     at = np.where(mine[:, None], seen[:, :2] * scale + shift, np.nan)
@@ -103,12 +146,14 @@ def _half(points: Array, step: int, scale: float, shift: Array, stroke: str, nea
     return f'<path class="{"near" if near else "far"}" stroke="{stroke}" d="{data}"/>' if data else ""
 
 
-def _directions(beads: list[tuple[int, Array, Array]], every: int, length: float, scale: float, shift: Array) -> str:
+def _directions(
+    beads: list[tuple[int, Array, Array]], facing: list[Array], every: int, length: float, scale: float, shift: Array
+) -> str:
     points = np.concatenate([points for _, points, _ in beads])[::every]
     build = np.concatenate([build for _, _, build in beads])[::every]
-    facing = points[:, 0] * math.cos(_AZIMUTH) + points[:, 1] * math.sin(_AZIMUTH) >= 0.0
-    start = _seen(points[facing])[:, :2] * scale + shift
-    end = _seen((points + length * build)[facing])[:, :2] * scale + shift
+    near = np.concatenate(facing)[::every] >= 0.0
+    start = _seen(points[near])[:, :2] * scale + shift
+    end = _seen((points + length * build)[near])[:, :2] * scale + shift
     data = "".join(
         f"M{a:.1f} {b:.1f}L{c:.1f} {d:.1f}" for (a, b), (c, d) in zip(start.tolist(), end.tolist())
     )
