@@ -3,7 +3,8 @@
 
 The points of a bead lie on its curve, the chords between them do not: on a circle they run inside by up to the chord
 error, which would show as spacing. So the curve is a smooth one through the points - in each segment a cubic that is a
-circular arc to sixth order in the angle it turns - and keeps corners as they are.
+circular arc to sixth order in the angle it turns - and keeps corners as they are. Its tangents are the bead's own where it
+has them, else those of parabolas.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..toolpath import Array, Bead, Layer, Toolpath
 CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
 SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
 SUDDEN = 3.0
+SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a point at which they differ by more
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
@@ -95,7 +97,7 @@ def _quarters(bead: Bead) -> Iterator[tuple[NDArray[np.bool_], Curve]]:
 
 def curve_of(layer: Layer) -> Curve:
     """The smooth curve through the points of a layer's beads."""
-    pieces = [_columns(bead.points, bead.closed) for bead in layer.beads]
+    pieces = [_columns(bead.points, bead.closed, bead.tangents) for bead in layer.beads]
     return Curve(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
 
 
@@ -182,10 +184,16 @@ def _to_cubic(points: Array, segment: NDArray[np.intp], curve: Curve) -> Array:
     return found
 
 
-def _columns(points: Array, closed: bool) -> tuple[Array, ...]:
-    """The columns of `Curve` for the points (n, 3) of one bead or a part of it."""
+def _columns(points: Array, closed: bool, tangents: Array | None = None) -> tuple[Array, ...]:
+    """The columns of `Curve` for the points (n, 3) of one bead or a part of it, and its unit tangents (n, 2, 3) where they
+    are known."""
     step = np.diff(points, axis=0)
     length = np.linalg.norm(step, axis=1)
+    if tangents is not None:
+        turn = np.arccos(np.clip(np.einsum("ij,ij->i", tangents[:, 0], tangents[:, 1]), -1.0, 1.0))
+        smooth = turn < SMOOTH
+        smooth[[0, -1]] &= closed
+        return _arcs(points, length, tangents[:-1, 1], tangents[1:, 0], smooth[:-1], smooth[1:])
     chord = step / np.where(length > 0.0, length, 1.0)[:, None]
     before, after = np.roll(chord, 1, axis=0), chord
     smooth = ~_corners(before, after, closed)  # at the start of each segment
@@ -197,6 +205,13 @@ def _columns(points: Array, closed: bool) -> tuple[Array, ...]:
     # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
     start = np.where(smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord))
     end = np.where(smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord))
+    return _arcs(points, length, start, end, smooth, smooth_end)
+
+
+def _arcs(
+    points: Array, length: Array, start: Array, end: Array, smooth: NDArray[np.bool_], smooth_end: NDArray[np.bool_]
+) -> tuple[Array, ...]:
+    """The columns for segments with the unit tangents (n - 1, 3) at their ends, which go on smoothly or do not."""
     # derivative of a cubic that meets the arc in its middle: chord / cos^2 of a quarter of the angle turned
     cosine = np.sqrt(0.5 * (1.0 + np.clip(np.einsum("ij,ij->i", start, end), -1.0, 1.0)))
     size = (length / (0.5 * (1.0 + cosine)))[:, None]

@@ -150,3 +150,33 @@ def test_local_distances_of_a_spiral_are_to_the_turn_before(turns):
     np.testing.assert_array_equal(np.isnan(found), angle < 2 * np.pi)
     slope = 1.0 / (2 * np.pi * 20)  # nearest point of a helix one turn below, nearly at right angles to it
     np.testing.assert_allclose(found[angle >= 2 * np.pi], 1.0 / np.hypot(1.0, slope), atol=2e-6)
+
+
+def test_known_tangents_keep_corners_however_slight_and_ellipses_exact():
+    """An arch of two quarters of ellipses that meet at 6 degrees, points above its tip and beside it."""
+    half = np.radians(3.0)
+    angle = np.linspace(0.0, 1.0, 25)
+    along, down = 20.0 * np.sin(angle), 12.0 * (np.cos(angle) - 1.0)
+    steep, fall = 20.0 * np.cos(angle), -12.0 * np.sin(angle)
+    cos, sin = np.cos(half), np.sin(half)
+    right = np.c_[along * cos + down * sin, down * cos - along * sin, 0.0 * angle]
+    onward = np.c_[steep * cos + fall * sin, fall * cos - steep * sin, 0.0 * angle]
+    onward /= np.linalg.norm(onward, axis=1, keepdims=True)
+    points = np.concatenate([right[:0:-1] * [-1.0, 1.0, 1.0], right])
+    leaving = np.concatenate([onward[:0:-1] * [1.0, -1.0, 1.0], onward])
+    arriving = leaving.copy()
+    arriving[24] = onward[0] * [1.0, -1.0, 1.0]
+    plain = bead(points, False)
+    known = Bead(
+        plain.points, plain.build, plain.tool, plain.parameter, plain.speed, False, tangents=np.stack([arriving, leaving], 1)
+    )
+    above = np.array([[0.0, 2.0, 0.0], [0.3, 2.0, 0.0], [0.0, -2.0, 0.0]])
+    fine = np.linspace(0.0, 1.0, 2_000_001)
+    arch = np.c_[20.0 * np.sin(fine) * cos + 12.0 * (np.cos(fine) - 1.0) * sin,
+                 12.0 * (np.cos(fine) - 1.0) * cos - 20.0 * np.sin(fine) * sin]
+    arch = np.concatenate([arch, arch * [-1.0, 1.0]])
+    exact = [np.linalg.norm(arch - point[:2], axis=1).min() for point in above]
+    found = spacing.distance(above, spacing.curve_of(Layer((known,))))
+    np.testing.assert_allclose(found, exact, atol=2e-6)
+    guessed = spacing.distance(above, spacing.curve_of(Layer((plain,))))
+    assert np.abs(guessed - exact).max() > 1e-4  # without tangents such a corner is rounded
