@@ -196,7 +196,7 @@ class _Bench:
         allowed = self._both_ends(allowed)
         stuck = np.logical_not(allowed.any(axis=1))
         allowed[stuck] = True
-        # a closed bead starts where its least tilt is, and with it
+        # a closed bead starts where least tilt is needed, and with it
         size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
         anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
         return states[self._least(states[None], allowed, anchor, size.argmin(axis=1))], stuck
@@ -233,9 +233,16 @@ class _Bench:
         return allowed
 
     def _anchors(self, size: Array) -> Index:
-        return np.array([
-            int(np.argmin(size[start : start + count])) for start, count in zip(self.begin, self.counts, strict=True)
-        ])
+        """Of each bead the point that needs least tilt, of several the one farthest from those that need more."""
+        anchors = []
+        for start, count in zip(self.begin, self.counts, strict=True):
+            need = size[start : start + count - 1]
+            least_of_all = np.flatnonzero(need <= need.min() + CAP)
+            more = np.flatnonzero(need > need.min() + CAP)
+            apart = np.abs(least_of_all[:, None] - more[None, :])
+            away = np.minimum(apart, count - 1 - apart).min(axis=1, initial=count)
+            anchors.append(int(least_of_all[np.argmax(away)]))
+        return np.array(anchors)
 
     def _least(self, states: Array, allowed: Mask, anchor: Index, fixed: Index) -> Index:
         """(m,) the states of least cost; a closed bead is run from the anchor all around, its state there `fixed`."""

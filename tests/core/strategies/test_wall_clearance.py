@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The nozzle on walls: clear by brute force (a sampled nozzle, true solids), tilted by the least angle, smoothly."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from freecad_am.core.geometry.surface_wall import TORUS, SurfaceWall
+from freecad_am.core.geometry.surroundings import Body, disc
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import NozzleParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import SurfaceParameters
+from freecad_am.core.strategies import surface
+from freecad_am.core.strategies.wall_clearance import COARSE, kept_clear, left_out, touched_at
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+
+BEND, TUBE, PIPE = 60.0, 15.0, 32.0
+NOZZLE = NozzleParameters()
+FAT = NozzleParameters(half_angle=np.radians(38.0), diameter=3.0, length=40.0)
+LOCAL = BuildDirectionParameters()
+SAMPLES = 8
+FINEST = 0.4  # deg, what the finest candidates leave open
+
+
+def bead(points, tool=(0.0, 0.0, 1.0), closed=False):
+    points = np.asarray(points, dtype=float)
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    tool = np.tile(tool, (len(points), 1)) if np.ndim(tool) == 1 else tool
+    return Bead(points, tool, tool, 2 * np.pi * length / length[-1], np.full(len(points), 6.0), closed)
+
+
+def toolpath(*beads):
+    return Toolpath(tuple(Layer((one,)) for one in beads), np.eye(4), 1.0, 0.01, family="surface")
+
+
+def box(low, high, name="box"):
+    x, y, z = np.transpose([low, high])
+    vertices = np.array([[a, b, c] for a in x for b in y for c in z], dtype=float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return Body(name, vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
+
+
+def pipe(sides=200):
+    angle = 2 * np.pi * np.arange(sides) / sides
+    rings = [np.stack([PIPE * np.cos(angle), np.full(sides, y), PIPE * np.sin(angle)], 1) for y in (-100.0, 100.0)]
+    one, two = np.arange(sides), np.roll(np.arange(sides), -1)
+    side = np.concatenate([np.stack([one, two, one + sides], 1), np.stack([two, two + sides, one + sides], 1)])
+    return Body("pipe", np.vstack(rings), side)
+
+
+def sampled(nozzle, low, tip, tool):
+    """Points of the nozzle's surface and inside, (k, n, 3)."""
+    height = np.linspace(low, nozzle.length, 50)
+    angle, share = np.meshgrid(np.linspace(0, 2 * np.pi, 24, endpoint=False), [0.0, 0.4, 0.8, 1.0], indexing="ij")
+    radius = (0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * height)[:, None] * share.ravel()
+    one = np.cross(tool, np.eye(3)[np.argmin(np.abs(tool), axis=1)])
+    one /= np.linalg.norm(one, axis=1)[:, None]
+    two = np.cross(tool, one)
+    heights = np.repeat(height[:, None], angle.size, axis=1)
+    flat = np.stack([radius * np.cos(angle.ravel()), radius * np.sin(angle.ravel()), heights]).reshape(3, -1)
+    return tip[:, None] + np.einsum("ckj,cn->knj", np.stack([one, two, tool]), flat)
+
+
+def touches_deposit(path, nozzle):
+    """(layer, bead, point) at which a point of an earlier bead, or of this one behind, is well inside the nozzle."""
+    found, count = [], 0
+    low, a, k = left_out(nozzle), 0.5 * nozzle.diameter, np.tan(nozzle.half_angle)
+    laid = np.concatenate([
+        np.linspace(one.points[:-1], one.points[1:], SAMPLES, axis=1).reshape(-1, 3) for _, _, one in path
+    ])
+    for i, j, one in path:
+        for point in range(len(one)):
+            count += SAMPLES * (point > 0)
+            offset = laid[:count] - one.points[point]
+            x = offset @ one.tool[point]
+            side = np.linalg.norm(offset - x[:, None] * one.tool[point], axis=1)
+            if ((x > low + 1e-6) & (x < nozzle.length - 1e-6) & (side < a + k * x - 1e-6)).any():
+                found.append((i, j, point))
+    return found
+
+
+def turned(path, other):
+    return np.concatenate([
+        np.degrees(np.arccos(np.clip((one.tool * two.tool).sum(axis=1), -1, 1)))
+        for (_, _, one), (_, _, two) in zip(path, other)
+    ])
+
+
+def codes(path):
+    return [issue.code for issue in path.issues]
+
+
+def bend_on_pipe(mode, **values):
+    theta = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    # on the tube about the circle of the bend and on the pipe: by Newton in the height along the tube
+    u = np.full(400, 0.5)
+    wall = SurfaceWall(TORUS, (BEND, TUBE), np.eye(4), np.pi / 2, np.zeros((400, 3)))
+    tube = wall.surface()
+    for _ in range(50):
+        point, along, _ = tube.derivatives(u, theta)
+        gap = point[:, 0] ** 2 + point[:, 2] ** 2 - PIPE**2
+        u = u - gap / (2 * (point[:, 0] * along[:, 0] + point[:, 2] * along[:, 2]))
+    first = tube.point(u, theta)
+    assert np.abs(np.hypot(first[:, 0], first[:, 2]) - PIPE).max() < 1e-9
+    wall = dataclasses.replace(wall, first=first)
+    build = BuildDirectionParameters(mode=mode, clearance="none")
+    return wall, surface.plan(wall, SurfaceParameters(layer_height=8.0, end="whole", **values), build, ProcessParameters())
+
+
+@pytest.mark.parametrize("mode", ["local", "symmetry-plane"])
+def test_a_fat_nozzle_on_the_pipe(mode):
+    wall, asked = bend_on_pipe(mode)
+    build = BuildDirectionParameters(mode=mode, max_tilt=np.pi)
+    plane = wall.symmetry_normal if mode == "symmetry-plane" else None
+    found = kept_clear(asked, [pipe()], FAT, build, plane)
+
+    def deepest(path):
+        low = left_out(FAT) + COARSE
+        points = [sampled(FAT, low, one.points, one.tool).reshape(-1, 3) for _, _, one in path]
+        return PIPE - min(np.hypot(some[:, 0], some[:, 2])[np.abs(some[:, 1]) < 99].min() for some in points)
+
+    assert deepest(asked) > 0.3
+    assert deepest(found) < PIPE * (1 - np.cos(np.pi / 200)) + 1e-6
+    assert touches_deposit(found, FAT) == []
+    assert "CLEARANCE" not in codes(found) and "TILT_BACK" in codes(found)
+    for (_, _, one), (_, _, two) in zip(asked, found):
+        assert (one.points == two.points).all() and (one.build == two.build).all()
+        if two.closed:
+            assert np.abs(two.tool[0] - two.tool[-1]).max() < 1e-12
+        if plane is not None:
+            assert np.abs(two.tool @ plane).max() < 1e-9
+        step = np.linalg.norm(np.diff(two.points, axis=0), axis=1)
+        tilt = np.degrees(np.linalg.norm(np.diff(two.tool - one.tool, axis=0), axis=1))
+        assert (tilt[step > 0.2] / step[step > 0.2]).max() < 15.0
+    note = next(issue for issue in found.issues if issue.code == "TILT_BACK")
+    assert float(note.message.split()[-2]) == pytest.approx(turned(asked, found).max(), abs=0.006)
+    place = found.layers[note.layer].beads[note.bead].tool[note.point]
+    was = asked.layers[note.layer].beads[note.bead].tool[note.point]
+    assert np.degrees(np.arccos(place @ was)) == pytest.approx(turned(asked, found).max(), abs=1e-6)
+
+
+def test_beside_a_tall_face_the_tilt_is_the_least_that_clears_it():
+    path = toolpath(bead(np.stack([np.zeros(41), np.linspace(0, 80, 41), np.zeros(41)], axis=1)))
+    face = box([10, -200, -50], [30, 300, 150])
+    found = kept_clear(path, [face], NOZZLE, LOCAL)
+    slope = np.tan(NOZZLE.half_angle)
+    needed = brentq(lambda e: (0.5 + 60 * slope) * np.cos(e) - 60 * np.sin(e) - 10.0, 0.0, 1.0)
+    tool = found.layers[0].beads[0].tool
+    tilt = np.degrees(np.arccos(tool[:, 2]))
+    assert tilt.min() >= np.degrees(needed) - 1e-9
+    assert tilt[5:-5].max() <= np.degrees(needed) + FINEST
+    assert (tool[:, 0] < 0).all() and np.degrees(np.abs(tool[:, 1])).max() < 1.0
+
+
+def test_a_post_beside_the_way_is_passed_smoothly():
+    angle = np.linspace(0, 2 * np.pi, 121)
+    ring = np.stack([30 * np.cos(angle), 30 * np.sin(angle), np.zeros(121)], axis=1)
+    ring[-1] = ring[0]
+    post = box([38, -3, -20], [44, 3, 90], "post")
+    path = toolpath(bead(ring, closed=True))
+    found = kept_clear(path, [post], NOZZLE, LOCAL)
+    tool = found.layers[0].beads[0].tool
+    tilt = turned(path, found)
+    solid = sampled(NOZZLE, left_out(NOZZLE) + COARSE, ring, tool)
+    inside = ((solid > [38, -3, -20]) & (solid < [44, 3, 90])).all(axis=2)
+    assert not inside.any()
+    asked = sampled(NOZZLE, left_out(NOZZLE) + COARSE, ring, path.layers[0].beads[0].tool)
+    assert ((asked > [38, -3, -20]) & (asked < [44, 3, 90])).all(axis=2).any()
+    assert (tool[0] == tool[-1]).all() and tilt[60] < 1e-6 < tilt[0]
+    turn = np.degrees(np.linalg.norm(np.diff(tool, axis=0), axis=1))
+    assert turn.max() < 5.0
+
+
+def test_where_nothing_helps_the_place_is_named():
+    path = toolpath(
+        bead([[0, -40, 0], [0, -20, 0]]), bead([[0, -10, 1], [0, 10, 1], [0, 30, 1]]),
+    )
+    lid = box([-90, 5, 8], [90, 90, 9], "lid")  # the nozzle does not fit under it
+    found = kept_clear(path, [lid, disc(113.0, np.eye(4))], NOZZLE, BuildDirectionParameters(max_tilt=np.pi / 3))
+    error = next(issue for issue in found.issues if issue.code == "CLEARANCE")
+    assert (error.level, error.layer, error.bead, error.point) == ("error", 1, 0, 1)
+
+
+def test_max_tilt_holds():
+    path = toolpath(bead(np.stack([np.zeros(11), np.linspace(0, 80, 11), np.zeros(11)], axis=1)))
+    face = box([10, -200, -50], [30, 300, 150])
+    tight = kept_clear(path, [face], NOZZLE, BuildDirectionParameters(max_tilt=np.radians(8.0)))
+    assert "CLEARANCE" in codes(tight)
+    wide = kept_clear(path, [face], NOZZLE, BuildDirectionParameters(max_tilt=np.radians(25.0)))
+    assert codes(wide) == ["TILT_BACK"]
+    assert np.degrees(np.arccos(wide.layers[0].beads[0].tool[:, 2])).max() <= 25.0
+
+
+def test_only_what_is_laid_already_counts():
+    wall = np.stack([np.full(5, 4.0), np.linspace(-20, 20, 5), np.full(5, 15.0)], axis=1)
+    low = np.stack([np.zeros(9), np.linspace(-20, 20, 9), np.zeros(9)], axis=1)
+    first = kept_clear(toolpath(bead(low), bead(wall)), [], NOZZLE, LOCAL)
+    assert codes(first) == [] and touches_deposit(first, NOZZLE) == []
+    after = toolpath(bead(wall), bead(low))
+    assert touches_deposit(after, NOZZLE)
+    found = kept_clear(after, [], NOZZLE, LOCAL)
+    assert codes(found) == ["TILT_BACK"] and touches_deposit(found, NOZZLE) == []
+
+
+def test_what_is_clear_stays_as_it_is_to_the_bit():
+    path = toolpath(bead([[0, 0, 0], [5, 0, 0]]), bead([[0, 0, 1], [5, 0, 1]]))
+    assert kept_clear(path, [box([40, 40, 0], [50, 50, 50])], NOZZLE, LOCAL) is path
+    flat = box([-100, -100, -10], [100, 100, 0])
+    assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
+
+
+def test_left_out_is_where_the_side_is_one_diameter_away():
+    for nozzle in (NOZZLE, FAT):
+        x = left_out(nozzle)
+        assert np.hypot(x, 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * x) == pytest.approx(nozzle.diameter)
+
+
+def test_a_look_at_fixtures_names_the_first_place():
+    path = toolpath(bead([[0, 0, 0], [20, 0, 0]]), bead([[0, 0, 1], [20, 0, 1]]))
+    clamp = box([24, -5, 5], [40, 5, 30], "clamp")
+    (issue,) = touched_at(path, [clamp], NOZZLE)
+    assert (issue.code, issue.layer, issue.bead, issue.point) == ("CLEARANCE", 0, 0, 1) and "clamp" in issue.message
+    assert touched_at(path, [box([60, -5, 5], [70, 5, 30])], NOZZLE) == []
