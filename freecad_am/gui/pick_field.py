@@ -23,7 +23,7 @@ class PickField(Input):
     def __init__(self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None]) -> None:
         self.link, self.label = link, label
         self.several = link.type_name == _LIST
-        self.element = "" if link.type_name != _SUB else EDGE if "Edge" in link.name else FACE
+        self.element = "" if link.type_name != _SUB else FACE if link.name == "Source" else EDGE
         self.picks = self._present(present)
         self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()

@@ -10,7 +10,7 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ..core.issues import InputError
-from ..objects.feature import global_shape
+from ..objects.shapes import global_shape
 from ..objects.stage import stage_of
 
 FACE, EDGE = "Face", "Edge"

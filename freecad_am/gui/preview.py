@@ -14,6 +14,9 @@ from ..objects.stage import Outcome, Stage
 from .lines import Array
 from .wall_nodes import WallNodes
 
+NAME = "RoboticAM_Preview"
+_VIEW = "Gui::View3DInventor"
+
 
 def outcome(proxy: type[Stage], document: Any, label: str, links: dict[str, Any], values: dict[str, Any]) -> Outcome:
     """What a stage would compute from all its links and outer values by property name; the document is only read.
@@ -29,6 +32,7 @@ class WallPreview:
 
     def __init__(self, document: Any) -> None:
         self.nodes = WallNodes(pickable=False)
+        self.nodes.switch.setName(NAME)
         self.scenes = [view.getSceneGraph() for view in Gui.getDocument(document.Name).mdiViewsOfType(_VIEW)]
         for scene in self.scenes:
             scene.addChild(self.nodes.switch)
@@ -48,6 +52,3 @@ class WallPreview:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view is closed
                 scene.removeChild(self.nodes.switch)
         self.scenes = []
-
-
-_VIEW = "Gui::View3DInventor"

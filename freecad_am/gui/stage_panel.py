@@ -29,7 +29,7 @@ class StagePanel:
 
     def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
         self.proxy, self.choices, self.obj = proxy, choices, obj
-        self.document = App.ActiveDocument
+        self.document = App.ActiveDocument if obj is None else obj.Document
         self.form = QtGui.QWidget()
         self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
         self.form.setWindowTitle(title)

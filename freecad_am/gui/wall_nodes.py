@@ -10,7 +10,7 @@ import numpy as np
 from pivy import coin
 
 from ..core.issues import InputError
-from ..objects.feature import global_shape
+from ..objects.shapes import global_shape
 from .lines import DASHED, Array, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)

@@ -100,7 +100,8 @@ class Stage:
             return name not in have
 
         for link in self.links:
-            add(link.type_name, link.name, "Inputs", link.help)
+            # parts and bodies may be nested in assemblies: links to them reach into those
+            add(link.type_name if link.kind else f"{link.type_name}Global", link.name, "Inputs", link.help)
         for section in self.sections:
             properties.add(obj, section.cls, section.group)
         if add("App::PropertyEnumeration", "Status", _RESULT, "Whether the result fits.", READ_ONLY | OUTPUT):

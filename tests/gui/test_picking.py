@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.gui import picking
 from freecad_am.gui.picking import Pick
-from freecad_am.objects.feature import global_shape
+from freecad_am.objects.shapes import global_shape
 
 
 @pytest.fixture

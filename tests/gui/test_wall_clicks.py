@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.gui import preview
 
 ORANGE = (245, 120, 0)  # of first layers
 PANEL = "RoboticAM_SurfaceFeature"
@@ -33,8 +34,10 @@ def outside(pipe):
     return f"Face{areas.index(max(areas)) + 1}"
 
 
-def scene(person):
-    return person.gui.activeDocument().activeView().getSceneGraph().getNumChildren()
+def previews(person):
+    """How many previews are in the scene."""
+    scene = person.gui.activeDocument().activeView().getSceneGraph()
+    return sum(str(scene.getChild(index).getName()) == preview.NAME for index in range(scene.getNumChildren()))
 
 
 def previewed(person, panel):
@@ -54,7 +57,7 @@ def ok(person, hand, name="Ok"):
 
 def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     part, pipe = bend
-    document, nodes, steps = part.Document, scene(person), part.Document.UndoCount
+    document, steps = part.Document, part.Document.UndoCount
     assert person.screen_pixels(ORANGE) == 0
     hand.click_face(part, "Face1")
     assert [(entry.Object, entry.SubElementNames) for entry in person.gui.Selection.getSelectionEx()] == [(part, ("Face1",))]
@@ -64,13 +67,13 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == ["Bend on it Face1", "Old pipe"]
     assert "closed, 97.4 mm" in previewed(person, panel)
     assert person.screen_pixels(ORANGE) > 150
-    assert document.Objects == bend and document.UndoCount == steps  # nothing is made yet
+    assert (document.Objects, document.UndoCount, previews(person)) == (bend, steps, 1)  # nothing is made yet
     hand.enter(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     person.screenshot("panel_wall_on_part")
     said = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
     ok(person, hand)
-    assert scene(person) == nodes + 1  # what is made, and no preview
+    assert previews(person) == 0
     feature = document.getObject("Feature")
     assert (feature.LayerHeight.Value, feature.Status, document.UndoCount) == (5.0, "up to date", steps + 1)
     assert (feature.Source, feature.Substrate) == ((part, ["Face1"]), pipe)
@@ -102,7 +105,7 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
 
 def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
     part, pipe = bend
-    document, nodes, steps = part.Document, scene(person), part.Document.UndoCount
+    document, steps = part.Document, part.Document.UndoCount
     hand.click(person.button("RoboticAM_WallOnPart"))
     panel = person.panel(PANEL)
     assert person.field(panel, "PickSource").isChecked()
@@ -123,7 +126,7 @@ def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
     assert person.field(panel, "Substrate").text() == "Old pipe" and not person.field(panel, "PickSubstrate").isChecked()
     previewed(person, panel)
     ok(person, hand, "Cancel")
-    assert (document.Objects, document.UndoCount, scene(person)) == (bend, steps, nodes)
+    assert (document.Objects, document.UndoCount, previews(person)) == (bend, steps, 0)
     assert person.screen_pixels(ORANGE) == 0
     person.gui.Selection.addSelection(part)  # nobody listens any more
     person.idle()
@@ -160,7 +163,7 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
 def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trace(person, bend):
     part, pipe = bend
     feature = api.make_surface_feature(part.Document, part, ["Face1"], pipe, layer_height=5)
-    key, steps, nodes = feature.Key, part.Document.UndoCount, scene(person)
+    key, steps = feature.Key, part.Document.UndoCount
     person.double_click(feature)
     panel = person.panel(PANEL)
     assert person.field(panel, "Substrate").text() == "Old pipe"
@@ -168,7 +171,7 @@ def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trac
     person.type(panel, "LayerHeight", "2 mm")
     person.press("Cancel")
     person.panel_closed()
-    assert (feature.Key, part.Document.UndoCount, scene(person)) == (key, steps, nodes)
+    assert (feature.Key, part.Document.UndoCount, previews(person)) == (key, steps, 0)
     person.double_click(feature)
     person.type(person.panel(PANEL), "LayerHeight", "2 mm")
     person.press("Ok")
@@ -213,3 +216,44 @@ def test_a_scan_is_a_substrate_and_a_mesh_is_no_wall(person, bend):
     person.press("Cancel")
     person.panel_closed()
     assert np.isfinite(scan.Mesh.Area)
+
+
+def test_a_body_in_an_assembly_carries_a_linked_wall_beside_fixtures(person):
+    document = App.newDocument("Assembly")
+    assembly = document.addObject("App::Part", "Assembly")
+    assembly.Placement = App.Placement(App.Vector(5, 0, 0), App.Rotation(App.Vector(0, 1, 0), 90))
+    body, pipe = document.addObject("PartDesign::Body", "Body"), document.addObject("PartDesign::AdditiveCylinder", "Pipe")
+    assembly.addObject(body)
+    body.addObject(pipe)
+    pipe.Radius, pipe.Height = 30, 100
+    branch, link = document.addObject("Part::Cylinder", "Branch"), document.addObject("App::Link", "Link")
+    branch.Radius, branch.Height = 12, 60
+    link.LinkedObject = branch
+    link.Placement.Base = App.Vector(50, 0, 0)
+    clamps = [document.addObject("Part::Box", name) for name in ("Clamp", "Other")]
+    for clamp in clamps:
+        clamp.Placement.Base = App.Vector(200, 0, 0)
+    document.recompute()
+    person.gui.Selection.addSelection(document.Name, link.Name, "Face1")
+    person.gui.Selection.addSelection(document.Name, assembly.Name, "Body.Pipe.Face1")
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel(PANEL)
+    assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == ["Link Face1", "Body"]
+    person.field(panel, "PickFixtures").click()
+    for clamp in clamps:
+        person.gui.Selection.addSelection(clamp)
+        person.idle()
+    assert person.field(panel, "Fixtures").text() == "Clamp, Other"
+    person.gui.Selection.addSelection(clamps[0])  # takes it back
+    person.idle()
+    previewed(person, panel)
+    person.press("Ok")
+    person.panel_closed()
+    feature = document.Feature
+    assert (feature.Status, feature.Substrate, feature.Fixtures) == ("up to date", body, [clamps[1]])
+    first = api.result(feature).first
+    on_pipe = np.hypot(first[:, 1], first[:, 2])
+    assert np.abs(np.hypot(first[:, 0] - 50, first[:, 1]) - 12).max() < 1e-6 and np.abs(on_pipe - 30).max() < 1e-6
+    said = len(person.console())
+    document.recompute()
+    assert "scope" not in person.console()[said:]
