@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import tempfile
@@ -17,6 +18,8 @@ from freecad_am.core.issues import InputError
 WAYPOINTS, REPORT, PAGE, PROGRAMS = "waypoints.csv", "report.json", "report.html", "program"
 DOCUMENT_ENDING = ".FCStd"
 PROGRAM_ENDINGS = (".ls",)  # of the controllers' texts that are ours wherever they stand in program/
+# what tells a folder of program/ as an application of ours: remarks that every program of ours begins with
+OUR_REMARKS = ("// Limits: ", "// Travel speed ")
 
 
 class Outputs:
@@ -126,9 +129,30 @@ class Outputs:
 
 
 def earlier_programs(folder: str) -> set[str]:
-    """Names of the controllers' texts in program/."""
-    files = _listed(os.path.join(folder, PROGRAMS))
-    return {f"{PROGRAMS}/{file}" for file in files if file.lower().endswith(PROGRAM_ENDINGS)}
+    """Names of the controllers' texts in program/: listings, and the files of applications with their parts."""
+    here = os.path.join(folder, PROGRAMS)
+    names = {file for file in _listed(here) if file.lower().endswith(PROGRAM_ENDINGS)}
+    for application in _listed(here):
+        if _is_ours(os.path.join(here, application, "start.pgx")):
+            inside = _listed(os.path.join(here, application))
+            parts = [part for part in inside if re.fullmatch(re.escape(application) + r"\d+", part)]
+            for path in (application, *(f"{application}/{part}" for part in parts)):
+                last = path.rpartition("/")[2]
+                files = (f"{last}.pjx", f"{last}.dtx", "start.pgx", "stop.pgx")
+                names |= {f"{path}/{file}" for file in files if os.path.isfile(os.path.join(here, path, file))}
+    return {f"{PROGRAMS}/{name}" for name in names}
+
+
+def _is_ours(path: str) -> bool:
+    try:
+        with open(path, encoding="utf-8-sig", errors="replace") as stream:
+            text = stream.read(_HEAD)
+    except OSError:
+        return False
+    return all(remark in text for remark in OUR_REMARKS)
+
+
+_HEAD = 4096  # characters of a program that hold the remarks it begins with
 
 
 def earlier_outputs(folder: str) -> set[str]:

@@ -29,7 +29,7 @@ def speed_words(moves: Moves) -> list[str]:
     if not fits.all():
         raise InputError(
             "MOVE_SPEED", _place(moves),
-            f"{speeds[~fits][0]:.6g} mm/s cannot be written; use a speed between {SPEEDS[0]} and {SPEEDS[1]:.0f} mm/s",
+            f"{speeds[~fits][0]:.4g} mm/s cannot be written; use a speed between {SPEEDS[0]} and {SPEEDS[1]:.0f} mm/s",
         )
     return [f"{speed:.1f}mm/sec" for speed in speeds.tolist()]
 
@@ -49,7 +49,7 @@ def time_words(moves: Moves) -> list[str]:
     if ends[-1] < n and moves.kind != RAPID:
         raise InputError(
             "MOVE_TIME", _place(moves),
-            f"{n} moves take {seconds.sum():.6g} s in all and cannot be shorter than 1 ms each; use a larger chord"
+            f"{n} moves take {seconds.sum():.4g} s in all and cannot be shorter than 1 ms each; use a larger chord"
             " error or a lower speed",
         )
     # beyond the 1 ms that each move takes at least: what has accrued, never falling, never more than the whole

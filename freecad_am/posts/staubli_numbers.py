@@ -98,7 +98,7 @@ def _speeds(moves: Moves) -> Array:
     fits = (moves.speed >= SLOWEST) & (moves.speed < float(UNLIMITED))
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", place(moves), f"{moves.speed[~fits][0]:.6g} mm/s cannot be written; use at least {SLOWEST} mm/s"
+            "MOVE_SPEED", place(moves), f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use at least {SLOWEST} mm/s"
         )
     return moves.speed
 

@@ -94,6 +94,49 @@ def test_a_document_saved_where_the_workbench_is_not_installed(workshop, saved, 
     assert after.count(b"J P[") > 1.6 * before.count(b"J P[") > 0
 
 
+def application(saved, **program):
+    """The first program as a VAL 3 application; the document with a machine that reads those."""
+    document = FreeCAD.openDocument(str(saved))
+    (cell,) = api.stages_of(document, "cell")
+    cell.Machine, cell.Limits = "staubli-rx60bl", "maker"
+    cell.DepositionPoint = FreeCAD.Placement(FreeCAD.Vector(550, 0, 800), FreeCAD.Rotation())
+    cell.Branch = "auto"
+    first, second = api.stages_of(document, "program")
+    document.removeObject(second.Name)
+    first.Post = "staubli"
+    for name, value in program.items():
+        setattr(first, name, value)
+    document.save()
+    FreeCAD.closeDocument(document.Name)
+
+
+def test_what_an_earlier_longer_export_left_is_removed_and_nothing_else(workshop, saved):
+    application(saved, MaxPoints=200)
+    done = workshop.run("export", saved, "-o", "out")
+    assert done.status == 0, done.err
+    longer = workshop.files("out")
+    assert "program/first/first02/first02.pjx" in longer
+    theirs = {
+        "program/first/notes.txt": b"mine", "program/first/first02/more.pgx": b"mine", "program/other/other.pjx": b"<Project/>",
+        "program/other/start.pgx": b"begin\n// Limits: none\nend", "program/first/firstly/start.pgx": b"mine",
+    }
+    for name, content in theirs.items():
+        path = workshop.folder / "out" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    application_again = FreeCAD.openDocument(str(saved))
+    api.stages_of(application_again, "program")[0].MaxPoints = 100000
+    application_again.save()
+    FreeCAD.closeDocument(application_again.Name)
+    done = workshop.run("export", saved, "-o", "out")
+    assert done.status == 0, done.err
+    files = workshop.files("out")
+    four = {f"program/first/{name}" for name in ("first.pjx", "first.dtx", "start.pgx", "stop.pgx")}
+    assert set(files) == four | set(theirs)
+    assert all(files[name] == content for name, content in theirs.items())
+    assert files["program/first/start.pgx"] != longer["program/first/start.pgx"]
+
+
 def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
     document = FreeCAD.openDocument(str(saved))
     (cell,) = api.stages_of(document, "cell")

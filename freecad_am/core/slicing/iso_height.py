@@ -19,7 +19,7 @@ def layers(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]
     if layer_height > high - low:
         raise InputError(
             "LAYER_HEIGHT", "strategy.layer_height",
-            f"{layer_height:g} mm is more than the wall is high ({high - low:.6g} mm); give a smaller one, "
+            f"{layer_height:g} mm is more than the wall is high ({high - low:.4g} mm); give a smaller one, "
             "or layers along the wall (spacing: arc-length)",
         )
     steps = int(np.floor((high - low) / layer_height + 1e-6))

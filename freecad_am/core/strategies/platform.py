@@ -45,11 +45,11 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
         raise _off(f"the axis of {wall.label} is {angle:.4g} deg off the normal of the platform", "use mount: feature")
     if off > radius:
         raise _off(
-            f"the axis of {wall.label} is {off:.6g} mm off the middle of the platform and misses it",
+            f"the axis of {wall.label} is {off:.4g} mm off the middle of the platform and misses it",
             "use mount: feature, or move the part",
         )
     if height > TOUCH:
-        raise _off(f"the base of {wall.label} is {height:.6g} mm below the platform", "use mount: feature, or move the part")
+        raise _off(f"the base of {wall.label} is {height:.4g} mm below the platform", "use mount: feature, or move the part")
     return Platform(radius + off, height, off)
 
 
@@ -60,7 +60,7 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
         return []
     return [Issue(
         WARNING, "OVER_PLATFORM",
-        f"the base of {wall.label} has a diameter of {2.0 * base:.6g} mm and reaches over the platform; check "
+        f"the base of {wall.label} has a diameter of {2.0 * base:.4g} mm and reaches over the platform; check "
         "cell.platform_diameter (0 for none)", 0,
     )]
 

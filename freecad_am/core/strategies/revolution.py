@@ -74,7 +74,7 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     issues = []
     if left > 1e-6 * strategy.layer_height:
         measure = "of the wall" if rule is arc_length else "of the height"
-        issues.append(Issue(NOTE, "REMAINDER", f"{left:.6g} mm {measure} are left at the top, less than a layer"))
+        issues.append(Issue(NOTE, "REMAINDER", f"{left:.3g} mm {measure} are left at the top, less than a layer"))
     if rule is iso_height:
         issues += _spacing_issues(wall, layers, strategy.layer_height)
     flat = np.concatenate(layers)

@@ -121,7 +121,7 @@ def test_beads_close_to_the_bit_and_say_their_speed():
 
 def test_what_is_left_at_the_top_is_told():
     notes = {issue.code: issue for issue in plan(SPHERE).issues}
-    assert "0.685835 mm" in notes["REMAINDER"].message
+    assert "0.686 mm" in notes["REMAINDER"].message
     assert "REMAINDER" not in {issue.code for issue in plan(CYLINDER).issues}
 
 
