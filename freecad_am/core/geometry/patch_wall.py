@@ -99,6 +99,11 @@ class PatchWall:
     def project(self, points: Array) -> tuple[Array, Array]:
         """Nearest points of the wall and unit normals to its outer side, each (k, 3); beyond an edge of the wall those of
         the surface that ends there."""
+        points, normals, _ = self.located(points)
+        return points, normals
+
+    def located(self, points: Array) -> tuple[Array, Array, Index]:
+        """As `project`, and the number of the patch (k,) that each lies on."""
         triangle, share = self._nearest(points)
         patch = self._across_joints(points, triangle)
         feet, normals = np.empty_like(points), np.empty_like(points)
@@ -112,7 +117,7 @@ class PatchWall:
             if not own.all():
                 uv[~own] = one.inverse(points[mine[~own]])
             feet[mine], normals[mine] = one.at(uv)
-        return feet, normals
+        return feet, normals, patch
 
     # ---- the nearest triangle
 

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls of any connected smooth faces: full tubes and open shells, with openings and slanted ends, on any substrate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import Part
+
+from ..core.geometry import contact
+from ..core.geometry.mesh import Mask
+from ..core.geometry.patch import Array
+from ..core.geometry.patch_wall import FirstCurve, PatchWall
+from ..core.geometry.refined import boundary
+from ..core.geometry.told import place
+from ..core.geometry.wall_rims import outward_volume, parts, rims_of, with_ends
+from ..core.issues import NOTE, InputError, Issue
+from .sheet import sheet
+from .start_edges import curves_of
+from .substrate import Substrate
+from .wall_checks import refuse_creases, refuse_crossing, refuse_gaps, refuse_tight, smallest_radii
+
+COARSE = 4  # a first mesh tells the radii
+
+
+def find_patch_wall(
+    shape: Any, named: Sequence[tuple[str, Any]], substrate: Substrate | None, height: float, label: str = "part",
+    start_edges: Sequence[str] = (),
+) -> PatchWall:
+    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate or from edges of its own.
+
+    All curves in which it leaves the substrate are taken; an issue tells where when there are several. Raises InputError
+    GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT, ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE,
+    NO_START, UNKNOWN_EDGE.
+    """
+    wall = sheet(named, _edge(named, height, label), label)
+    refuse_creases(wall, shape, label)
+    refuse_gaps(wall, label)
+    refuse_crossing(wall, label)
+    wall = _outward(wall, shape)
+    rims = rims_of(wall)
+    issues: list[Issue] = []
+    if start_edges:
+        first = curves_of(shape, start_edges, wall, label)
+        behind = np.zeros(len(wall.vertices), dtype=bool)
+    elif substrate is None:
+        raise InputError("NO_SUBSTRATE", label, "there is nothing to grow on; choose a substrate, or the edges to start from")
+    else:
+        first, behind, issues = _from_substrate(wall, substrate, rims, label)
+    refuse_tight(wall, ~behind, height, label)
+    if len(first) > 1:
+        places = ", ".join(place(curve.points.mean(axis=0)) for curve in first)
+        issues.append(Issue(
+            NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; choose "
+            "the edges to start from if only some are meant",
+        ))
+    return replace(
+        wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
+        surroundings=() if substrate is None else (substrate.body,),
+    )
+
+
+def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
+    """Longest edge of the mesh: the layer height, a quarter of the wall's smallest radius if that is less."""
+    coarse = sheet(named, COARSE * height, label)
+    radius = float(smallest_radii(coarse)[0].min())
+    return float(np.clip(0.25 * radius, 0.25 * height, height))
+
+
+def _outward(wall: PatchWall, shape: Any) -> PatchWall:
+    """The wall with its outer side outwards: as the faces of a solid look, or away from what the wall surrounds."""
+    if shape.Solids:
+        return wall
+    if outward_volume(wall) >= 0.0:
+        return wall
+    return replace(
+        wall, triangles=wall.triangles[:, ::-1].copy(), uv=wall.uv[:, ::-1].copy(),
+        patches=tuple(replace(patch, sign=-patch.sign) for patch in wall.patches),
+    )
+
+
+def _from_substrate(
+    wall: PatchWall, substrate: Substrate, rims: Any, label: str
+) -> tuple[list[FirstCurve], Mask, list[Issue]]:
+    ground = substrate.ground(wall.mesh.typical_edge)
+    value = contact.levels(wall, ground)
+    outside = value >= 0.0
+    if outside.all():
+        at = int(np.argmin(value))
+        raise InputError(
+            "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at {place(wall.vertices[at])}, "
+            f"{value[at]:.4g} mm away; move it so that it reaches in, at most {contact.TOUCH:g} mm may be missing",
+        )
+    if not outside.any():
+        at = int(np.argmax(value))
+        raise InputError(
+            "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is {-value[at]:.4g} mm "
+            "deep, and nowhere less); a wall starts on the substrate and ends outside of it",
+        )
+    dropped = _stays_in(wall, outside, substrate)
+    value[dropped] = np.minimum(value[dropped], -1e-6)
+    first, off = contact.first_curves(wall, ground, value, rims)
+    if not first:
+        raise InputError(
+            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than a few "
+            f"{wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
+        )
+    found = f"the first layer lies on the wall and on {substrate.label}"
+    if off > 0.0:
+        found += f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them"
+    return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
+
+
+def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
+    """Vertices of the parts of the wall that are out of the substrate but never leave its box (a stub in the bore of a
+    pipe), while another part does."""
+    low, high = substrate.solid.vertices.min(axis=0), substrate.solid.vertices.max(axis=0)
+    leaves = ((wall.vertices < low - 1e-3) | (wall.vertices > high + 1e-3)).any(axis=1)
+    count, part = parts(wall, outside)
+    goes = np.zeros(count, dtype=bool)
+    goes[part[outside & leaves]] = True
+    dropped = outside.copy()
+    dropped[outside] = not_kept = ~goes[part[outside]]
+    return dropped if goes.any() and not_kept.any() else np.zeros(len(outside), dtype=bool)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Edges of the part chosen as the first layer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import Part
+
+from ..core.geometry.patch import Array
+from ..core.geometry.patch_wall import FirstCurve, PatchWall
+from ..core.geometry.told import place
+from ..core.issues import InputError
+
+ON_WALL = 1e-3  # mm
+SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are no corners
+
+
+def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> list[FirstCurve]:
+    """The chains and loops that the edges form, on the wall. InputError UNKNOWN_EDGE, NO_START (off the wall)."""
+    edges = []
+    for name in dict.fromkeys(names):
+        number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
+        if not 1 <= number <= len(shape.Edges):
+            raise InputError("UNKNOWN_EDGE", label, f"it has no {name}; its edges are Edge1 to Edge{len(shape.Edges)}")
+        edge = shape.Edges[number - 1]
+        points = np.array([tuple(edge.valueAt(t)) for t in np.linspace(*edge.ParameterRange, 9)])
+        off = np.linalg.norm(wall.project(points)[0] - points, axis=1)
+        if off.max() > ON_WALL:
+            raise InputError(
+                "NO_START", f"{label} {name}", f"the edge is {off.max():.4g} mm off the wall at {place(points[np.argmax(off)])}; "
+                "choose edges of the wall's own faces",
+            )
+        edges.append(edge)
+    return [_curve(chain, wall) for chain in Part.sortEdges(edges)]
+
+
+def _curve(chain: list[Any], wall: PatchWall) -> FirstCurve:
+    wire = Part.Wire(chain)
+    closed = bool(wire.isClosed())
+    points, into, out = [], [], []
+    for edge in wire.OrderedEdges:
+        at, along = _sampled(edge, wall.mesh.typical_edge)
+        points.append(at[:-1] if points or closed or len(wire.OrderedEdges) > 1 else at[:-1])
+        first = len(into) == 0
+        out.append(along[:-1])
+        into.append(np.vstack([along[:1] if first else last, along[1:-1]]))
+        last = along[-1:]
+        end = at[-1:]
+    if closed:
+        into[0][0] = last[0]
+    else:
+        points.append(end)
+        into.append(last)
+        out.append(last)
+    nodes, before, after = (np.vstack(column) for column in (points, into, out))
+    smooth = np.einsum("ij,ij->i", before, after) > np.cos(SMOOTH)
+    before[smooth] = after[smooth]
+    return FirstCurve(wall.project(nodes)[0], before, after, closed)
+
+
+def _sampled(edge: Any, step: float) -> tuple[Array, Array]:
+    low, high = edge.ParameterRange
+    count = max(8, int(np.ceil(edge.Length / step))) + 1
+    t = np.linspace(low, high, count)
+    if edge.Orientation == "Reversed":
+        t = t[::-1]
+    points = np.array([tuple(edge.valueAt(one)) for one in t.tolist()])
+    along = np.array([tuple(edge.Curve.tangent(one)[0]) for one in t.tolist()])
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    if (points[1] - points[0]) @ along[0] < 0.0:
+        along = -along
+    return points, along

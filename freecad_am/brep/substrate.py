@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The part that a wall grows on: a solid of faces or of triangles, checked, with its triangles for what must be kept clear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..core.geometry.ground import ExactGround, FacetGround, Ground
+from ..core.geometry.solid_mesh import SolidMesh
+from ..core.geometry.surroundings import Body
+from ..core.geometry.told import place
+from ..core.issues import InputError
+from .sheet import sheet, welded
+
+CHORD = 0.1  # mm between a solid and the triangles that stand for it
+SAME = 1e-5  # mm; vertices of a mesh that lie closer are one
+
+
+@dataclass(frozen=True)
+class Substrate:
+    """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles within CHORD."""
+
+    label: str
+    shape: Any
+    solid: SolidMesh
+
+    @property
+    def body(self) -> Body:
+        """What the nozzle must not touch."""
+        return Body(self.label, self.solid.vertices, self.solid.triangles.astype(np.int64))
+
+    def ground(self, edge: float) -> Ground:
+        """Prepared for a wall whose mesh has edges of `edge` mm."""
+        if self.shape is None:
+            return FacetGround(self.solid, edge)
+        faces = [(f"Face{index}", face) for index, face in enumerate(self.shape.Faces, start=1)]
+        area = sum(face.Area for _, face in faces)
+        return ExactGround(sheet(faces, max(2.0 * edge, float(np.sqrt(area / 20000.0))), self.label), edge)
+
+
+def substrate_of(source: Any, label: str) -> Substrate:
+    """The substrate of a Part.Shape or a Mesh.Mesh in part coordinates.
+
+    Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD.
+    """
+    if hasattr(source, "Topology"):
+        points, triangles = source.Topology
+        return Substrate(label, None, mesh_solid(np.array([tuple(p) for p in points]), np.array(triangles), label))
+    if source is None or source.isNull() or not source.Solids:
+        raise InputError("NO_SOLID", label, "it is no solid; choose a solid part or a closed mesh for the wall to grow on")
+    if source.Volume <= 0.0:
+        box = source.BoundBox
+        raise InputError(
+            "INSIDE_OUT", label, f"the solid around {place(box.Center)} is turned inside out (volume {source.Volume:.4g} mm3); "
+            "repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
+        )
+    points, triangles = source.copy().tessellate(CHORD)
+    vertices, corners, _ = welded(
+        np.array([tuple(p) for p in points]), np.array(triangles, dtype=np.intp), np.zeros(len(triangles), dtype=np.intp)
+    )
+    return Substrate(label, source, SolidMesh(vertices, corners))
+
+
+def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
+    """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than SAME made one, triangles that then lack a
+    corner left out. Raises InputError NO_SOLID, OPEN_MESH, NON_MANIFOLD, INSIDE_OUT."""
+    if not len(triangles):
+        raise InputError("NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part")
+    if not np.isfinite(points).all():
+        raise InputError("BAD_FILE", label, "the mesh has points that are no numbers; export it again")
+    vertices, corners, _ = welded(
+        np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), np.zeros(len(triangles), dtype=np.intp)
+    )
+    solid = SolidMesh(vertices, corners)
+    solid.refuse_unsound(label)
+    return solid
+
+
+def nearest_gap(vertices: Any, substrate: Substrate) -> float:
+    """About how near the points (n, 3) come to the substrate, mm."""
+    return float(cKDTree(substrate.solid.vertices).query(vertices)[0].min())

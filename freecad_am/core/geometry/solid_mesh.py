@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A solid bounded by triangles: whether it is one, and how far points are from it, inside of it with a minus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..issues import InputError
+from .mesh import Index
+from .refined import Edges, refined
+from .surface import dot
+from .told import place
+from .triangles import closest
+
+Array = NDArray[np.float64]
+
+NEAREST = 12
+MOST = 800_000  # triangles for the search
+TILT = np.radians(0.05)  # facets that meet flatter than this are one
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """vertices (n, 3) mm, triangles (m, 3) counter-clockwise seen from outside."""
+
+    vertices: Array
+    triangles: Index
+
+    @property
+    def volume(self) -> float:
+        """Volume, mm3; negative when the mesh is turned inside out."""
+        a, b, c = (self.vertices[self.triangles[:, k]] - self.vertices[self.triangles[0, 0]] for k in range(3))
+        return float(dot(a, np.cross(b, c)).sum() / 6.0)
+
+    def refuse_unsound(self, label: str) -> None:
+        """InputError OPEN_MESH, NON_MANIFOLD or INSIDE_OUT with a place, unless the mesh bounds a solid."""
+        edges = Edges(self.triangles)
+        for wrong, code, what, cure in (
+            (edges.count == 1, "OPEN_MESH", "the mesh has a hole", "fill holes (Mesh, Close holes) or export it again"),
+            (edges.count > 2, "NON_MANIFOLD", "three or more triangles share an edge", "repair the mesh (Mesh, Analyze)"),
+        ):
+            if wrong.any():
+                where = place(self.vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))
+                raise InputError(code, label, f"{what}: {int(wrong.sum())} edges, the first at {where}; {cure}")
+        half = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2)
+        sense = np.where(half[..., 0] < half[..., 1], 1, -1)
+        total = np.bincount(edges.of.ravel(), weights=sense.ravel(), minlength=len(edges.ends))
+        if (total != 0).any():
+            where = place(self.vertices[edges.ends[np.argmax(total != 0)]].mean(axis=0))
+            raise InputError(
+                "INSIDE_OUT", label, f"neighbouring triangles face opposite ways, for instance at {where}; turn them alike "
+                "(Mesh, Harmonize normals)",
+            )
+        if self.volume <= 0.0:
+            raise InputError(
+                "INSIDE_OUT", label, f"the solid is turned inside out (volume {self.volume:.4g} mm3, near "
+                f"{place(self.vertices.mean(axis=0))}); flip its normals (Mesh, Flip normals)",
+            )
+
+    def searched(self, edge: float) -> Search:
+        """Prepared for points about as far apart as `edge` mm."""
+        area = 0.5 * np.linalg.norm(self.normals, axis=1).sum()
+        longest = max(2.0 * edge, float(np.sqrt(area / 30000.0)))
+        while True:
+            # each triangle owns its pieces: pieces of one facet are told alike, and no edge is flipped
+            made = refined(
+                self.vertices, self.triangles, np.arange(len(self.triangles)), longest, lambda points, *_: points, MOST
+            )
+            if made is not None:
+                return Search(self, *made)
+            longest *= 2.0
+
+    @cached_property
+    def normals(self) -> Array:
+        """Twice the area of each triangle along its outer normal, (m, 3)."""
+        a, b, c = (self.vertices[self.triangles[:, k]] for k in range(3))
+        normals: Array = np.cross(b - a, c - a)
+        return normals
+
+    @cached_property
+    def units(self) -> Array:
+        """Outer unit normals (m, 3), nothing for triangles without an area."""
+        length = np.linalg.norm(self.normals, axis=1, keepdims=True)
+        units: Array = np.where(length > 1e-10, self.normals / np.maximum(length, 1e-300), 0.0)
+        return units
+
+
+class Search:
+    """Nearest triangles of a solid, from a finer division of it. The side is told by pseudo-normals (Baerentzen 2005)."""
+
+    def __init__(self, solid: SolidMesh, vertices: Array, triangles: Index, owner: Index) -> None:
+        self.solid, self.vertices = solid, vertices
+        fine = SolidMesh(vertices, triangles)
+        sound = np.linalg.norm(fine.normals, axis=1) > 1e-10
+        self.triangles, self.owner, units = triangles[sound], owner[sound], fine.units[sound]
+        corner = vertices[self.triangles]
+        self.tree = cKDTree(corner.mean(axis=1))
+        self.units = units
+        at_vertex = np.zeros_like(vertices)
+        for k in range(3):
+            one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
+            angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
+            np.add.at(at_vertex, self.triangles[:, k], angle[:, None] * units)
+        self.at_vertex = at_vertex
+        edges = Edges(self.triangles)
+        at_edge = np.zeros((len(edges.ends), 3))
+        for k in range(3):
+            np.add.at(at_edge, edges.of[:, k], units)
+        self.at_edge, self.edge_of = at_edge, edges.of
+
+    def signed(self, points: Array) -> tuple[Array, Array, Index]:
+        """Distance (k,) of points (k, 3), negative inside, the nearest points (k, 3) and triangles (k,) of the solid."""
+        count = min(NEAREST, len(self.triangles))
+        near = np.asarray(self.tree.query(points, k=count)[1]).reshape(len(points), count)
+        corner = self.vertices[self.triangles[near]]
+        distance, share = closest(corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None])
+        row, best = np.arange(len(points)), np.argmin(distance, axis=1)
+        triangle, distance, share = near[row, best], distance[row, best], share[row, best]
+        foot = np.einsum("nk,nkc->nc", share, self.vertices[self.triangles[triangle]])
+        small = share < 1e-9
+        normal = self.units[triangle].copy()
+        on_edge = np.flatnonzero(small.sum(axis=1) == 1)
+        normal[on_edge] = self.at_edge[self.edge_of[triangle[on_edge], (np.argmax(small[on_edge], axis=1) + 1) % 3]]
+        on_vertex = np.flatnonzero(small.sum(axis=1) == 2)
+        normal[on_vertex] = self.at_vertex[self.triangles[triangle[on_vertex], np.argmin(small[on_vertex], axis=1)]]
+        side = np.where(dot(points - foot, normal) < 0.0, -1.0, 1.0)
+        return side * distance, foot, self.owner[triangle]
+
+
