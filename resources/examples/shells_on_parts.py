@@ -83,13 +83,13 @@ def half_shell_pipe() -> Any:
 
 
 def branched_tube() -> Any:
-    """A tube and a branch that leaves it at 55 deg, rounded where they meet: the skin of both, without its ends."""
-    angle = math.radians(55.0)
+    """A tube and a branch that leaves it at 50 deg, rounded where they meet: the skin of both, without its ends."""
+    angle = math.radians(50.0)
     along = Vector(math.sin(angle), 0, math.cos(angle))
-    both = Part.makeCylinder(18.0, 84.0, Vector(0, 0, -4)).fuse(Part.makeCylinder(12.0, 56.0, Vector(0, 0, 26), along))
+    both = Part.makeCylinder(18.0, 86.0, Vector(0, 0, -4)).fuse(Part.makeCylinder(12.0, 84.0, Vector(0, 0, 22), along))
     both = both.removeSplitter()
     meeting = [edge for edge in both.Edges if edge.Curve.TypeId == "Part::GeomBSplineCurve"]
-    faces = [face for face in both.makeFillet(6.0, meeting).Faces if face.Surface.TypeId != "Part::GeomPlane"]
+    faces = [face for face in both.makeFillet(8.0, meeting).Faces if face.Surface.TypeId != "Part::GeomPlane"]
     return _moved(Part.Shell(faces), BRANCH_AT)
 
 

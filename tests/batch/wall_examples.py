@@ -63,7 +63,7 @@ EXAMPLES = (
     Example("walls/half-shell-on-rod", "walls/half shell.step", 4.0, rod(40.0, -30.0, 30.0), has_cell=True),
     # 240 flats on a radius of 32 mm
     Example("walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=2.8e-3),
-    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 3.0, plate),
+    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate),
 )
 
 
