@@ -117,7 +117,8 @@ def test_what_an_earlier_longer_export_left_is_removed_and_nothing_else(workshop
     longer = workshop.files("out")
     assert "program/first/first02/first02.pjx" in longer
     theirs = {
-        "program/first/notes.txt": b"mine", "program/first/first02/more.pgx": b"mine", "program/other/other.pjx": b"<Project/>",
+        "program/first/notes.txt": b"mine", "program/first/first02/more.pgx": b"mine",
+        "program/other/other.pjx": b"<Project/>",
         "program/other/start.pgx": b"begin\n// Limits: none\nend", "program/first/firstly/start.pgx": b"mine",
     }
     for name, content in theirs.items():
