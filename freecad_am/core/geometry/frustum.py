@@ -45,6 +45,17 @@ class Frustum:
         near: Mask = (side - self.radius - self.slope * x < size * lean) & (x > self.low - size) & (x < self.high + size)
         return near
 
+    def crossed(self, normal: Array, level: Array, axis: Array) -> Mask:
+        """Whether planes, unit normals (k, 3) and heights (k,) over the tip, cut the solid."""
+        rise = np.einsum("ij,ij->i", normal, axis)
+        lean = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
+        low, high = self.low * rise, self.high * rise
+        small, large = (self.radius + self.slope * self.low) * lean, (self.radius + self.slope * self.high) * lean
+        above = np.maximum(low + small, high + large)
+        below = np.minimum(low - small, high - large)
+        cut: Mask = (level < above) & (level > below)
+        return cut
+
     def holds(self, offset: Array, axis: Array) -> Mask:
         """Whether points are inside."""
         x = np.einsum("ij,ij->i", offset, axis)

@@ -29,6 +29,10 @@ class Obstacles:
         self.corners = corners
         self.since = np.full(len(corners), -1, dtype=np.intp) if since is None else since
         self._levels = [self._balls(1)]
+        if corners.shape[1] == 3:
+            normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            size = np.linalg.norm(normal, axis=1)
+            self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
         while len(self._levels[-1][1]) > 2 * BRANCH:
             self._levels.append(self._balls(BRANCH ** len(self._levels)))
 
@@ -80,6 +84,11 @@ class Obstacles:
             q, n = query[first : first + PAIRS], node[first : first + PAIRS]
             left = ~found[q]
             q, n = q[left], n[left]
+            if self.corners.shape[1] == 3:
+                normal = self._normal[n]
+                level = np.einsum("ij,ij->i", normal, self.corners[n, 0] - tip[q])
+                cut = nozzle.crossed(normal, level, axis[q])
+                q, n = q[cut], n[cut]
             offset = self.corners[n] - tip[q, None]
             if self.corners.shape[1] == 2:
                 meets = nozzle.meets_segments(offset[:, 0], offset[:, 1], axis[q])

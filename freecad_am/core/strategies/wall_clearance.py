@@ -37,6 +37,7 @@ RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and can
 LARGEST = np.radians(90.0)  # tilt that is tried
 LEVELS = 4  # of finer candidates, each of half the distance
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
+FAR = 4.0  # times SPREAD, beyond which nothing is left of a tilt
 COARSE = 0.2  # mm of height left out more over bodies: their triangles are off the true faces by half of that
 CAP = 1e-9  # rad
 
@@ -87,7 +88,7 @@ def kept_clear(
         return toolpath
     rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
     closed = np.array([beads[k].closed for k in blocked])
-    bench = _Bench(room, rows, closed, asked, plane)
+    bench = _Bench(room, rows, closed, asked, plane, free)
     offset, stuck = bench.coarse()
     for level in range(1, LEVELS + 1):
         offset = bench.finer(offset, RING / 2.0**level, level)
@@ -145,7 +146,7 @@ class _Bench:
     without twist; one of them is 0 where the tool must stay in a plane.
     """
 
-    def __init__(self, room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None) -> None:
+    def __init__(self, room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask) -> None:
         self.room, self.closed, self.plane = room, closed, plane
         self.flat = np.concatenate(rows)
         self.asked = asked
@@ -155,6 +156,10 @@ class _Bench:
         points = room.points[self.flat]
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
         self.step[self.begin + self.counts - 1] = 0.0
+        self.near = np.concatenate([
+            _near(points[b : b + n], ~free[row], loop)
+            for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
+        ])
 
     def axes(self, at: Index, offset: Array) -> Array:
         """Tool axes (k, 3) of tilts (k, 2) at points numbered `at`, all of them among those of the blocked beads."""
@@ -178,14 +183,14 @@ class _Bench:
     def coarse(self) -> tuple[Array, Mask]:
         """Tilts (m, 2) on the cones, and the points (m,) that have none that is clear; those hinder no one."""
         states = np.zeros((1, 2))
-        allowed = self._clear(np.arange(len(self.flat)), states)
+        allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
         bead = np.repeat(np.arange(len(self.counts)), self.counts)
         pending = np.ones(len(self.counts), dtype=bool)
         for number in range(1, round(LARGEST / RING) + 1):
             ring = self._ring(number)
             states = np.concatenate([states, ring])
             more = np.zeros((len(self.flat), len(ring)), dtype=bool)
-            some = np.flatnonzero(pending[bead])
+            some = np.flatnonzero(pending[bead] & self.near)
             more[some] = self._clear(some, ring)
             # one ring more than the first that frees every point, so that there is a way round
             had = np.logical_and.reduceat(self._both_ends(allowed).any(axis=1), self.begin)
@@ -208,7 +213,10 @@ class _Bench:
         offsets = offset[:, None] + grid
         here = len(grid) // 2
         offsets[:, here] = offset
-        allowed = self._both_ends(self._clear(np.arange(len(offset)), offsets))
+        allowed = np.zeros(offsets.shape[:2], dtype=bool)
+        some = np.flatnonzero(self.near)
+        allowed[some] = self._clear(some, offsets[some])
+        allowed = self._both_ends(allowed)
         allowed[:, here] = True
         # each time another point of a closed bead stays as it is
         anchor = (self.counts - 1) * (turn % 3) // 3
@@ -269,6 +277,16 @@ class _Bench:
             if self.closed[k]:
                 chosen[self.begin[k] + count - 1] = chosen[self.begin[k]]
         return chosen
+
+
+def _near(points: Array, blocked: Mask, closed: bool) -> Mask:
+    """Which points of a bead are within reach, along it, of a tilt at the blocked ones."""
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    apart = np.abs(length[:, None] - length[None, blocked])
+    if closed:
+        apart = np.minimum(apart, length[-1] - apart)
+    near: Mask = apart.min(axis=1, initial=np.inf) <= FAR * SPREAD
+    return near
 
 
 def _sides(asked: Array, plane: Array | None) -> Array:
