@@ -15,16 +15,18 @@ import numpy as np
 
 from freecad_am.core.geometry.implicit import Round
 from freecad_am.core.geometry.surface import Torus
-from freecad_am.core.slicing import constant_distance
+from freecad_am.core.slicing import constant_distance, fronts
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.wall_layer import WallLayer, even_grid
+from tests.core.patch_walls import bend
 
 from rows import Row
 
 HEIGHT, POINTS, TOLERANCE, ROUNDS = 1.0, 360, 1e-4, 3
 SAMPLED, EVERY = (10, 40, 70), 6
 DOUBLED = (720, 1440, 2880)  # points of a layer whose time per point is compared with that before
-LINEAR = 0.8  # a doubling may cost up to 2 / 0.8 times as much, for what a shared machine does to a time
+FRONTS = (5.0, 2.5)  # mm, layer heights
+LINEAR = 0.7  # what a shared machine does to a time is forgiven; quadratic time would show as 0.5
 REFINED = 4
 
 
@@ -39,7 +41,7 @@ def run() -> list[Row]:
         times.append(perf_counter() - start)
     peer = np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1)
     name = f"constant distance, {len(layers)} layers of {POINTS} points, {TOLERANCE:g} mm, against bisection"
-    return [Row(name, float(np.median(times)), float(peer), "s", 50.0), *_doublings(torus)]
+    return [Row(name, float(np.median(times)), float(peer), "s", 50.0), *_doublings(torus), _fronts()]
 
 
 def _doublings(torus: Torus) -> list[Row]:
@@ -60,6 +62,22 @@ def _doublings(torus: Torus) -> list[Row]:
             1e6 * best[i], "us", LINEAR)
         for i, points in enumerate(DOUBLED)
     ]
+
+
+def _fronts() -> Row:
+    """Time per point of fronts over the mesh of the same bend, layers half as far apart on edges half as long."""
+    pipe = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
+    best = []
+    for height in FRONTS:
+        wall = bend(pipe, 0.3, 0.5 * np.pi, 0.25 * height)
+        times = []
+        for _ in range(ROUNDS):
+            start = perf_counter()
+            layers = fronts.layers(wall, height).fronts
+            times.append((perf_counter() - start) / sum(len(front.w) for layer in layers for front in layer))
+        best.append(min(times))
+    name = f"fronts, time per point of layers {FRONTS[1]:g} mm apart against {FRONTS[0]:g} mm (4 times the points)"
+    return Row(name, 1e6 * best[1], 1e6 * best[0], "us", LINEAR)
 
 
 def _bisected(torus: Torus, below: WallLayer, above: WallLayer) -> float:

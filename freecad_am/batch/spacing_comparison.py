@@ -34,8 +34,13 @@ _MOTION = (
     "condition_min", "range_per_layer_max_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3",
     "speed_ratio_max",
 )
-_NO_PARAMETER = "the wall is not one surface with one closed parameter, along which such layers are cut"
-_NOT_PLANNED = "walls of several faces are cut by one method at a time: choose it as strategy.spacing"
+_LINES = "the wall is not one surface with one closed parameter, whose lines such layers follow"
+_REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut so
+    "iso-parameter": _LINES,
+    NORMAL: "the wall is not a tube of one surface closed around, whose sections have a centreline",
+    "constant-distance": "not planned; choose it as strategy.spacing",
+    "smooth": _LINES,
+}
 
 
 def compare(wall: Any, job: Job) -> tuple[Compared | Refused, ...]:
@@ -44,10 +49,7 @@ def compare(wall: Any, job: Job) -> tuple[Compared | Refused, ...]:
         return ()
     if isinstance(wall, SurfaceWall):
         return wall_comparison.compare(wall, job.strategy)
-    others = [method for method in METHODS if method != job.strategy.spacing]
-    return tuple(
-        Refused(method, _NO_PARAMETER if method in (NORMAL, "iso-parameter") else _NOT_PLANNED) for method in others
-    )
+    return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != job.strategy.spacing)
 
 
 def rows(
