@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 
 from freecad_am import verify as verification
+from freecad_am.core.geometry import frames
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.opw import branch_name
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.planning.program import build
 from freecad_am.core.program import DepositOff, DepositOn, LayerStart, Moves, Program
 from freecad_am.posts import fanuc
 
@@ -317,3 +321,24 @@ def test_joint_programs_with_the_tool_on_the_robot_pass(table):
     result = verify(cell, motion, joint, fanuc.write(joint))
     assert codes(result) <= {"VERIFY_BETWEEN"}  # joint moves do not run straight; points would be added
     assert result.at_points_mm <= result.bound_mm
+
+
+def test_the_program_origin_moves_the_user_frame_and_nothing_else(table):
+    """Another origin: other positions in the text, the same in space once the user frame of the remarks is set."""
+    cell, motion, _ = table
+    spots = []
+    for origin in ("auto", (10.0, -20.0, 5.0, 0.2, -0.1, 0.4)):
+        parameters = ProgramParameters(motion="cartesian", origin=origin)
+        program = build(motion, cell, ProcessParameters(), parameters, "origin")
+        files = fanuc.write(program)
+        assert verify(cell, motion, program, files).issues == ()
+        read = fanuc.read(files)
+        user = frames.bryant(program.station)
+        spots.append((read.position, read.position @ user[:3, :3].T + user[:3, 3]))
+        told = b"User frame" if origin != "auto" else b"Platform"
+        assert told in files["ORIGIN.LS"]
+    assert np.abs(spots[0][0] - spots[1][0]).max() > 5.0
+    assert np.abs(spots[0][1] - spots[1][1]).max() < 2e-3
+    # a user frame that is not the one told of is caught
+    wrong = dataclasses.replace(program, station=(*program.station[:2], program.station[2] + 0.1, *program.station[3:]))
+    assert "VERIFY_POINT" in codes(verify(cell, motion, wrong, files))
