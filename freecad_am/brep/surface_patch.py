@@ -62,10 +62,9 @@ def _spline(face: Any, where: str) -> Patch:
             ) from None
     else:
         surface = surface.copy()
-    if surface.isUPeriodic():
-        surface.setUNotPeriodic()
-    if surface.isVPeriodic():
-        surface.setVNotPeriodic()
+    if surface.isUPeriodic() or surface.isVPeriodic():
+        # segment makes it not periodic with its ends repeated, which setUNotPeriodic does not do of a single span
+        surface.segment(*surface.bounds())
     weights = np.array(surface.getWeights(), dtype=float)
     points = np.array([[tuple(point) for point in row] for row in surface.getPoles()])
     poles = np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
