@@ -191,8 +191,10 @@ def _spacings(content: Content) -> str:
     if both:
         both = (f'<figure style="margin-top:10px">{both}<figcaption>Both paths: along the lines up the wall, and at a '
                 "constant distance from the layer below.</figcaption></figure>")
-    names = [row["method"] + (" (planned)" if row["planned"] else "") for row in rows]
-    table = _table([("", names)] + [(word, [_figure(row[key]) for row in rows]) for key, word in _SPACING])
+    cut = [row for row in rows if row["layers"] is not None]
+    names = [row["method"] + (" (planned)" if row["planned"] else "") for row in cut]
+    told = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]
+    table = _table([("", names)] + [(word, [_figure(row[key]) for row in cut]) for word, key in told])
     reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
     return (
         '<h2>What spacing costs</h2><p class="sub">Distance of each point to the nearest point of the layer below, around '

@@ -21,6 +21,7 @@ from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.task import Task
+from freecad_am.core.process.spacing import SMOOTH
 from freecad_am.core.strategies import wall_comparison
 from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath
@@ -62,9 +63,23 @@ def rows(
         spread = report.spread(distances)
         known[own] = _empty(own) | {
             "layers": len(toolpath.layers), "min_mm": spread["min"], "mean_mm": spread["mean"], "max_mm": spread["max"],
-            "length_mm": toolpath.length,
+            "length_mm": toolpath.length, **_corners(toolpath),
         }
     return [row | {"planned": method == own} for method, row in sorted(known.items(), key=lambda item: item[0] != own)]
+
+
+def _corners(toolpath: Toolpath) -> dict[str, Any]:
+    """How many layers have corners, and the sharpest, by the tangents of their beads; None where those are not known."""
+    sharpest: dict[int, float] = {}
+    for layer, _, bead in toolpath:
+        if bead.tangents is None:
+            return {}
+        turn = np.arccos(np.clip((bead.tangents[:, 0] * bead.tangents[:, 1]).sum(axis=1), -1.0, 1.0))
+        inner = turn if bead.closed else turn[1:-1]
+        sharpest[layer] = max(sharpest.get(layer, 0.0), float(inner.max(initial=0.0)))
+    cornered = sum(turn > SMOOTH for layer, turn in sharpest.items() if layer)  # the first is the substrate's
+    most = max((turn for layer, turn in sharpest.items() if layer), default=0.0)
+    return {"cornered_layers": int(cornered), "corner_max_deg": float(np.degrees(most)) if most > SMOOTH else 0.0}
 
 
 def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParameters) -> dict[str, Any]:

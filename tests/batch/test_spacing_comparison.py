@@ -88,8 +88,24 @@ def test_walls_of_several_faces_say_what_does_not_apply():
     first, *others = spacing_comparison.rows(found, job, toolpath, [np.full(73, 2.0)] * 2)
     assert (first["method"], first["planned"], first["layers"]) == ("constant-distance", True, 3)
     assert [first["min_mm"], first["max_mm"], first["reason"]] == [2.0, 2.0, None]
+    assert first["cornered_layers"] is None  # nobody told the tangents
     assert {row["method"] for row in others} == set(METHODS) - {"constant-distance"}
     assert all(row["reason"] and row["layers"] is None and not row["planned"] for row in others)
+
+
+def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
+    bent = np.radians(40.0)
+    points = np.array([[-5.0, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0 * np.cos(bent), 5.0 * np.sin(bent), 0.0]])
+    up, path = np.tile([0.0, 0.0, 1.0], (3, 1)), np.arange(3.0)
+    before, after = np.array([1.0, 0.0, 0.0]), np.array([np.cos(bent), np.sin(bent), 0.0])
+    tangents = np.array([[before, before], [before, after], [after, after]])
+    layers = tuple(
+        Layer((Bead(points + [0.0, 0.0, 2.0 * k], up, up, path, np.ones(3), False, tangents=tangents),)) for k in range(3)
+    )
+    toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
+    job = SimpleNamespace(strategy=SurfaceParameters(layer_height=2.0))
+    first = spacing_comparison.rows(spacing_comparison.compare(object(), job), job, toolpath, [np.full(3, 2.0)] * 2)[0]
+    assert first["cornered_layers"] == 2 and first["corner_max_deg"] == pytest.approx(40.0)
 
 
 def test_parts_of_revolution_are_not_compared():
