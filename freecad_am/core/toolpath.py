@@ -136,6 +136,41 @@ class Bead:
             tangents=None if self.tangents is None else np.insert(self.tangents, at, tangents[:, None], axis=0),
         )
 
+    def run_on(self, overlap: float) -> Bead:
+        """A closed bead with its beginning repeated over `overlap` mm, at most once round; then it is open."""
+        if overlap <= 0.0 or not self.closed:
+            return self
+        along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))]
+        overlap = min(overlap, float(along[-1]))
+        count = max(1, int(np.searchsorted(along, overlap)))
+        share = float((overlap - along[count - 1]) / (along[count] - along[count - 1]))
+
+        def again(column: Array) -> Array:
+            end = column[count - 1] + share * (column[count] - column[count - 1])
+            return np.concatenate([column[1:count], [end]])
+
+        def directions(column: Array) -> Array:
+            repeated = again(column)
+            return np.concatenate([column, repeated / np.linalg.norm(repeated, axis=1, keepdims=True)])
+
+        position = again(self.points)
+        last, tangent = self.outline.at(np.array([count - 1]), share)
+        position[-1] = last[0]
+        turn = self.parameter[-1] - self.parameter[0]
+        return dataclasses.replace(
+            self, points=np.concatenate([self.points, position]), build=directions(self.build), tool=directions(self.tool),
+            parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
+            speed=np.concatenate([self.speed, self.speed[1 : count + 1]]), closed=False,
+            width=None if self.width is None else np.concatenate([self.width, again(self.width)]),
+            tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
+        )
+
+    def _tangents_run_on(self, count: int, last: Array) -> Array:
+        """Tangents of the bead gone on to its point `count`, but ending along `last` (1, 3)."""
+        assert self.tangents is not None
+        seam = np.stack([self.tangents[-1, 0], self.tangents[0, 1]])[None]
+        return np.concatenate([self.tangents[:-1], seam, self.tangents[1:count], np.repeat(last[:, None], 2, axis=1)])
+
     def part(self, rows: slice) -> Bead:
         """Some of its points, two or more in a row, as an open bead of their own."""
         columns = {

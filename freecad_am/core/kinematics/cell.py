@@ -26,7 +26,7 @@ from .machine import Machine
 
 Array = NDArray[np.float64]
 
-PART_ON_ROBOT, TOOL_ON_ROBOT = "part-on-robot", "tool-on-robot"
+PART_ON_ROBOT, TOOL_ON_ROBOT, ROTARY_TABLE = "part-on-robot", "tool-on-robot", "rotary-table"
 
 UP = (0.0, 0.0, 1.0)
 
@@ -38,8 +38,9 @@ _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 class Cell:
     """A resolved cell. Frames are (4, 4) in mm.
 
-    station: in base_link, the deposition point (part on robot) or the fixed platform (tool on robot).
-    carried: on the flange, the platform (part on robot) or the nozzle's tip (tool on robot).
+    station: in base_link, the deposition point (part on robot, rotary table) or the fixed platform (tool on robot).
+    carried: on the flange, the platform (part on robot, rotary table) or the nozzle's tip (tool on robot). A machine with
+    rotary axes is a chain seen from the torch, so that the part hangs on its flange wherever its axes are.
     mount: in part coordinates, the frame that sits on the platform.
     branch: index of the branch (opw.branch_index), or None when all are to be searched.
     """
@@ -69,6 +70,11 @@ class Cell:
         stands = frames.pose(np.swapaxes(upright, 1, 2), points)
         return PoseFrames(self.station @ stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
 
+    def on_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
+        """Points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries it."""
+        seen = self.carried @ frames.inverse(self.mount)
+        return position @ seen[:3, :3].T + seen[:3, 3], tool @ seen[:3, :3].T
+
     def flange_poses(self, position: Array, tool: Array, phi: Array) -> Array:
         """(n, 4, 4) poses of the flange in base_link for n points with the rotation phi (n,) about the tool axis."""
         return self.pose_frames(position, tool).at(phi)
@@ -78,7 +84,7 @@ class Cell:
 
         flange: (n, 4, 4) in base_link.
         """
-        if self.setup == PART_ON_ROBOT:
+        if self.setup != TOOL_ON_ROBOT:
             platform = flange @ self.carried
             seen = frames.inverse(platform) @ self.station
         else:
@@ -88,7 +94,7 @@ class Cell:
 
     def deposition_point(self, flange: Array) -> Array:
         """(n, 3) mm, the point of deposit in base_link for the flange poses (n, 4, 4)."""
-        if self.setup == PART_ON_ROBOT:
+        if self.setup != TOOL_ON_ROBOT:
             return np.broadcast_to(self.station[:3, 3], (len(flange), 3))
         tip: Array = (flange @ self.carried)[:, :3, 3]
         return tip
@@ -169,14 +175,20 @@ def resolve(
     feature_frame: (4, 4) the feature's own frame in part coordinates; it sits on the platform when `mount` is
     'feature' (the default for parts of revolution), else the frame of the part file does.
 
-    Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET (set-ups to come), NO_CLOSED_FORM.
+    Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET (set-ups to come), WRONG_SETUP (a robot as a
+    table or the other way), NO_CLOSED_FORM.
     """
-    if parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
+    if parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT, ROTARY_TABLE):
         raise InputError(
-            "NOT_YET", "cell.setup", f"{parameters.setup} cannot be planned yet; use {PART_ON_ROBOT} or {TOOL_ON_ROBOT}"
+            "NOT_YET", "cell.setup", f"{parameters.setup} cannot be planned yet; use {PART_ON_ROBOT}, {TOOL_ON_ROBOT} or "
+            f"{ROTARY_TABLE}",
         )
     machine = machines.load(parameters.machine, tuple(folders))
-    if machine.opw is None:
+    if machine.is_table != (parameters.setup == ROTARY_TABLE):
+        kind, wanted = ("has sliding axes", ROTARY_TABLE) if machine.is_table else ("is a robot", f"{PART_ON_ROBOT} or "
+                                                                                    f"{TOOL_ON_ROBOT}")
+        raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
+    if machine.opw is None and not machine.is_table:
         raise InputError(
             "NO_CLOSED_FORM", "cell.machine",
             f"{machine.title} has no spherical wrist; choose a robot that has one (see `freecad-am machines`)",
@@ -184,12 +196,14 @@ def resolve(
     mount = parameters.mount if parameters.mount != "auto" else ("feature" if family == "revolution" else "part")
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
-    carried = platform_pose if parameters.setup == PART_ON_ROBOT else parameters.nozzle.tool
+    carried = parameters.nozzle.tool if parameters.setup == TOOL_ON_ROBOT else platform_pose
+    # the torch of a machine with rotary axes is where its chain begins
+    station = np.eye(4) if machine.is_table else frames.bryant(parameters.deposition_point)
     return Cell(
         machine=machine,
         limits=machine.limits(parameters.limits),
         setup=parameters.setup,
-        station=machine.base @ frames.bryant(parameters.deposition_point),
+        station=machine.base @ station,
         carried=frames.bryant(carried),
         mount=np.array(feature_frame) if mount == "feature" else np.eye(4),
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),

@@ -45,6 +45,12 @@ class FiveAxis:
         object.__setattr__(self, "turning", tuple(np.flatnonzero(~slides).tolist()))
         object.__setattr__(self, "sliding", tuple(np.flatnonzero(slides).tolist()))
 
+    @property
+    def pole(self) -> Array:
+        """Unit vector (3,) on the flange along the turning axis next to it: a tool there, or against it, leaves it free."""
+        _, second, source, _ = self._pair(np.eye(3), np.array([0.0, 0.0, 1.0]))
+        return np.asarray(source @ second)
+
     def turns(self, tools: Array, torch: Array) -> rotary_pair.Turns:
         """The turns that bring unit vectors tools (n, 3) on the flange to the unit vector torch (3,) in base_link."""
         first, second, source, target = self._pair(tools, torch)

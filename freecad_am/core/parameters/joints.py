@@ -49,6 +49,14 @@ class JointParameters:
     max_iterations: int = f.parameter(
         1000, f.COUNT, "Iterations after which the optimiser gives up on a layer.", low=1, high=1_000_000, advanced=True
     )
+    lock: str = f.parameter(
+        "none", f.CHOICE,
+        "Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).",
+        choices=("none", "first", "second"),
+    )
+    lock_at: float | str = f.parameter(
+        "auto", f.ANGLE, "Where the locked axis stands; auto: where the largest angle left is least.", words=("auto",)
+    )
     compare: tuple[str, ...] = f.parameter((), f.TEXT, "Further methods planned for the comparison of the report.")
 
     def __post_init__(self) -> None:

@@ -49,7 +49,7 @@ class JointPath:
 
     method: str
     objective: str
-    branch: tuple[str, str, str]
+    branch: tuple[str, ...]  # none of a machine with rotary axes
     limits: str
     beads: tuple[BeadPath, ...]
     issues: tuple[Issue, ...]

@@ -20,47 +20,24 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
 
     The rotation goes on from where it has come to, and the joints are those it then takes.
     """
-    bead = path.bead
-    if overlap <= 0.0 or not bead.closed or not path.reachable:
+    if overlap <= 0.0 or not path.bead.closed or not path.reachable:
         return path
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))])
-    overlap = min(overlap, float(along[-1]))
-    count = max(1, int(np.searchsorted(along, overlap)))
-    share = (overlap - along[count - 1]) / (along[count] - along[count - 1])
+    bead, n = path.bead.run_on(overlap), len(path.bead)
+    fresh = slice(n, None)
+    share = (bead.parameter - bead.parameter[0])[fresh] - (path.bead.parameter[-1] - path.bead.parameter[0])
 
-    def again(column: Array, on: float = 0.0) -> Array:
-        end = column[count - 1] + share * (column[count] - column[count - 1])
-        return np.concatenate([column[1:count], [end]]) + on
+    def again(column: Array) -> Array:
+        since = path.bead.parameter - path.bead.parameter[0]
+        return np.asarray(np.interp(share * np.sign(since[-1]), since * np.sign(since[-1]), column))
 
-    def directions(column: Array) -> Array:
-        repeated = again(column)
-        return np.asarray(repeated / np.linalg.norm(repeated, axis=1, keepdims=True))
-
-    position, tool = again(bead.points), directions(bead.tool)
-    last, along_last = bead.outline.at(np.array([count - 1]), float(share))
-    position[-1] = last[0]
-    phi = again(path.phi, float(path.phi[-1] - path.phi[0]))
-    flange = task.cell.flange_poses(position, tool, phi)
+    phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
+    flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi)
     joints = _counted_from(path.joints[-1], task.inverse(flange))
-    longer = dataclasses.replace(
-        bead, points=np.concatenate([bead.points, position]), tool=np.concatenate([bead.tool, tool]),
-        build=np.concatenate([bead.build, directions(bead.build)]),
-        parameter=np.concatenate([bead.parameter, again(bead.parameter, bead.parameter[-1] - bead.parameter[0])]),
-        speed=np.concatenate([bead.speed, bead.speed[1 : count + 1]]), closed=False,
-        width=None if bead.width is None else np.concatenate([bead.width, again(bead.width)]),
-        tangents=None if bead.tangents is None else _run_on(bead.tangents, count, along_last),
-    )
     return dataclasses.replace(
-        path, bead=longer, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
+        path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),
         condition=np.concatenate([path.condition, task.condition_at(flange, joints)]),
         threshold=np.concatenate([path.threshold, again(path.threshold)]),
     )
-
-
-def _run_on(tangents: Array, count: int, last: Array) -> Array:
-    """Tangents (n, 2, 3) of a bead gone on to its point `count`, but ending along `last` (1, 3)."""
-    seam = np.stack([tangents[-1, 0], tangents[0, 1]])[None]
-    return np.concatenate([tangents[:-1], seam, tangents[1:count], np.repeat(last[:, None], 2, axis=1)])
 
 
 def _counted_from(start: Array, joints: Array) -> Array:

@@ -15,7 +15,7 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..parameters.joints import JointParameters
 from ..toolpath import Bead, Toolpath
-from . import comparison, constant, layer_by_layer, point_by_point, search, turns
+from . import comparison, constant, layer_by_layer, point_by_point, search, table, turns
 from .findings import findings
 from .joint_path import BeadPath, JointPath
 from .overlap import run_on
@@ -47,6 +47,8 @@ def plan_joints(
     """
     places = [(layer, index) for layer, index, _ in toolpath]
     beads = [bead for _, _, bead in toolpath]
+    if cell.machine.is_table:
+        return _on_table(toolpath, beads, places, cell, parameters, progress)
     joined = toolpath.family != REVOLUTION
     branches = [cell.branch] if cell.branch is not None else best_branches(beads, cell, parameters, joined)
     chosen = None
@@ -66,6 +68,18 @@ def plan_joints(
         parameters.method, parameters.objective, opw.branch_name(task.branch), cell.limits.name, tuple(paths),
         tuple(issues), comparisons,
     )
+
+
+def _on_table(
+    toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], cell: Cell, parameters: JointParameters,
+    progress: Progress,
+) -> JointPath:
+    """The same on a machine with rotary axes, which leaves nothing to optimise."""
+    longer = [bead.run_on(toolpath.overlap) for bead in beads]
+    paths, issues = table.plan(cell, longer, places, parameters, toolpath.chord_error, progress)
+    if not has_errors(issues):
+        issues += too_fast(cell, paths)
+    return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), tuple(issues))
 
 
 def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool = False) -> list[int]:
@@ -104,7 +118,7 @@ def _planned(
         issues += findings(task, path)
     if not has_errors(issues):
         paths, slowed = rings_slowed(task, paths, toolpath.layer_height)
-        issues += slowed + too_fast(task, paths)
+        issues += slowed + too_fast(task.cell, paths)
     return paths, issues
 
 
@@ -162,18 +176,19 @@ def _axis_speeds(path: BeadPath) -> Array:
     return speed
 
 
-def too_fast(task: Task, paths: Sequence[BeadPath]) -> list[Issue]:
+def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
     """An issue for every bead on which an axis would have to turn faster than it can."""
     found = []
     for path in paths:
         speed = _axis_speeds(path)
-        ratio = speed / task.cell.machine.max_speed
+        ratio = speed / cell.machine.max_speed
         point, axis = np.unravel_index(int(ratio.argmax()), ratio.shape)
         if ratio[point, axis] > 1.0:
+            unit = cell.machine.unit_values[axis]
             found.append(Issue(
                 ERROR, "SPEED",
-                f"axis {task.cell.machine.axes[axis]} would turn at {np.degrees(speed[point, axis]):.0f} deg/s, it can do "
-                f"{np.degrees(task.cell.machine.max_speed[axis]):.0f}; lower the travel speed to "
+                f"axis {cell.machine.axes[axis]} would move at {speed[point, axis] / unit:.0f} {cell.machine.units[axis]}/s, "
+                f"it can do {cell.machine.max_speed[axis] / unit:.0f}; lower the travel speed to "
                 f"{path.bead.speed[point + 1] / ratio[point, axis]:.2f} mm/s",
                 path.layer, path.index, int(point) + 1,
             ))

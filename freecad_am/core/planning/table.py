@@ -10,11 +10,11 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import frames
 from ..issues import ERROR, NOTE, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.five_axis import FiveAxis
@@ -25,11 +25,13 @@ from .joint_path import BeadPath
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
+METHOD = "five-axis"
 TURN = 2.0 * np.pi
 BETWEEN = np.array([0.25, 0.5, 0.75])
 ROUNDS = 10
 ROUNDING = 1e-6  # mm, and of directions: what rounding may leave between points
 RESERVE = math.radians(0.05)  # kept free beside a limit, as for robots; and as many mm
+AT_POLE = math.radians(0.1)  # a direction this near to the pole counts as on it, or the axis would race round to meet it
 STRAY = math.radians(0.5)  # between two points the tool may lean this far from the direction asked for
 
 
@@ -39,21 +41,32 @@ def plan(
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The axis values of all beads, with points added where axes running straight would leave them, and findings."""
     arm = FiveAxis(cell.machine.chain)
-    held = _on_flange(cell, beads)
-    lock = _lock(arm, cell, parameters, [tools for _, tools in held])
+    lock = _lock(arm, cell, parameters, [cell.on_flange(bead.points, bead.tool)[1] for bead in beads])
     paths: list[BeadPath] = []
+    strays: list[Stray] = []
     issues: list[Issue] = []
     before: Array | None = None
     for number, (bead, place) in enumerate(zip(beads, places, strict=True)):
         progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
         bead, axes, found = _bead(arm, cell, bead, lock, before, chord_error, place)
         issues += found
-        paths.append(_path(cell, bead, axes, place))
         if np.isfinite(axes).all():
             before = axes[-1]
-    if lock is not None:
-        issues.append(_residual_note(arm, cell, lock, paths))
+            bead, stray = _as_held(cell, bead, axes, place)
+            strays.append(stray)
+        paths.append(_path(cell, bead, axes, place))
+    if lock is not None and strays:
+        issues.append(_residual_note(arm, cell, lock, max(strays)))
     return paths, issues
+
+
+class Stray(NamedTuple):
+    """By what angle, rad, a tool misses the direction asked for, and where: layer, bead, point."""
+
+    angle: float
+    layer: int
+    bead: int
+    point: int
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,10 +77,6 @@ class Lock:
     angle: float
 
 
-def _on_flange(cell: Cell, beads: Sequence[Bead]) -> list[tuple[Array, Array]]:
-    return [cell.on_flange(bead.points, bead.tool) for bead in beads]
-
-
 def _lock(arm: FiveAxis, cell: Cell, parameters: JointParameters, tools: Sequence[Array]) -> Lock | None:
     """The axis that stands still and where: as asked, or where the largest residual is least."""
     if parameters.lock == "none":
@@ -75,11 +84,11 @@ def _lock(arm: FiveAxis, cell: Cell, parameters: JointParameters, tools: Sequenc
     axis = 0 if parameters.lock == "first" else 1
     if not isinstance(parameters.lock_at, str):
         return Lock(axis, parameters.lock_at)
-    directions = np.unique(np.round(np.concatenate(tools), 9), axis=0)
+    directions: Array = np.unique(np.round(np.concatenate(tools), 9), axis=0)
     torch = cell.station[:3, 2]
 
     def worst(angles: Array) -> Array:
-        return np.array([arm.locked(axis, float(a), directions, torch).residual.max() for a in angles])
+        return np.array([arm.locked(axis, a, directions, torch).residual.max() for a in angles.tolist()])
 
     low, high = -math.pi, math.pi
     for _ in range(8):  # the residual of a direction has one valley on either side: look close, then closer
@@ -100,15 +109,15 @@ def _bead(
         if not np.isfinite(axes).all():
             lost = np.flatnonzero(~np.isfinite(axes).all(axis=1))
             return bead, axes, [Issue(
-                ERROR, "UNREACHABLE", f"{len(lost)} of {len(axes)} directions cannot be turned to the torch on this machine; "
-                "tilt less, or mount the part otherwise", *place, int(lost[0]),
+                ERROR, "UNREACHABLE", f"{len(lost)} of {len(axes)} directions cannot be turned to the torch by this "
+                "machine; tilt less, or mount the part otherwise", *place, int(lost[0]),
             )]
         away, leaning = _between(cell, bead, axes)
         # with an axis locked the tool leans anyhow; that is told once for all
         off = (away > chord_error + ROUNDING) | ((leaning > STRAY) & (lock is None))
         if not off.any():
             return bead, axes, _limit_findings(cell, axes, place)
-        bead = bead.finer(np.flatnonzero(off))
+        bead = bead.halved(np.flatnonzero(off))
     return bead, axes, [Issue(
         ERROR, "NOT_STRAIGHT", f"the axes leave the bead by {away.max():.3g} mm, its direction by "
         f"{math.degrees(leaning.max()):.3g} deg between two points however many are added: near a pole; tilt away from it",
@@ -123,11 +132,17 @@ def _courses(arm: FiveAxis, cell: Cell, bead: Bead, lock: Lock | None) -> list[A
         turned = np.full((len(points), 2), lock.angle)
         turned[:, 1 - lock.axis] = np.unwrap(arm.locked(lock.axis, lock.angle, tools, cell.station[:3, 2]).angle)
         return [arm.placed(turned, points, cell.station)]
-    found = arm.turns(tools, cell.station[:3, 2])
+    found = arm.turns(_off_pole(arm.pole, tools), cell.station[:3, 2])
     turned = np.stack([found.first, found.second], axis=-1)
     for axis, free in enumerate((found.first_free, found.second_free)):
         turned[:, :, axis] = _kept(turned[:, :, axis], free)
     return [arm.placed(course, points, cell.station) for course in continuous(turned)]
+
+
+def _off_pole(pole: Array, tools: Array) -> Array:
+    """Directions (n, 3), those nearly along the pole or against it brought onto it."""
+    near = np.linalg.norm(np.cross(tools, pole), axis=1) < math.sin(AT_POLE)
+    return np.where(near[:, None], np.sign(tools @ pole)[:, None] * pole, tools)
 
 
 def continuous(turned: Array) -> list[Array]:
@@ -203,8 +218,8 @@ def _path(cell: Cell, bead: Bead, axes: Array, place: tuple[int, int]) -> BeadPa
     margin = float(np.where(np.isfinite(half), room, np.inf).min()) if np.isfinite(axes).all() else -math.inf
     moved = np.abs(np.diff(axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
     return BeadPath(
-        place[0], place[1], bead, np.zeros(count), axes, np.ones(count), np.zeros(count), float(np.linalg.norm(moved)), margin,
-        reason="closed form",
+        place[0], place[1], bead, np.zeros(count), axes, np.ones(count), np.zeros(count), float(np.linalg.norm(moved)),
+        margin, reason="closed form",
     )
 
 
@@ -223,19 +238,19 @@ def _limit_findings(cell: Cell, axes: Array, place: tuple[int, int]) -> list[Iss
     return found
 
 
-def _residual_note(arm: FiveAxis, cell: Cell, lock: Lock, paths: Sequence[BeadPath]) -> Issue:
-    worst, where = 0.0, (0, 0, 0)
-    for path in paths:
-        if not path.reachable:
-            continue
-        tool = cell.tip_in_part(cell.machine.chain.forward(path.joints))[1]
-        missed = np.arctan2(np.linalg.norm(np.cross(tool, path.bead.tool), axis=1), (tool * path.bead.tool).sum(axis=1))
-        if missed.max() > worst:
-            worst, where = float(missed.max()), (path.layer, path.index, int(missed.argmax()))
+def _as_held(cell: Cell, bead: Bead, axes: Array, place: tuple[int, int]) -> tuple[Bead, Stray]:
+    """The bead with the tool axes that it will really be laid with, and the largest angle to those asked for."""
+    tool = cell.tip_in_part(cell.machine.chain.forward(axes))[1]
+    missed = np.arctan2(np.linalg.norm(np.cross(tool, bead.tool), axis=1), (tool * bead.tool).sum(axis=1))
+    tool = tool / np.linalg.norm(tool, axis=1)[:, None]
+    return dataclasses.replace(bead, tool=tool), Stray(float(missed.max()), *place, int(missed.argmax()))
+
+
+def _residual_note(arm: FiveAxis, cell: Cell, lock: Lock, worst: Stray) -> Issue:
     name = cell.machine.axes[arm.turning[lock.axis]]
     return Issue(
         NOTE, "FOUR_AXES", f"axis {name} stands at {math.degrees(lock.angle):.4g} deg; the tool is up to "
-        f"{math.degrees(worst):.3g} deg off the direction asked for", *where,
+        f"{math.degrees(worst.angle):.3g} deg off the direction asked for", worst.layer, worst.bead, worst.point,
     )
 
 
@@ -245,10 +260,3 @@ def lifted(cell: Cell, axes: Array, point: Array, tool: Array, lift: float) -> A
     above, _ = cell.on_flange((point + lift * tool)[None], tool[None])
     return np.asarray(arm.placed(axes[None, list(arm.turning)], above, cell.station)[0])
 
-
-def turned_tool(cell: Cell, joints: Array) -> Array:
-    """The tool axes (n, 3) in the part that axis values (n, 5) really give."""
-    return cell.tip_in_part(cell.machine.chain.forward(joints))[1]
-
-
-_ = frames

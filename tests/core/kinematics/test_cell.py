@@ -95,7 +95,7 @@ def test_rz_degenerates_where_the_build_direction_is_nearly_horizontal():
 @pytest.mark.parametrize(
     ("parameters", "code"),
     [
-        ({"setup": "rotary-table"}, "NOT_YET"),
+        ({"setup": "tool-on-robot+positioner"}, "NOT_YET"), ({"setup": "rotary-table"}, "WRONG_SETUP"),
         ({"machine": "fanuc-arcmate120id"}, "UNKNOWN_MACHINE"),
         ({"limits": "pape"}, "UNKNOWN_LIMITS"),
     ],

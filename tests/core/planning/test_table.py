@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Five-axis machines: beads held at the torch between their points too, poles passed, limits kept, speeds as asked."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.kdl.chain import KdlArm, available
+
+MACHINES = ["table-xyzac", "table-xyzbc", "head-table-xyzbc"]
+
+
+def bead(points, build, closed=False, speed=8.0):
+    build = build / np.linalg.norm(build, axis=1)[:, None]
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    return Bead(points, build, build, 2.0 * math.pi * length / length[-1], np.full(len(points), speed), closed)
+
+
+def toolpath(*beads, chord_error=0.02):
+    return Toolpath(tuple(Layer((one,)) for one in beads), np.eye(4), 2.0, chord_error, family="developable")
+
+
+def resolved(machine="table-xyzac", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0), **more):
+    parameters = CellParameters(machine=machine, setup="rotary-table", platform=platform, mount="part", **more)
+    return cells.resolve(parameters, np.eye(4), "developable")
+
+
+def around(base, distance, z, n=181, start=0.0):
+    """A closed bead all round a hub whose axis is the table's."""
+    theta = start + np.linspace(0.0, 2.0 * math.pi, n)
+    surface = base.offset(distance)
+    rho = surface.radius * (1.0 - z / surface.height)
+    points = np.stack([rho * np.cos(theta), rho * np.sin(theta), np.full(n, z)], axis=1)
+    points[-1] = points[0]
+    return bead(points, base.normals(points), True)
+
+
+def check(cell, path, chord_error=0.02):
+    """Every place between two points, driven through PyKDL: on the bead, and held as the bead says."""
+    forward = (KdlArm(cell.machine) if available() else cell.machine.chain).forward
+    for one in path.beads:
+        share = np.linspace(0.0, 1.0, 12)[:, None]
+        axes = (one.joints[:-1, None] + share * np.diff(one.joints, axis=0)[:, None]).reshape(-1, 5)
+        tip, tool = cell.tip_in_part(forward(axes))
+        start, way = one.bead.points[:-1], np.diff(one.bead.points, axis=0)
+        tip = tip.reshape(len(way), 12, 3)
+        t = np.clip(((tip - start[:, None]) * way[:, None]).sum(-1) / (way**2).sum(-1)[:, None], 0.0, 1.0)
+        assert np.linalg.norm(tip - start[:, None] - t[..., None] * way[:, None], axis=-1).max() < 1.05 * chord_error
+        at_points = cell.tip_in_part(forward(one.joints))
+        np.testing.assert_allclose(at_points[0], one.bead.points, atol=1e-8)
+        np.testing.assert_allclose(at_points[1], one.bead.tool, atol=1e-10)
+        between = tool.reshape(len(way), 12, 3)
+        straight = one.bead.tool[:-1, None] + share * np.diff(one.bead.tool, axis=0)[:, None]
+        straight /= np.linalg.norm(straight, axis=-1)[..., None]
+        assert np.degrees(np.arccos(np.clip((between * straight).sum(-1), -1, 1))).max() < 0.55
+        assert (one.joints >= cell.limits.lower).all() and (one.joints <= cell.limits.upper).all()
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_random_beads_anywhere(machine):
+    rng = np.random.default_rng(3)
+    beads = []
+    for _ in range(6):
+        t = np.linspace(0.0, 1.0, 60)[:, None]
+        a, b, c = rng.uniform(-60, 60, (3, 3))
+        lean = rng.normal(size=(2, 3)) + [0.0, 0.0, 1.5]
+        beads.append(bead(a + t * b + t * t * c, lean[0] + t * lean[1]))
+    cell = resolved(machine)
+    path = plan_joints(toolpath(*beads), cell, JointParameters())
+    assert path.feasible, [issue.message for issue in path.issues]
+    check(cell, path)
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("off", [0.0, 1e-7, 0.3])
+def test_over_the_vertical(machine, off):
+    # a bead over the top of a ball: straight through the pole, a hair beside it, and near it
+    angle = np.linspace(-0.8, 0.8, 81)
+    points = 50.0 * np.stack([np.sin(angle) * np.cos(0.4), np.sin(angle) * np.sin(0.4), np.cos(angle)], axis=1)
+    points += [0.0, off, 0.0]
+    cell = resolved(machine)
+    path = plan_joints(toolpath(bead(points, points)), cell, JointParameters())
+    if off == 0.3:  # so near the axis has to turn half round in a moment: told, with the speed that would do
+        assert [issue.code for issue in path.issues] == ["SPEED"]
+        check(cell, path)
+        return
+    assert path.feasible, [issue.message for issue in path.issues]
+    check(cell, path)
+    assert np.abs(np.diff(path.beads[0].joints, axis=0)[:, cell.machine.chain.sliding]).max() < 12.0
+    if off < 0.1:  # the tilt goes on to the other side, the table does not turn
+        turning = path.beads[0].joints[:, ~cell.machine.chain.sliding]
+        assert np.ptp(turning, axis=0).min() < 1e-5 and np.ptp(turning, axis=0).max() == pytest.approx(1.6, abs=1e-5)
+
+
+def test_round_a_hub_on_the_turning_axis_only_the_table_turns():
+    base = Developable(60.0, 200.0)
+    cell = resolved()
+    beads = [around(base, 3.0 * k, 40.0, start=0.3 * k) for k in range(4)]
+    path = plan_joints(toolpath(*beads, chord_error=0.02), cell, JointParameters())
+    assert path.feasible
+    for one in path.beads:
+        np.testing.assert_allclose(np.ptp(one.joints, axis=0)[:4], 0.0, atol=1e-8)
+        assert np.ptp(one.joints[:, 4]) == pytest.approx(2.0 * math.pi, abs=1e-9)
+    assert np.degrees(abs(path.beads[0].joints[0, 3])) == pytest.approx(73.3, abs=0.01)
+    motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
+    assert not [issue for issue in issues if issue.level == "error"]
+    # the linear axes stand still, the torch still runs at its speed along the bead
+    rows = motion.deposit & (motion.point > 0)
+    length = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+    np.testing.assert_allclose(length[rows] / motion.duration[rows], 8.0, rtol=1e-12)
+    # and between beads it is withdrawn without a turn, so it meets nothing
+    joined = np.diff(motion.joints[:, 4])
+    assert np.abs(joined).max() < math.pi
+
+
+def test_a_limited_axis_unwinds_between_beads():
+    base = Developable(60.0)
+    cell = resolved("head-table-xyzbc")
+    limits = cell.limits
+    limited = type(limits)(
+        limits.name, np.where(np.isfinite(limits.lower), limits.lower, -2.1 * math.pi),
+        np.where(np.isfinite(limits.upper), limits.upper, 2.1 * math.pi), limits.coefficients, limits.coupled_lower,
+        limits.coupled_upper, limits.labels, limits.source,
+    )
+    cell = dataclasses.replace(cell, limits=limited)
+    path = plan_joints(toolpath(*(around(base, 3.0, 5.0 * k) for k in range(5))), cell, JointParameters())
+    assert path.feasible, [issue.message for issue in path.issues]
+    check(cell, path)
+
+
+def test_a_limit_that_cannot_be_kept_is_told_with_axis_and_place():
+    base = Developable(60.0, 200.0)
+    cell = resolved(platform=(450.0, 0.0, 30.0, 0.0, 0.0, 0.0))  # far off the table's axis: it swings out of the stroke
+    path = plan_joints(toolpath(around(base, 0.0, 40.0)), cell, JointParameters())
+    assert not path.feasible
+    limit = next(issue for issue in path.issues if issue.code == "LIMIT")
+    assert "mm, its limit is" in limit.message and limit.message[:2] in ("mx", "my", "mz") and limit.point is not None
+
+
+@pytest.mark.parametrize("lock_at", ["auto", math.radians(60.0)])
+def test_four_axes(lock_at):
+    base = Developable(60.0, 200.0)
+    cell = resolved()
+    beads = [around(base, 3.0 * k, 40.0) for k in range(2)]
+    path = plan_joints(toolpath(*beads), cell, JointParameters(lock="first", lock_at=lock_at))
+    assert path.feasible
+    note = next(issue for issue in path.issues if issue.code == "FOUR_AXES")
+    tilt = path.beads[0].joints[:, 3]
+    assert np.ptp(tilt) == 0.0
+    if lock_at == "auto":
+        assert abs(math.degrees(tilt[0])) == pytest.approx(73.3, abs=0.02) and "axis a stands" in note.message
+        missed = np.arccos(np.clip((path.beads[0].bead.tool * path.beads[0].bead.build).sum(axis=1), -1, 1))
+        assert np.degrees(missed).max() < 0.02
+    else:
+        assert "13.3 deg off" in note.message
+    # what is told and verified is how the tool really stands
+    tip, tool = cell.tip_in_part(cell.machine.chain.forward(path.beads[1].joints))
+    np.testing.assert_allclose(tool, path.beads[1].bead.tool, atol=1e-12)
+    np.testing.assert_allclose(tip, path.beads[1].bead.points, atol=1e-9)
+
+
+def test_a_direction_out_of_reach_is_told():
+    cell = resolved("head-xyzab", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0))
+    points = np.stack([np.linspace(0, 20, 30), np.zeros(30), np.zeros(30)], axis=1)
+    down = np.tile([0.0, 0.05, -1.0], (30, 1))
+    path = plan_joints(toolpath(bead(points, down)), cell, JointParameters())
+    assert not path.feasible
+    assert {issue.code for issue in path.issues} <= {"LIMIT", "UNREACHABLE"}
+
+
+def test_a_robot_is_no_table_and_a_table_no_robot():
+    for setup, machine in (("rotary-table", "fanuc-arcmate120ic"), ("part-on-robot", "table-xyzac")):
+        with pytest.raises(Exception, match="use ") as caught:
+            cells.resolve(CellParameters(machine=machine, setup=setup), np.eye(4))
+        assert caught.value.code == "WRONG_SETUP"
+
+
+def test_an_overlap_runs_on():
+    cell = resolved()
+    one = around(Developable(60.0), 0.0, 20.0)
+    path = plan_joints(Toolpath((Layer((one,)),), np.eye(4), 2.0, 0.05, overlap=7.0, family="developable"), cell,
+                       JointParameters())
+    assert path.beads[0].bead.length - one.length == pytest.approx(7.0, abs=0.02)
+    assert np.ptp(path.beads[0].joints[:, 4]) > 2.0 * math.pi
