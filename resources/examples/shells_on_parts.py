@@ -16,7 +16,7 @@ TURN = 2.0 * math.pi
 UP = Vector(0, 0, 1)
 DOME_AT = Vector(-60, 35, 12)
 ELBOW_AT, ELBOW_TURNED = Vector(-85, 140, 10), 30.0  # mm, deg
-HALF_AT = Vector(40, 25, -30)
+HALF_AT = Vector(150, 90, 40)
 BRANCH_AT = Vector(10, -20, 100)
 
 

@@ -60,7 +60,7 @@ EXAMPLES = (
     Example("walls/flared-shell-on-dome", "walls/coque évasée.step", 4.0, dome),
     Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, cone),
     Example("walls/elbow-on-block", "walls/elbow.step", 4.0, sloping_block, has_cell=True),
-    Example("walls/half-shell-on-rod", "walls/half shell.step", 4.0, rod(40.0, -30.0, 30.0), has_cell=True),
+    Example("walls/half-shell-on-rod", "walls/half shell.step", 4.0, rod(150.0, 40.0, 30.0), has_cell=True),
     # 240 flats on a radius of 32 mm
     Example("walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=2.8e-3),
     Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate),
