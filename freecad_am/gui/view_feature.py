@@ -24,6 +24,11 @@ class FeatureView(StageView):
         "ShowFaces": ("App::PropertyBool", True, "Tint the faces of a wall on a substrate."),
     }
 
+    def complete(self, vobj: Any) -> None:
+        """Add the view properties a wall on a substrate lacks; there are none for parts of revolution."""
+        if hasattr(vobj.Object, "Substrate"):
+            super().complete(vobj)
+
     def scene(self, root: Any) -> None:
         self.meridian = Lines(3.0, (0.96, 0.47, 0.0))
         self.axis = Lines(2.0, (0.96, 0.47, 0.0), DASHED)
@@ -47,7 +52,7 @@ class FeatureView(StageView):
         self.axis.set(value.points(np.zeros(2), ends, np.zeros(2)), [2])
 
     def style(self, vobj: Any) -> None:
-        self.wall.faces.show(vobj.ShowFaces)
+        self.wall.faces.show(getattr(vobj, "ShowFaces", False))
 
     def getIcon(self) -> str:
         """That of its family, with a badge unless all is well."""

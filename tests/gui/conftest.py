@@ -193,7 +193,7 @@ class Person:
         """How many pixels of the 3D view, as the screen shows it, have a colour 0..255."""
         import numpy as np
 
-        self.idle(0.3)
+        self.idle(0.15)
         screen = self.widgets.QApplication.primaryScreen()
         view = self.gui.activeDocument().activeView()
         corner = view.graphicsView().mapToGlobal(self.core.QPoint(0, 0))
@@ -220,7 +220,7 @@ class Hand:
         process = subprocess.Popen(["xdotool", *map(str, words)])
         self.person.until(lambda: process.poll() is not None, "xdotool", 10)
         assert process.returncode == 0
-        self.person.idle(0.2)
+        self.person.idle(0.1)
 
     def at(self, place, *held):
         """Click at a place of the screen while keys are held."""
@@ -237,7 +237,7 @@ class Hand:
 
         seen = [middle()]
         while len(seen) < 4 or len(set(seen[-4:])) > 1:
-            self.person.idle(0.05)
+            self.person.idle(0.04)
             seen.append(middle())
         self.at(seen[-1])
 

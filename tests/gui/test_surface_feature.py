@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A wall on a substrate in the window: shown, its panel opens, and what it grows on can be chosen."""
 
+from types import SimpleNamespace
+
 import FreeCAD as App
+import numpy as np
 
 from freecad_am import api
+from freecad_am.core.geometry.patch_wall import FirstCurve
 from freecad_am.gui import stage_panel
+from freecad_am.gui.wall_nodes import WallNodes, first_curves
 
 
 def on_a_pipe(hemisphere):
@@ -53,3 +58,17 @@ def test_another_substrate_is_chosen_in_the_panel(person, hemisphere):
     person.panel_closed()
     assert feature.Substrate == block and feature.Status == "up to date"
     assert abs(api.result(feature).first[:, 2] - 20.0).max() < 1e-9
+
+
+def test_the_first_layers_of_any_wall_are_drawn(person):
+    """Closed ones join up, open ones do not, and each is a line of its own."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
+    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(12)], axis=1)
+    curves = (FirstCurve(ring, ring, ring, True), FirstCurve(ring[:5] + 3.0, ring[:5], ring[:5], False))
+    drawn = first_curves(SimpleNamespace(first=curves))
+    assert [len(curve) for curve in drawn] == [13, 5]
+    assert np.array_equal(drawn[0][-1], ring[0]) and np.array_equal(drawn[1], ring[:5] + 3.0)
+    nodes = WallNodes(pickable=True)
+    nodes.set_first(drawn)
+    for lines in (nodes.first, nodes.hidden):
+        assert list(lines.lines.numVertices.getValues()) == [13, 5] and lines.coordinates.point.getNum() == 18
