@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rapid moves and bodies around the part: what is in the way is found, and passed over where that is possible."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import has_errors
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.rapids import collisions
+
+
+def spike(at, size, name):
+    vertices = at + size * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], dtype=float)
+    return Body(name, vertices, np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]))
+
+
+@pytest.fixture(scope="module")
+def planned(sliced, cell_of):
+    toolpath = sliced("sphere", 10.0)
+    cell = cell_of(toolpath)
+    return cell, plan_joints(toolpath, cell, JointParameters())
+
+
+def travels_of(motion):
+    """The rows that end a way between two beads; the way down onto a start is none of them."""
+    rows = np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1
+    return rows[~np.append(motion.deposit[1:], False)[rows]]
+
+
+def looks(motion, cell, row, count=400):
+    """Tip and axis at many places on the way to a row."""
+    share = np.linspace(0, 1, count)[:, None]
+    joints = motion.joints[row - 1] + share * (motion.joints[row] - motion.joints[row - 1])
+    return cell.tip_in_part(cell.machine.chain.forward(joints))
+
+
+def inside(point, tip, axis, nozzle):
+    offset = point - tip
+    x = (offset * axis).sum(axis=1)
+    side = np.linalg.norm(offset - x[:, None] * axis, axis=1)
+    return ((x > 0) & (x < nozzle.length) & (side < 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * x)).any()
+
+
+def test_a_body_in_the_way_is_found_and_one_beside_it_is_not(planned):
+    cell, joint_path = planned
+    motion, issues = assemble(joint_path, cell, ProcessParameters())
+    assert not issues
+    travels = travels_of(motion)
+    for row in travels[:4]:
+        tip, axis = looks(motion, cell, row)
+        at = tip[200] + 30.0 * axis[200]
+        body = spike(at, 0.3, "clamp")
+        found = {(issue.layer, issue.bead) for issue in collisions(motion, cell, bodies=[body])}
+        wanted = {
+            (int(motion.layer[k]), int(motion.bead[k])) for k in travels
+            if any(inside(corner, *looks(motion, cell, k), cell.nozzle) for corner in body.vertices)
+        }
+        assert (int(motion.layer[row]), int(motion.bead[row])) in wanted and found == wanted
+        assert all("clamp" in issue.message for issue in collisions(motion, cell, bodies=[body]))
+        assert not collisions(motion, cell, bodies=[spike(at + [0, 0, 400], 0.3, "clamp")])
+
+
+def test_the_tool_is_withdrawn_further_to_pass_a_body_or_it_says_so(planned):
+    cell, joint_path = planned
+    motion, _ = assemble(joint_path, cell, ProcessParameters())
+    row = travels_of(motion)[0]
+    tip, axis = looks(motion, cell, row)
+    low = spike(tip[200] + 1.0 * axis[200], 0.2, "pin")
+    passed, issues = assemble(joint_path, cell, ProcessParameters(), [low])
+    assert not has_errors(issues) and [issue.code for issue in issues] == ["RAPID_LIFTED"]
+    for k in travels_of(passed):
+        assert not inside(low.vertices.mean(axis=0), *looks(passed, cell, k), cell.nozzle)
+    stack = [spike(tip[200] + height * axis[200], 12.0, "stack") for height in range(15, 400, 20)]
+    _, issues = assemble(joint_path, cell, ProcessParameters(), stack)
+    assert "RAPID_COLLISION" in [issue.code for issue in issues]
