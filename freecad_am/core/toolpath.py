@@ -41,7 +41,7 @@ class Bead:
     unwrapped angle about the axis on parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s
     of the segment that ends at the point. width: (n,) mm, or None where no bead model was used. tangents: (n, 2, 3) unit
     vectors along which the bead arrives at and leaves each point, the same but at corners; None where a strategy does
-    not know them.
+    not know them. closing: fills a gap between beads, nearer to them than a layer height.
     """
 
     points: Array
@@ -52,6 +52,7 @@ class Bead:
     closed: bool
     width: Array | None = None
     tangents: Array | None = None
+    closing: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.points)

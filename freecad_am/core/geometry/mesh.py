@@ -46,6 +46,15 @@ class Mesh:
         return edges
 
     @cached_property
+    def border(self) -> Mask:
+        """The vertices (n,) on edges with a face on one side only."""
+        pairs = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        edges, count = np.unique(pairs, axis=0, return_counts=True)
+        border = np.zeros(len(self.vertices), dtype=bool)
+        border[edges[count == 1]] = True
+        return border
+
+    @cached_property
     def longest_edge(self) -> float:
         """Length of the longest edge, mm."""
         a, b = self.vertices[self.edges].transpose(1, 0, 2)

@@ -42,13 +42,14 @@ class Curve:
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
 
-    A spiral is one layer; there it is the distance of each point to the turn before.
+    A spiral is one layer; there it is the distance of each point to the turn before. Beads that close gaps are left out.
     """
     if _is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
+    above = [[bead.points for bead in layer.beads if not bead.closing] for layer in toolpath.layers[1:]]
     return tuple(
-        distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
-        for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False)
+        distance(np.concatenate(points), curve_of(below))
+        for below, points in zip(toolpath.layers, above, strict=False) if points
     )
 
 

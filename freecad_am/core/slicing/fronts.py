@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from ..geometry.patch_wall import FirstCurve, Rim
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from ..issues import InputError
+from .closing import closing
 from .front_curve import exact, feet
 from .rims import Rims, cut_at_rims
 
@@ -110,12 +111,25 @@ def step(wall: FrontWall, rims: Rims, state: State, height: float) -> State:
     return State(fronts, state.behind | low)
 
 
-def layers(wall: FrontWall, height: float) -> list[list[SpaceCurve]]:
-    """The fronts of all layers, from the first until the wall is covered or its edges are reached."""
+class Sliced(NamedTuple):
+    """fronts: of each layer. closing: the beads that close gaps between the fronts of a layer and those of the layer below;
+    behind the last layer there may be closing beads alone."""
+
+    fronts: list[list[SpaceCurve]]
+    closing: list[list[SpaceCurve]]
+
+
+def layers(wall: FrontWall, height: float) -> Sliced:
+    """All layers, from the first until the wall is covered or its edges are reached."""
     state, rims = start(wall), Rims.of(wall.rims)
-    done = [state.fronts]
+    done, closed = [state.fronts], [list[SpaceCurve]()]
     while not state.behind.all():
-        state = step(wall, rims, state, height)
+        below = state
+        state = step(wall, rims, below, height)
+        passed = state.behind & ~below.behind
+        gaps = closing(wall, wall.mesh, [*below.fronts, *state.fronts], passed, height)
+        if state.fronts or gaps:
+            closed.append(gaps)
         if not state.fronts:
             break
         if len(done) >= MOST:
@@ -123,7 +137,7 @@ def layers(wall: FrontWall, height: float) -> list[list[SpaceCurve]]:
                 "LAYER_HEIGHT", wall.label, f"more than {MOST} layers of {height:g} mm: use a larger layer height"
             )
         done.append(state.fronts)
-    return done
+    return Sliced(done, closed)
 
 
 def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) -> Array:

@@ -20,12 +20,13 @@ FEW = 2  # of these; less is a touch at an end
 @dataclass(eq=False)
 class Piece:
     """A front. parents: the fronts of the layer below that it lies on, most of it on the first. cut: ends at an upper edge
-    of the wall."""
+    of the wall. closing: no front but a bead that closes a gap between fronts."""
 
     curve: SpaceCurve
     parents: list[Piece]
     cut: bool
     children: list[Piece] = field(default_factory=list)
+    closing: bool = False
 
 
 def tree(curves: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.patch_wall import PatchWall
+from ..geometry.space_curve import SpaceCurve
 from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
@@ -46,7 +47,7 @@ def plan(
     _refuse(strategy)
     normal = surface_directions.plane(wall, build)
     height = strategy.layer_height
-    curves = fronts.layers(wall, height)
+    curves, closing = fronts.layers(wall, height)
     distances = [
         np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
         for below, layer in zip(curves[:-1], curves[1:], strict=True)
@@ -54,7 +55,9 @@ def plan(
     issues = spacing_issues(distances, strategy) + corner_notes(curves)
     pieces = tree(curves, Rims.of(wall.rims))
     issues += events(pieces)
+    full = [len(layer) for layer in pieces]
     pieces, notes = _kept(wall, pieces, strategy)
+    notes += _close(pieces, closing, full)
     layers, found = _layers(wall, pieces, strategy, build, process, normal)
     return Toolpath(layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface")
 
@@ -86,6 +89,27 @@ def _kept(wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameter
     return kept, short_note(dropped)
 
 
+def _close(pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]) -> list[Issue]:
+    """Put the closing beads behind the pieces of their layers, where all of the layer below is there; and say so."""
+    count, first = 0, 0
+    for index, gaps in enumerate(closing):
+        if not gaps or index > len(pieces) or len(pieces[index - 1]) < full[index - 1]:
+            continue
+        if index == len(pieces):
+            if index < len(full):
+                break
+            pieces.append([])
+        pieces[index] += [Piece(curve, [], False, closing=True) for curve in gaps]
+        first = first or index
+        count += len(gaps)
+    if not count:
+        return []
+    return [Issue(
+        NOTE, "CLOSING", f"{count} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the "
+        f"first in layer {first}", first,
+    )]
+
+
 def _left(wall: PatchWall, kept: list[list[Piece]]) -> float:
     """Largest distance (mm) of the wall's upper edges from the last layers."""
     ends = [rim.points for rim in wall.rims if rim.end]
@@ -114,8 +138,8 @@ def _layers(
         ways = [_ways(piece, angle, middles, process, index) for piece in layer]
         beads: list[Bead] = []
         while ways:
-            way, at = _nearest(ways, here)
-            ways.pop(at)
+            way = _nearest(ways, here)
+            ways = [some for some in ways if some[0].piece is not way.piece]
             curve = way.piece.curve
             w = within_chord(curve, way.start, way.start + curve.period, strategy.chord_error)
             line = traced(curve, w, curve.closed)
@@ -125,7 +149,7 @@ def _layers(
                 line, over = line.reversed(), over.reversed()
             one = surface_directions.directions(line.points, curve.closed, over, build, normal, wall.label)
             found.append((index, one))
-            beads.append(bead(line, one, curve.closed, process.travel_speed))
+            beads.append(bead(line, one, curve.closed, process.travel_speed, way.piece.closing))
             here = line.points[-1]
         layers.append(Layer(tuple(beads)))
     return tuple(layers), surface_directions.notes(found)
@@ -146,12 +170,11 @@ def _ways(
     return ways
 
 
-def _nearest(ways: list[list[_Way]], here: Array | None) -> tuple[_Way, int]:
-    """The way that begins nearest to a place, and the number of its piece; at first simply the first."""
+def _nearest(ways: list[list[_Way]], here: Array | None) -> _Way:
+    """The way that begins nearest to a place, at first simply the first; gaps are closed when the fronts about them are
+    there."""
+    those = [some for some in ways if not some[0].piece.closing] or ways
     if here is None:
-        return ways[0][0], 0
-    every = [(float(np.linalg.norm(way.begin - here)), at, k) for at, some in enumerate(ways) for k, way in enumerate(some)]
-    _, at, k = min(every)
-    return ways[at][k], at
-
-
+        return those[0][0]
+    every = [way for some in those for way in some]
+    return every[int(np.argmin([float(np.linalg.norm(way.begin - here)) for way in every]))]

@@ -49,7 +49,7 @@ def assert_faces_up(wall, layers):
 @pytest.fixture(scope="module")
 def torus():
     wall = bend(PIPE, 0.3, np.pi / 2, 1.25)
-    return wall, fronts.layers(wall, 5.0)
+    return wall, fronts.layers(wall, 5.0).fronts
 
 
 def test_the_same_fronts_as_on_the_parametric_wall(torus):
@@ -79,7 +79,7 @@ def test_at_the_end_of_the_wall_the_beads_are_open_and_finish_it(torus):
 @pytest.mark.parametrize("step", [1.0, 0.7])
 def test_a_front_splits_at_a_hole_and_merges_behind_it(step):
     wall, height = sheet(SILL, [(2.0, 20.0, 9.0)], step=step), 1.7
-    layers = fronts.layers(wall, height)
+    layers = fronts.layers(wall, height).fronts
     count = [len(layer) for layer in layers]
     # the hole begins at 11 mm; behind it, fronts that end 3.61 mm apart on its rim do not meet yet
     assert count == [1] * 7 + [2] * 14 + [1] * 10
@@ -103,7 +103,7 @@ def test_a_front_splits_at_a_hole_and_merges_behind_it(step):
 def test_a_front_closes_on_itself():
     height = 1.3
     wall = ball(HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0])))
-    layers = fronts.layers(wall, height)
+    layers = fronts.layers(wall, height).fronts
     assert all(front.closed and not len(front.corners) for layer in layers for front in layer)
     assert_spacing(layers, height)
     # parallel circles: chords of equal length between them
@@ -132,7 +132,7 @@ class BothEnds:
 
 def test_two_fronts_merge_with_corners():
     wall, height = ball(BothEnds()), 1.3
-    layers = fronts.layers(wall, height)
+    layers = fronts.layers(wall, height).fronts
     assert [len(layer) for layer in layers][:12] == [2] * 6 + [1] * 6
     assert [len(layer[0].corners) for layer in layers][:12] == [0] * 6 + [2] * 6
     assert_spacing(layers[:12], height)  # later ones close in gaps narrower than the mesh
@@ -141,7 +141,7 @@ def test_two_fronts_merge_with_corners():
 
 def test_a_half_shell_has_open_beads_from_rim_to_rim():
     wall = bend(PIPE, 0.3, 1.3, 1.0, 0.5, np.pi)
-    layers = fronts.layers(wall, 2.0)
+    layers = fronts.layers(wall, 2.0).fronts
     assert not any(front.closed for layer in layers for front in layer)
     assert_spacing(layers, 2.0)
     assert_faces_up(wall, layers)
@@ -156,7 +156,7 @@ def test_a_half_shell_has_open_beads_from_rim_to_rim():
 @pytest.mark.parametrize("width", [2.0 * np.pi, 3.0], ids=["around", "part of a turn"])
 def test_a_last_layer_may_lie_on_the_end(width):
     wall = tube(FLOOR, 20.0, 1.5, width=width)
-    layers = fronts.layers(wall, 5.0)
+    layers = fronts.layers(wall, 5.0).fronts
     assert len(layers) == 5
     for i, (front,) in enumerate(layers):
         assert front.points[:, 2] == pytest.approx(5.0 * i, abs=1e-9)
@@ -168,14 +168,14 @@ def test_a_wall_may_begin_at_its_own_edge():
     """Nothing is behind then but the edge itself."""
     wall = tube(FLOOR, 12.0, 1.5, low=0.0)
     assert not wall.behind.any()
-    layers = fronts.layers(wall, 3.0)
+    layers = fronts.layers(wall, 3.0).fronts
     assert [layer[0].points[0, 2] for layer in layers] == pytest.approx([0.0, 3.0, 6.0, 9.0, 12.0], abs=1e-9)
 
 
 def test_the_mesh_decides_no_place():
     """A finer mesh gives the same fronts."""
     floor = HalfSpace(np.zeros(3), np.array([0.2, 0.3, 1.0]))
-    coarse, fine = (fronts.layers(tube(floor, 20.0, step, low=-10.0), 2.0) for step in (2.0, 0.9))
+    coarse, fine = (fronts.layers(tube(floor, 20.0, step, low=-10.0), 2.0).fronts for step in (2.0, 0.9))
     assert [len(layer) for layer in coarse] == [len(layer) for layer in fine]
     for one, other in zip(coarse, fine):
         for front in one:

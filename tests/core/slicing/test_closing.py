@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Gaps between fronts that meet are closed: no point of a wall inside its edges is farther than 0.6 heights from a bead."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.geometry.implicit import HalfSpace
+from freecad_am.core.slicing import fronts
+from tests.core.patch_walls import ball, samples, sheet, tube
+
+FLOOR = HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0]))
+SILL = HalfSpace(np.zeros(3), np.array([0.0, 1.0, 0.0]))
+
+
+class Both:
+    """Everything outside a slab with the given sides (point, normal up and down): fronts come from both of them."""
+
+    def __init__(self, low, up, high, down):
+        self.sides = HalfSpace(np.array(low), np.array(up)), HalfSpace(np.array(high), np.array(down))
+
+    def value(self, points):
+        (one, up), (other, down) = (side.value(points) for side in self.sides)
+        nearer = one < other
+        return np.where(nearer, one, other), np.where(nearer[..., None], up, down)
+
+
+def farthest(wall, curves, away=0.0):
+    """Largest distance from the wall to a bead, of places farther than `away` from its rims."""
+    points = samples(wall)
+    if away:
+        points = points[cKDTree(np.vstack([rim.points for rim in wall.rims])).query(points)[0] > away]
+    return cKDTree(np.vstack([curve.at(curve.refined(30))[0] for curve in curves])).query(points)[0].max()
+
+
+def flat(layers):
+    return [curve for layer in layers for curve in layer]
+
+
+CASES = {
+    "a cap": (lambda: ball(FLOOR, 1500), 2.6, 0.0),
+    "a slanted meeting": (lambda: ball(Both([0, 0, -12.0], [0.1, 0.3, 1], [0, 3.0, 14], [0.3, 0.1, -1]), 2500), 1.9, 0.0),
+    "a meeting head on": (lambda: tube(Both([0, 0, 0.0], [0, 0, 1], [0, 0, 14.8], [0, 0, -1]), 20.0, 1.0, 10.0), 2.0, 0.0),
+    "behind holes": (lambda: sheet(SILL, [(2.0, 20.0, 9.0), (-15.0, 25.0, 6.0), (17.0, 37.0, 5.0)]), 1.7, 1.7),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_gaps_are_closed(case):
+    make, height, away = CASES[case]
+    wall = make()
+    found = fronts.layers(wall, height)
+    closing = flat(found.closing)
+    assert closing
+    assert farthest(wall, flat(found.fronts), away) > (0.5 if away else 0.6) * height
+    assert farthest(wall, flat(found.fronts) + closing, away) < 0.6 * height
+    for index, gaps in enumerate(found.closing):
+        for curve in gaps:  # on the wall, over the layer below, and no stub
+            points = curve.at(curve.refined(5))[0]
+            assert np.linalg.norm(wall.project(points)[0] - points, axis=1).max() < 0.01 * height
+            low = fronts.local_distances(curve, found.fronts[index - 1], 5)
+            assert low.min() > 0.3 * height and low.max() < 1.01 * height
+            assert curve.length > 0.4 * height
+
+
+def test_fronts_from_two_ends_of_a_tube_leave_one_ring_to_close():
+    wall = tube(Both([0, 0, 0.0], [0, 0, 1], [0, 0, 14.8], [0, 0, -1]), 20.0, 1.0, 10.0)
+    found = fronts.layers(wall, 2.0)
+    assert [len(layer) for layer in found.fronts] == [2, 2, 2, 2]
+    (ring,) = flat(found.closing)
+    assert ring.closed and len(found.closing) == 5
+    assert ring.at(ring.refined(5))[0][:, 2] == pytest.approx(7.4, abs=0.02)
+    assert ring.length == pytest.approx(20.0 * np.pi, rel=1e-3)
+
+
+def test_where_beads_lie_close_enough_nothing_is_closed():
+    slanted = HalfSpace(np.zeros(3), np.array([0.2, 0.1, 1.0]))
+    assert not flat(fronts.layers(tube(slanted, 20.0, 2.0, low=-10.0), 3.0).closing)
+    assert not flat(fronts.layers(ball(FLOOR, 1500), 2.3).closing)  # the last circle is 0.5 heights wide
