@@ -178,20 +178,19 @@ def test_controller_values_are_those_of_the_pendant(planned):
     assert np.abs(joints[:, [0, 1, 3, 4, 5]] - serial[:, [0, 1, 3, 4, 5]]).max() < 1e-12
 
 
-def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposition_point_on_the_flange(planned):
+def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposition_point_on_the_platform(planned):
     _, cell, _, motion = planned()
     program = build(motion, cell, ProcessParameters(), ProgramParameters(motion="cartesian"), "gauge")
     rows = motion.moves
-    flange = cell.machine.chain.forward(motion.joints[rows])
+    platform = cell.machine.chain.forward(motion.joints[rows]) @ cell.carried
     position = np.concatenate([moves.position for moves in program.moves])
     rotation = np.concatenate([moves.rotation for moves in program.moves])
-    # carried along by the flange each of them comes to lie where the deposit comes out, Z to the nozzle
-    place = flange[:, :3, :3] @ position[:, :, None] + flange[:, :3, 3:]
+    # carried along by the platform each of them comes to lie where the deposit comes out, Z to the nozzle
+    place = platform[:, :3, :3] @ position[:, :, None] + platform[:, :3, 3:]
     np.testing.assert_allclose(place[:, :, 0], np.tile(cell.station[:3, 3], (len(place), 1)), atol=1e-9)
-    np.testing.assert_allclose(flange[:, :3, :3] @ rotation, np.tile(cell.station[:3, :3], (len(place), 1, 1)), atol=1e-12)
+    np.testing.assert_allclose(platform[:, :3, :3] @ rotation, np.tile(cell.station[:3, :3], (len(place), 1, 1)), atol=1e-12)
     # and in part coordinates they are the points of the part
-    in_part = position @ np.linalg.inv(cell.carried)[:3, :3].T + np.linalg.inv(cell.carried)[:3, 3]
-    in_part = in_part @ cell.mount[:3, :3].T + cell.mount[:3, 3]
+    in_part = position @ cell.mount[:3, :3].T + cell.mount[:3, 3]
     np.testing.assert_allclose(in_part, motion.position[rows], atol=1e-6)
 
 
