@@ -16,6 +16,7 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
+from . import table
 from .joint_path import BeadPath, JointPath
 from .rapids import collisions
 
@@ -100,14 +101,14 @@ def _lift_notes(joint_path: JointPath, lifts: Array, lift: float) -> list[Issue]
     raised = np.flatnonzero(lifts > lift)
     if not len(raised):
         return []
-    text = (f"before {len(raised)} beads the tool is withdrawn by up to {lifts.max():g} mm instead of {lift:g} mm to pass "
+    text = (f"before {len(raised)} beads the tool is withdrawn by up to {lifts.max():.3g} mm instead of {lift:g} mm to pass "
             "clear")
     return [Issue(NOTE, "RAPID_LIFTED", text, joint_path.beads[raised[0]].layer)]
 
 
 def _with_rapids(joint_path: JointPath, cell: Cell, process: ProcessParameters, lifts: Array) -> Motion:
     """The motion with the tool withdrawn by lifts (beads,) mm before each bead, and by the first of them at the end."""
-    branch = opw.branch_index(joint_path.branch)
+    branch = None if cell.machine.is_table else opw.branch_index(joint_path.branch)
     parts: list[_Rows] = []
     before: BeadPath | None = None
     for path, lift in zip(joint_path.beads, lifts):
@@ -127,8 +128,10 @@ def _with_rapids(joint_path: JointPath, cell: Cell, process: ProcessParameters, 
     return _joined(parts, cell, process)
 
 
-def _lifted(path: BeadPath, index: int, cell: Cell, branch: int, lift: float) -> Array:
+def _lifted(path: BeadPath, index: int, cell: Cell, branch: int | None, lift: float) -> Array:
     """(axes,) joints at a point of the bead withdrawn by the lift along the tool axis, in the turns of the bead."""
+    if branch is None:
+        return table.lifted(cell, path.joints[index], path.bead.points[index], path.bead.tool[index], lift)
     arm = cell.machine.opw
     assert arm is not None
     tool = path.bead.tool[index]
