@@ -76,15 +76,17 @@ def make_feature(
 
 def make_surface_feature(
     doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
-    fixtures: Sequence[Any] = (), strategy: SurfaceParameters | None = None,
+    start_edges: Sequence[str] = (), fixtures: Sequence[Any] = (), strategy: SurfaceParameters | None = None,
     build_direction: BuildDirectionParameters | None = None, **values: Any,
 ) -> Any:
-    """A wall, of an object's faces, that grows on a solid object.
+    """A wall, of an object's faces, that grows on a solid or closed mesh, or from edges of its own (start_edges).
 
     `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
     that the nozzle must not touch either.
     """
     links = {"Source": _with_faces(source, faces), "Substrate": substrate, "Fixtures": list(fixtures)}
+    if start_edges:
+        links["StartEdges"] = (source, list(start_edges))
     return _make(doc, SurfaceFeature, "Feature", label, links, [strategy, build_direction], values)
 
 
@@ -155,6 +157,9 @@ def change(obj: Any, **values: Any) -> Any:
             links["name"] = "ProgramName"
         if "source" in values:
             values["source"] = _with_faces(values["source"], values.pop("faces", ()))
+        if "start_edges" in values:
+            wall = values.get("source") or obj.Source
+            values["start_edges"] = (wall[0], list(values["start_edges"])) if wall and values["start_edges"] else None
         chosen = {links[key]: values.pop(key) for key in links if key in values}
         given(obj, proxy, [], values)
         for property_name, value in chosen.items():
@@ -229,7 +234,8 @@ def export(program: Any, folder: str) -> list[str]:
 
 
 def open_part(doc: Any, path: str, object: str = "") -> Any:
-    """A part file as an object of the document: STEP, IGES, BREP, or an object (Name or Label) of an FCStd file.
+    """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
+    (STL, OBJ, 3MF) for a wall to grow on or to be kept clear of.
 
     `am.open_part(doc, "cup.step")`
     """
@@ -237,8 +243,10 @@ def open_part(doc: Any, path: str, object: str = "") -> Any:
 
     shape, label = part_shape(path, object)
     with _one_step(doc, "Open part"):
-        part = doc.addObject("Part::Feature", "Part")
-        part.Label, part.Shape = label, shape
+        is_mesh = hasattr(shape, "Topology")
+        part = doc.addObject("Mesh::Feature" if is_mesh else "Part::Feature", "Part")
+        part.Label = label
+        setattr(part, "Mesh" if is_mesh else "Shape", shape)
         part.purgeTouched()
     return part
 

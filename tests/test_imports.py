@@ -41,7 +41,7 @@ FOREIGN = {
     "posts": {"numpy"},
     "verify": {"numpy"},
     "kdl": {"numpy", "PyKDL"},
-    "brep": {"numpy", "FreeCAD", "Part"},
+    "brep": {"numpy", "scipy", "FreeCAD", "Part", "Mesh", "MeshPart"},
     "objects": {"numpy", "FreeCAD", "Part"},
     "api": {"numpy", "FreeCAD"},
     "batch": {"numpy", "yaml", "matplotlib", "FreeCAD"},

@@ -25,6 +25,7 @@ PLANNED_SETUPS = ("rotary-table", "tool-on-robot+positioner")
 SECTIONS = (
     "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "cell", "joints", "process", "program",
 )
+_EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
 _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 
@@ -37,11 +38,13 @@ class PartSource:
     object: str | None = None
     faces: tuple[str, ...] = ()
     settings: tuple[tuple[str, str, str], ...] = ()
+    start_edges: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Job:
-    """A checked job. `substrate` is there for SurfaceParameters alone. `cell` or `program` None: the stages that need
+    """A checked job. `substrate` is there for SurfaceParameters alone, and not
+    needed where the part has start_edges. `cell` or `program` None: the stages that need
     them are left out."""
 
     path: str
@@ -90,11 +93,12 @@ def _checked(job: tree.Tree, path: str) -> Job:
         raise _not_yet("process.bead_model", process.bead_model, "none")
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     _refuse_direction(strategy, build_direction)
+    part = _part(fields.mapping(values["part"], "part"), path)
     return Job(
         path=path,
         name=_name(values.get("name"), path),
-        part=_part(fields.mapping(values["part"], "part"), path),
-        substrate=_substrate(values.get("substrate"), strategy, path),
+        part=part,
+        substrate=_substrate(values.get("substrate"), strategy, part, path),
         fixtures=_fixtures(values.get("fixtures"), path),
         strategy=strategy,
         build_direction=build_direction,
@@ -132,12 +136,17 @@ def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) 
         )
 
 
-def _substrate(section: Any, strategy: Any, path: str) -> PartSource | None:
+def _substrate(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
+    if part.start_edges and not isinstance(strategy, SurfaceParameters):
+        raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
+        "them out")
     if isinstance(strategy, SurfaceParameters):
+        if section is None and part.start_edges:
+            return None
         if section is None:
             raise InputError(
                 "NO_SUBSTRATE", "substrate", "a wall of the kind surface grows on an existing part; write substrate: {file: "
-                "pipe.step}",
+                "pipe.step}, or name the edges to start from in part.start_edges",
             )
         found = _part(fields.mapping(section, "substrate"), path, "substrate")
         if found.faces:
@@ -163,7 +172,7 @@ def _fixtures(section: Any, path: str) -> tuple[PartSource, ...]:
 
 
 def _part(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
-    fields.known_keys(section, ("file", "object", "faces", "set"), key)
+    fields.known_keys(section, ("file", "object", "faces", "set", *(("start_edges",) if key == "part" else ())), key)
     if "file" not in section:
         raise InputError("NO_PART", f"{key}.file", f"there is no file; write {key}: {{file: shape.step}}")
     file = absolute(fields.text(section["file"], f"{key}.file"), path)
@@ -178,16 +187,21 @@ def _part(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
     return PartSource(
         file=file,
         object=None if name is None else fields.text(name, f"{key}.object"),
-        faces=_faces(section.get("faces"), key),
+        faces=_names(section.get("faces"), f"{key}.faces", _FACE),
         settings=tuple(_settings(section.get("set") or {}, key)),
+        start_edges=_names(section.get("start_edges"), f"{key}.start_edges", _EDGE),
     )
 
 
-def _faces(value: Any, key: str) -> tuple[str, ...]:
-    faces = [value] if isinstance(value, str) else value or []
-    if not isinstance(faces, list) or not all(isinstance(face, str) and _FACE.fullmatch(face) for face in faces):
-        raise InputError("BAD_VALUE", f"{key}.faces", f"{quantity.shown(value)} names no faces; write [Face1, Face2]")
-    return tuple(faces)
+def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:
+    """Names of faces or edges."""
+    names = [value] if isinstance(value, str) else value or []
+    if not isinstance(names, list) or not all(isinstance(name, str) and wanted.fullmatch(name) for name in names):
+        kind = wanted.pattern[:4]
+        raise InputError(
+            "BAD_VALUE", key, f"{quantity.shown(value)} names no {kind.lower()}s; write [{kind}1, {kind}2]"
+        )
+    return tuple(names)
 
 
 def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:

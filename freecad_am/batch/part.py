@@ -20,6 +20,12 @@ def bring(document: Any, part: PartSource, key: str = "part") -> Any:
 
     Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
     """
+    if key == "part" and part.file.lower().endswith((".stl", ".obj", ".3mf")):
+        raise InputError(
+            "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part needs STEP, IGES, BREP or FCStd; a "
+            "mesh may be "
+            "the substrate, or a fixture",
+        )
     if not part.settings:
         return api.open_part(document, part.file, part.object or "")
     with tempfile.TemporaryDirectory() as folder:

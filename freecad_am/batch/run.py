@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
+from freecad_am.core.parameters.strategy import RevolutionParameters
 
 from . import outputs, paths
 from .job import SECTIONS, Job
@@ -134,15 +135,15 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
         with stages.timed("cell", session):
             cell = api.make_cell(document, parameters=job.cell)
     with stages.timed("feature", session):
-        if substrate is None:
+        if isinstance(job.strategy, RevolutionParameters):
             feature = api.make_feature(
                 document, part, job.part.faces, fixtures=fixtures, strategy=job.strategy,
                 build_direction=job.build_direction,
             )
         else:
             feature = api.make_surface_feature(
-                document, part, job.part.faces, substrate, fixtures=fixtures, strategy=job.strategy,
-                build_direction=job.build_direction,
+                document, part, job.part.faces, substrate, start_edges=job.part.start_edges, fixtures=fixtures,
+                strategy=job.strategy, build_direction=job.build_direction,
             )
     stages.feature = feature
     stages.issues += api.issues(feature)

@@ -12,7 +12,6 @@ import Part
 
 from ..core.geometry import contact
 from ..core.geometry.mesh import Mask
-from ..core.geometry.patch import Array
 from ..core.geometry.patch_wall import FirstCurve, PatchWall
 from ..core.geometry.refined import boundary
 from ..core.geometry.told import place
@@ -23,7 +22,7 @@ from .start_edges import curves_of
 from .substrate import Substrate
 from .wall_checks import refuse_creases, refuse_crossing, refuse_gaps, refuse_tight, smallest_radii
 
-COARSE = 4  # a first mesh tells the radii
+COARSE, SHARE = 4.0, 0.04  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
 
 
 def find_patch_wall(
@@ -47,25 +46,27 @@ def find_patch_wall(
         first = curves_of(shape, start_edges, wall, label)
         behind = np.zeros(len(wall.vertices), dtype=bool)
     elif substrate is None:
-        raise InputError("NO_SUBSTRATE", label, "there is nothing to grow on; choose a substrate, or the edges to start from")
+        raise InputError(
+            "NO_SUBSTRATE", label, "there is nothing to grow on; choose a substrate, or the edges to start from"
+        )
     else:
         first, behind, issues = _from_substrate(wall, substrate, rims, label)
     refuse_tight(wall, ~behind, height, label)
     if len(first) > 1:
         places = ", ".join(place(curve.points.mean(axis=0)) for curve in first)
         issues.append(Issue(
-            NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; choose "
-            "the edges to start from if only some are meant",
+            NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; "
+            "choose the edges to start from if only some are meant",
         ))
     return replace(
         wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
-        surroundings=() if substrate is None else (substrate.body,),
     )
 
 
 def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
     """Longest edge of the mesh: the layer height, a quarter of the wall's smallest radius if that is less."""
-    coarse = sheet(named, COARSE * height, label)
+    size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
+    coarse = sheet(named, max(COARSE * height, SHARE * size), label)
     radius = float(smallest_radii(coarse)[0].min())
     return float(np.clip(0.25 * radius, 0.25 * height, height))
 
@@ -91,22 +92,22 @@ def _from_substrate(
     if outside.all():
         at = int(np.argmin(value))
         raise InputError(
-            "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at {place(wall.vertices[at])}, "
-            f"{value[at]:.4g} mm away; move it so that it reaches in, at most {contact.TOUCH:g} mm may be missing",
+            "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at "
+            f"{place(wall.vertices[at])}, {value[at]:.4g} mm away; move it so that it reaches in, at most {contact.TOUCH:g} mm may be missing",
         )
     if not outside.any():
         at = int(np.argmax(value))
         raise InputError(
-            "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is {-value[at]:.4g} mm "
-            "deep, and nowhere less); a wall starts on the substrate and ends outside of it",
+            "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is "
+            f"{-value[at]:.4g} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it",
         )
     dropped = _stays_in(wall, outside, substrate)
     value[dropped] = np.minimum(value[dropped], -1e-6)
     first, off = contact.first_curves(wall, ground, value, rims)
     if not first:
         raise InputError(
-            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than a few "
-            f"{wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
+            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than a "
+            f"few {wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
         )
     found = f"the first layer lies on the wall and on {substrate.label}"
     if off > 0.0:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
+import Mesh
 import Part
 
 from ..core.issues import InputError
@@ -47,6 +48,25 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
     return _shape(file, where)
+
+
+def read_mesh(path: str | os.PathLike[str]) -> Any:
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. InputErrors as `read_shape`."""
+    file = Path(path)
+    where = file.name or str(path)
+    if not file.is_file():
+        raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
+    if file.stat().st_size == 0:
+        raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+    mesh = Mesh.Mesh()
+    try:
+        with _quiet():
+            mesh.read(str(file))
+    except Exception as error:
+        raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
+    if not mesh.CountFacets:
+        raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
+    return mesh
 
 
 def _shape(file: Path, where: str) -> Any:

@@ -42,7 +42,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     names = [names[k] for k in order]
     faces = shape.Faces
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
-    vertices, triangles, owner = _tessellated(shape, faces, edge)
+    vertices, triangles, owner = tessellated(shape, max(0.1 * edge, 1e-3))
     triangles = _turned(triangles, owner, names, label)
     curves = _Curves(shape, edge)
 
@@ -58,7 +58,8 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     made = refined(vertices, triangles, owner, edge, place, MOST)
     if made is None:
         raise InputError(
-            "TOO_FINE", label, f"with edges of {edge:.3g} mm the mesh of the wall has more than {MOST} triangles; use a larger "
+            "TOO_FINE", label, f"with edges of {edge:.3g} mm the mesh of the wall has more than {MOST} triangles; use "
+            "a larger "
             "layer height, round sharp bends more, or deposit the wall in parts",
         )
     vertices, triangles, owner = made
@@ -73,13 +74,13 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
         used, index = np.unique(triangles[mine], return_inverse=True)
         found = patch.inverse(vertices[used])
         uv[mine] = patch.unwrapped(found[np.ravel(index)].reshape(-1, 3, 2))
-        turned.append(_facing(patch, vertices[triangles[mine]]))
+        turned.append(facing(patch, vertices[triangles[mine]]))
     return PatchWall(
         vertices, triangles, owner, uv, tuple(turned), (), np.zeros(len(vertices), dtype=bool), (), label, tuple(names)
     )
 
 
-def _facing(patch: Patch, corners: Array) -> Patch:
+def facing(patch: Patch, corners: Array) -> Patch:
     """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
     facets = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
@@ -102,13 +103,12 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
     return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
 
 
-def _tessellated(shape: Any, faces: list[Any], edge: float) -> tuple[Array, Index, Index]:
-    """Vertices, triangles and the face of each; vertices that faces share are one."""
-    chord = max(0.1 * edge, 1e-3)
+def tessellated(shape: Any, chord: float) -> tuple[Array, Index, Index]:
+    """Vertices, triangles within `chord` mm of the shape, and the face of each; vertices that faces share are one."""
     # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
     MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=ANGLE, Relative=False)
     points, corners, owner, count = [], [], [], 0
-    for k, face in enumerate(faces):
+    for k, face in enumerate(shape.Faces):
         own, triangles = face.tessellate(chord)
         points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)

@@ -30,7 +30,8 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
         off = np.linalg.norm(wall.project(points)[0] - points, axis=1)
         if off.max() > ON_WALL:
             raise InputError(
-                "NO_START", f"{label} {name}", f"the edge is {off.max():.4g} mm off the wall at {place(points[np.argmax(off)])}; "
+                "NO_START", f"{label} {name}", f"the edge is {off.max():.4g} mm off the wall at "
+                f"{place(points[np.argmax(off)])}; "
                 "choose edges of the wall's own faces",
             )
         edges.append(edge)
@@ -40,22 +41,15 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
 def _curve(chain: list[Any], wall: PatchWall) -> FirstCurve:
     wire = Part.Wire(chain)
     closed = bool(wire.isClosed())
-    points, into, out = [], [], []
-    for edge in wire.OrderedEdges:
-        at, along = _sampled(edge, wall.mesh.typical_edge)
-        points.append(at[:-1] if points or closed or len(wire.OrderedEdges) > 1 else at[:-1])
-        first = len(into) == 0
-        out.append(along[:-1])
-        into.append(np.vstack([along[:1] if first else last, along[1:-1]]))
-        last = along[-1:]
-        end = at[-1:]
-    if closed:
-        into[0][0] = last[0]
-    else:
-        points.append(end)
-        into.append(last)
-        out.append(last)
-    nodes, before, after = (np.vstack(column) for column in (points, into, out))
+    sampled = [_sampled(edge, wall.mesh.typical_edge) for edge in wire.OrderedEdges]
+    nodes = np.vstack([points[:-1] for points, _ in sampled])
+    after = np.vstack([along[:-1] for _, along in sampled])
+    arrivals = [along[-1:] for _, along in sampled]
+    starts = [arrivals[-1] if closed else sampled[0][1][:1], *arrivals[:-1]]
+    before = np.vstack([np.vstack([start, along[1:-1]]) for start, (_, along) in zip(starts, sampled)])
+    if not closed:
+        nodes = np.vstack([nodes, sampled[-1][0][-1:]])
+        before, after = np.vstack([before, arrivals[-1]]), np.vstack([after, arrivals[-1]])
     smooth = np.einsum("ij,ij->i", before, after) > np.cos(SMOOTH)
     before[smooth] = after[smooth]
     return FirstCurve(wall.project(nodes)[0], before, after, closed)

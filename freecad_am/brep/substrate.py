@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The part that a wall grows on: a solid of faces or of triangles, checked, with its triangles for what must be kept clear."""
+"""The part that a wall grows on: a solid of faces or of triangles, checked."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..core.geometry.ground import ExactGround, FacetGround, Ground
 from ..core.geometry.solid_mesh import SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import place
 from ..core.issues import InputError
-from .sheet import sheet, welded
+from . import tessellate
+from .sheet import facing, tessellated, welded
+from .surface_patch import patch_of
 
 CHORD = 0.1  # mm between a solid and the triangles that stand for it
 SAME = 1e-5  # mm; vertices of a mesh that lie closer are one
@@ -22,47 +23,44 @@ SAME = 1e-5  # mm; vertices of a mesh that lie closer are one
 
 @dataclass(frozen=True)
 class Substrate:
-    """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles within CHORD."""
+    """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles within CHORD; then
+    face: (m,) the face of each, from 0."""
 
     label: str
     shape: Any
     solid: SolidMesh
-
-    @property
-    def body(self) -> Body:
-        """What the nozzle must not touch."""
-        return Body(self.label, self.solid.vertices, self.solid.triangles.astype(np.int64))
+    face: Any = None
 
     def ground(self, edge: float) -> Ground:
         """Prepared for a wall whose mesh has edges of `edge` mm."""
         if self.shape is None:
             return FacetGround(self.solid, edge)
-        faces = [(f"Face{index}", face) for index, face in enumerate(self.shape.Faces, start=1)]
-        area = sum(face.Area for _, face in faces)
-        return ExactGround(sheet(faces, max(2.0 * edge, float(np.sqrt(area / 20000.0))), self.label), edge)
+        corners = self.solid.vertices[self.solid.triangles]
+        patches = tuple(
+            facing(patch_of(face, f"{self.label} Face{index + 1}"), corners[self.face == index])
+            for index, face in enumerate(self.shape.Faces)
+        )
+        return ExactGround(self.solid, self.face, patches, CHORD, edge)
 
 
 def substrate_of(source: Any, label: str) -> Substrate:
-    """The substrate of a Part.Shape or a Mesh.Mesh in part coordinates.
+    """The substrate of a Part.Shape or of a mesh (a Body, or a Mesh.Mesh), in part coordinates.
 
     Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD.
     """
-    if hasattr(source, "Topology"):
-        points, triangles = source.Topology
-        return Substrate(label, None, mesh_solid(np.array([tuple(p) for p in points]), np.array(triangles), label))
+    if isinstance(source, Body) or hasattr(source, "Topology"):
+        mesh = source if isinstance(source, Body) else tessellate.body(source, label)
+        return Substrate(label, None, mesh_solid(mesh.vertices, mesh.triangles, label))
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it is no solid; choose a solid part or a closed mesh for the wall to grow on")
     if source.Volume <= 0.0:
         box = source.BoundBox
         raise InputError(
-            "INSIDE_OUT", label, f"the solid around {place(box.Center)} is turned inside out (volume {source.Volume:.4g} mm3); "
-            "repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
+            "INSIDE_OUT", label, f"the solid around {place(box.Center)} is turned inside out (volume {source.Volume:.4g} "
+            "mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
         )
-    points, triangles = source.copy().tessellate(CHORD)
-    vertices, corners, _ = welded(
-        np.array([tuple(p) for p in points]), np.array(triangles, dtype=np.intp), np.zeros(len(triangles), dtype=np.intp)
-    )
-    return Substrate(label, source, SolidMesh(vertices, corners))
+    vertices, corners, face = tessellated(source.copy(), CHORD)
+    return Substrate(label, source, SolidMesh(vertices, corners), face)
 
 
 def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
@@ -79,7 +77,3 @@ def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
     solid.refuse_unsound(label)
     return solid
 
-
-def nearest_gap(vertices: Any, substrate: Substrate) -> float:
-    """About how near the points (n, 3) come to the substrate, mm."""
-    return float(cKDTree(substrate.solid.vertices).query(vertices)[0].min())

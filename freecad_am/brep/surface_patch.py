@@ -57,7 +57,8 @@ def _spline(face: Any, where: str) -> Patch:
                 surface = surface.toBSpline()
         except (RuntimeError, AttributeError, Part.OCCError):
             raise InputError(
-                "ROUGH_WALL", where, f"its surface ({surface.TypeId.removeprefix('Part::Geom')}) cannot be told as a spline; "
+                "ROUGH_WALL", where, f"its surface ({surface.TypeId.removeprefix('Part::Geom')}) cannot be told as a "
+                "spline; "
                 "rebuild the face, for instance as a loft",
             ) from None
     else:
@@ -88,7 +89,7 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
     if off.max() > ERROR:
         at = ", ".join(f"{number:.4g}" for number in points[np.argmax(off)])
         raise InputError(
-            "ROUGH_WALL", where, f"at ({at}) it is {off.max():.3g} mm off the spline that stands for it, more than {ERROR:g} mm; "
-            "rebuild the face, for instance as a loft or a sweep",
+            "ROUGH_WALL", where, f"at ({at}) it is {off.max():.3g} mm off the spline that stands for it, more than "
+            f"{ERROR:g} mm; rebuild the face, for instance as a loft or a sweep",
         )
     return patch

@@ -56,7 +56,8 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
         names = [wall.faces[wall.patch[np.flatnonzero((wall.triangles == v).any(axis=1))[0]]]
                  for v in (one[index[k]], other[k])]
         raise InputError(
-            "GAP", label, f"the faces form {count} separate pieces: {names[0]} and {names[1]} are {distance[k]:.4g} mm apart at "
+            "GAP", label, f"the faces form {count} separate pieces: {names[0]} and {names[1]} are {distance[k]:.4g} "
+            "mm apart at "
             f"{place(wall.vertices[other[k]])}; choose connected faces, edges meeting within {SEWN:g} mm",
         )
 
@@ -88,8 +89,8 @@ def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
     if (edges.count > 2).any():
         at = middle[np.argmax(edges.count > 2)]
         raise InputError(
-            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; a wall branches by smooth faces with "
-            "openings: leave one of them out",
+            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; a wall branches by smooth faces "
+            "with openings: leave one of them out",
         )
     two = edges.count == 2
     pair = wall.patch[edges.faces]
@@ -126,8 +127,8 @@ def refuse_tight(wall: PatchWall, chosen: Mask, height: float, label: str) -> No
     at = int(np.argmin(radius))
     if radius[at] < height * (1.0 - 1e-6):
         raise InputError(
-            "LAYER_HEIGHT", f"{label} {wall.faces[patch[at]]}", f"layers of {height:g} mm are higher than the wall's smallest radius "
-            f"of curvature, {radius[at]:.3g} mm at {place(wall.vertices[at])}; use lower layers, or a larger radius there",
+            "LAYER_HEIGHT", f"{label} {wall.faces[patch[at]]}", f"layers of {height:g} mm are higher than the wall's smallest "
+            f"radius of curvature, {radius[at]:.3g} mm at {place(wall.vertices[at])}; use lower layers, or a larger radius there",
         )
 
 
@@ -151,7 +152,8 @@ def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
             slopes.append((ahead - back) / (2.0 * STEP * reach[axis]))
             turns.append((up - down) / (2.0 * STEP * reach[axis]))
         a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
-        e, f, g = dot(slopes[0], turns[0]), 0.5 * (dot(slopes[0], turns[1]) + dot(slopes[1], turns[0])), dot(slopes[1], turns[1])
+        e, g = dot(slopes[0], turns[0]), dot(slopes[1], turns[1])
+        f = 0.5 * (dot(slopes[0], turns[1]) + dot(slopes[1], turns[0]))
         area = a * c - b * b
         plain = area > 1e-10 * np.median(area)  # not at a pole
         safe = np.where(plain, area, 1.0)
@@ -190,6 +192,6 @@ def refuse_crossing(wall: PatchWall, label: str) -> None:
                 at = int(np.flatnonzero(across)[np.argmin(off)])
                 names = sorted({wall.faces[wall.patch[one[at]]], wall.faces[wall.patch[other[at]]]})
                 raise InputError(
-                    "SELF_INTERSECTION", label, f"the wall cuts itself at {place(point[at])} ({' and '.join(names)}); a bend must "
-                    "have a larger radius than the tube, and faces must not cross",
+                    "SELF_INTERSECTION", label, f"the wall cuts itself at {place(point[at])} ({' and '.join(names)}); a bend "
+                    "must have a larger radius than the tube, and faces must not cross",
                 )

@@ -8,17 +8,20 @@ from typing import Any
 
 import FreeCAD as App
 
-from ..brep.read import read_shape
+from ..brep.read import MESHES, read_mesh, read_shape
 from ..core.issues import InputError
 from .feature import global_shape
 
 
 def part_shape(path: str, object_name: str = "") -> tuple[Any, str]:
-    """The shape of a part file and a label for it. `object_name`: Name or Label of an object of an FCStd file.
+    """The shape of a part file, the mesh of an STL, OBJ or 3MF file, and a label for it. `object_name`: Name or Label
+    of an object of an FCStd file.
 
     Raises the InputErrors of `brep.read`, and NO_OBJECT.
     """
     stem, extension = os.path.splitext(os.path.basename(path))
+    if extension.lower() in MESHES:
+        return read_mesh(path), stem
     if extension.lower() != ".fcstd":
         return read_shape(path), stem
     if not os.path.isfile(path):

@@ -6,7 +6,9 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from ..brep.first_layer import find_wall
+from ..brep.wall_on import wall_on
+from ..core.geometry.patch_wall import PatchWall
+from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters
 from .feature import source_of
@@ -15,7 +17,7 @@ from .stage import Link, Outcome, Section, Stage
 
 
 class SurfaceFeature(Stage):
-    """Result: core.geometry.surface_wall.SurfaceWall, in the coordinates of the document."""
+    """Result: SurfaceWall or PatchWall of core.geometry, in the coordinates of the document."""
 
     kind = "feature"
     sections = (
@@ -24,26 +26,59 @@ class SurfaceFeature(Stage):
     )
     links = (
         Link("Source", "", "The wall to deposit, or its faces.", type_name="App::PropertyLinkSub"),
-        Link("Substrate", "", "The solid part that the wall grows on."),
+        Link(
+            "Substrate", "", "The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.",
+            required=False,
+        ),
+        Link(
+            "StartEdges", "", "Edges of the wall in which layers start, in place of where it leaves the substrate.",
+            required=False, type_name="App::PropertyLinkSub",
+        ),
         FIXTURES,
     )
     figures = (
         ("WallFaces", "App::PropertyStringList", "Faces of the wall."),
-        ("WallKind", "App::PropertyString", "torus, cone (cylinders too), or table."),
+        ("WallKind", "App::PropertyString", "torus, cone (cylinders too) or table; patches for a wall of any "
+        "connected faces."),
     )
 
     def compute(self, obj: Any) -> Outcome:
         self.linked(obj)
-        self.parameters(obj, SurfaceParameters)  # bad ones are told where they stand, not by the toolpath
-        self.parameters(obj, BuildDirectionParameters)
+        strategy = self.parameters(obj, SurfaceParameters)
+        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
         substrate = obj.Substrate
-        wall = find_wall(global_shape(source), faces, global_shape(substrate), source.Label, substrate.Label)
-        wall = dataclasses.replace(wall, surroundings=(body_of(substrate), *fixtures_of(obj)))
-        return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", wall.kind)))
+        wall = wall_on(
+            global_shape(source), faces, None if substrate is None else _solid(substrate), strategy.layer_height,
+            source.Label, "" if substrate is None else substrate.Label, _start_edges(obj),
+        )
+        bodies = () if substrate is None else (body_of(substrate),)
+        wall = dataclasses.replace(wall, surroundings=(*bodies, *fixtures_of(obj)))
+        kind = "patches" if isinstance(wall, PatchWall) else wall.kind
+        return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", kind)))
 
     def further_inputs(self, obj: Any) -> list[str]:
         source, faces = source_of(obj)
-        shapes = (global_shape(source), global_shape(obj.Substrate))
+        substrate = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         fixtures = [fingerprint(fixture) for fixture in obj.Fixtures]
-        return [*(shape_fingerprint(shape) for shape in shapes), " ".join(faces), *fixtures]
+        return [shape_fingerprint(global_shape(source)), *substrate, " ".join((*faces, *_start_edges(obj))), *fixtures]
+
+
+def _solid(substrate: Any) -> Any:
+    """A mesh as a body, or a shape, in the coordinates of the document."""
+    return global_shape(substrate) if getattr(substrate, "Mesh", None) is None else body_of(substrate)
+
+
+def _start_edges(obj: Any) -> tuple[str, ...]:
+    """Names of the edges chosen. InputError 'BAD_EDGES' for those of another object, and for what is no edge."""
+    if not obj.StartEdges:
+        return ()
+    owner, names = obj.StartEdges
+    names = tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name)
+    wrong = [name for name in names if not name.startswith("Edge")]
+    if wrong or not names or owner != obj.Source[0]:
+        told = ", ".join(wrong) or owner.Label
+        raise InputError(
+            "BAD_EDGES", f"{obj.Label}.StartEdges", f"{told} is no edge of {obj.Source[0].Label}; choose edges of it"
+        )
+    return names

@@ -12,7 +12,7 @@ from .surface import dot
 
 Array = NDArray[np.float64]
 
-ROUNDS = 8
+ROUNDS = 4
 STRAIGHT = np.cos(np.radians(25.0))  # of a turn of a curve at a vertex that may go
 UPRIGHT = np.cos(np.radians(30.0))  # of a turn of a triangle when a corner moves
 

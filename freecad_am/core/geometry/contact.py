@@ -23,7 +23,8 @@ WITHIN = 1e-5  # mm between the points of a chain and both surfaces
 
 
 def levels(wall: PatchWall, ground: Ground) -> Array:
-    """Distances (n,) of the wall's vertices from the ground, negative inside; a boundary that ends just short of it is in."""
+    """Distances (n,) of the wall's vertices from the ground, negative inside; a boundary that ends just short of it is
+    in."""
     value = ground.signed(wall.vertices)
     edge = np.zeros(len(value), dtype=bool)
     for rim in boundary_vertices(wall):

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mesh import Index
-from .patch_wall import PatchWall
-from .solid_mesh import Search, SolidMesh
+from .patch import Patch
+from .solid_mesh import SolidMesh
 from .surface import dot
 
 Array = NDArray[np.float64]
@@ -32,37 +32,36 @@ class Ground(Protocol):
 
 
 class ExactGround:
-    """A solid whose faces make the closed sheet."""
+    """A solid of exact faces: its triangles (within `chord` mm of it), the face (m,) of each, the faces as patches whose
+    normals look outwards."""
 
     facets = False
 
-    def __init__(self, sheet: PatchWall, edge: float) -> None:
-        self.sheet = sheet
-        self.search = SolidMesh(sheet.vertices, sheet.triangles).searched(edge)
-        self.near = 0.2 * sheet.mesh.longest_edge
+    def __init__(self, solid: SolidMesh, face: Index, patches: tuple[Patch, ...], chord: float, edge: float) -> None:
+        self.face, self.patches, self.near = face, patches, 3.0 * chord
+        self.search = solid.searched(edge)
 
     def signed(self, points: Array) -> Array:
         """Distances; near the boundary the exact ones."""
-        distance = self.search.signed(points)[0]
+        distance, _, triangle = self.search.signed(points)
         near = np.flatnonzero(np.abs(distance) < self.near)
         if len(near):
-            foot, normal, _ = self.sheet.located(points[near])
+            foot, normal = self.on(self.face[triangle[near]], points[near])
             exact = dot(points[near] - foot, normal)
-            apart = np.linalg.norm(points[near] - foot, axis=1)
-            plain = np.abs(np.abs(exact) - apart) < 1e-6  # not past an edge of the solid
+            plain = np.abs(exact - distance[near]) < self.near  # not past an edge of the solid
             distance[near[plain]] = exact[plain]
         return distance
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the exact faces."""
-        return self.sheet.located(points)
+        piece = self.face[self.search.signed(points)[2]]
+        return *self.on(piece, points), piece
 
     def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
         """On the faces' surfaces."""
         feet, normals = np.empty_like(points), np.empty_like(points)
         for k in np.unique(piece):
-            patch = self.sheet.patches[k]
-            mine = piece == k
+            patch, mine = self.patches[k], piece == k
             feet[mine], normals[mine] = patch.at(patch.inverse(points[mine]))
         return feet, normals
 

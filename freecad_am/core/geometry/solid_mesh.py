@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ..issues import InputError
 from .mesh import Index
-from .refined import Edges, refined
+from .refined import Edges
 from .surface import dot
 from .told import place
 from .triangles import closest
@@ -20,7 +20,6 @@ from .triangles import closest
 Array = NDArray[np.float64]
 
 NEAREST = 12
-MOST = 800_000  # triangles for the search
 TILT = np.radians(0.05)  # facets that meet flatter than this are one
 
 
@@ -65,15 +64,7 @@ class SolidMesh:
     def searched(self, edge: float) -> Search:
         """Prepared for points about as far apart as `edge` mm."""
         area = 0.5 * np.linalg.norm(self.normals, axis=1).sum()
-        longest = max(2.0 * edge, float(np.sqrt(area / 30000.0)))
-        while True:
-            # each triangle owns its pieces: pieces of one facet are told alike, and no edge is flipped
-            made = refined(
-                self.vertices, self.triangles, np.arange(len(self.triangles)), longest, lambda points, *_: points, MOST
-            )
-            if made is not None:
-                return Search(self, *made)
-            longest *= 2.0
+        return Search(self, max(2.0 * edge, float(np.sqrt(area / 20000.0))))
 
     @cached_property
     def normals(self) -> Array:
@@ -91,16 +82,16 @@ class SolidMesh:
 
 
 class Search:
-    """Nearest triangles of a solid, from a finer division of it. The side is told by pseudo-normals (Baerentzen 2005)."""
+    """Nearest triangles of a solid, from the middles of their parts no longer than `longest` mm. The side is told by
+    pseudo-normals (Baerentzen 2005)."""
 
-    def __init__(self, solid: SolidMesh, vertices: Array, triangles: Index, owner: Index) -> None:
-        self.solid, self.vertices = solid, vertices
-        fine = SolidMesh(vertices, triangles)
-        sound = np.linalg.norm(fine.normals, axis=1) > 1e-10
-        self.triangles, self.owner, units = triangles[sound], owner[sound], fine.units[sound]
-        corner = vertices[self.triangles]
-        self.tree = cKDTree(corner.mean(axis=1))
-        self.units = units
+    def __init__(self, solid: SolidMesh, longest: float) -> None:
+        self.vertices = vertices = solid.vertices
+        sound = np.flatnonzero(np.linalg.norm(solid.normals, axis=1) > 1e-10)
+        self.triangles, self.owner, self.units = solid.triangles[sound], sound, solid.units[sound]
+        corner, units = vertices[self.triangles], self.units
+        middles, self.of = _spread(corner, longest)
+        self.tree = cKDTree(middles)
         at_vertex = np.zeros_like(vertices)
         for k in range(3):
             one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
@@ -115,8 +106,8 @@ class Search:
 
     def signed(self, points: Array) -> tuple[Array, Array, Index]:
         """Distance (k,) of points (k, 3), negative inside, the nearest points (k, 3) and triangles (k,) of the solid."""
-        count = min(NEAREST, len(self.triangles))
-        near = np.asarray(self.tree.query(points, k=count)[1]).reshape(len(points), count)
+        count = min(NEAREST, len(self.of))
+        near = self.of[np.asarray(self.tree.query(points, k=count)[1]).reshape(len(points), count)]
         corner = self.vertices[self.triangles[near]]
         distance, share = closest(corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None])
         row, best = np.arange(len(points)), np.argmin(distance, axis=1)
@@ -132,3 +123,19 @@ class Search:
         return side * distance, foot, self.owner[triangle]
 
 
+
+
+def _spread(corner: Array, longest: float) -> tuple[Array, Index]:
+    """Middles (k, 3) of the parts of triangles (m, 3, 3) with no side longer than `longest`, and the triangle of each."""
+    of, done = np.arange(len(corner)), []
+    while len(corner):
+        side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
+        top = np.argmax(side, axis=1)
+        small = side[np.arange(len(top)), top] <= longest
+        done.append((corner[small].mean(axis=1), of[small]))
+        corner, of, top = corner[~small], of[~small], top[~small]
+        a, b, c = (corner[np.arange(len(top)), (top + k) % 3] for k in range(3))
+        middle = 0.5 * (a + b)
+        corner = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        of = np.r_[of, of]
+    return np.concatenate([one for one, _ in done]), np.concatenate([one for _, one in done])

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The wall on a substrate, as the layers of the most exact kind that its faces allow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..core.geometry.patch_wall import PatchWall
+from ..core.geometry.surface_wall import SurfaceWall
+from ..core.issues import InputError
+from .first_layer import find_wall
+from .patch_wall import find_patch_wall
+from .substrate import Substrate, substrate_of
+from .wall import tubes
+
+# what is no closed tube of one surface that starts in one loop may still be a wall
+OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
+
+
+def wall_on(
+    shape: Any, faces: Sequence[str], substrate: Any, height: float, label: str = "part",
+    substrate_label: str = "substrate", start_edges: Sequence[str] = (),
+) -> SurfaceWall | PatchWall:
+    """The wall of a Part.Shape for layers of `height` mm, in its coordinates.
+
+    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part. A
+    SurfaceWall where the faces are one surface that closes around, its end straight across, and the first layer one loop; a
+    PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and `substrate_of`.
+    """
+    carrier = None if substrate is None else substrate_of(substrate, substrate_label)
+    if carrier is not None and carrier.shape is not None and not start_edges:
+        try:
+            wall = find_wall(shape, faces, carrier.shape, label, substrate_label)
+            if not any(issue.code == "SEVERAL_LOOPS" for issue in wall.issues):
+                return wall
+        except InputError as error:
+            if error.code not in OTHER_KIND:
+                raise
+    named = named_faces(shape, faces, label)
+    found = find_patch_wall(shape, named, carrier, height, label, start_edges)
+    if carrier is None or carrier.shape is not None or start_edges:
+        return found
+    return _as_tube(found, shape, faces, carrier, label) or found
+
+
+def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
+    """The faces chosen: those named, else all of a shape without solids, else the only one that is not flat.
+
+    Raises InputError NO_WALL, UNKNOWN_FACE.
+    """
+    if shape is None or shape.isNull() or not shape.Faces:
+        raise InputError("NO_WALL", label, "it has no faces; choose a part with the faces of the wall")
+    known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
+    for name in names:
+        if name not in known:
+            raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(known)}")
+    if names:
+        return [(name, known[name]) for name in dict.fromkeys(names)]
+    if not shape.Solids:
+        return list(known.items())
+    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]
+    if len(curved) != 1:
+        raise InputError("NO_WALL", label, f"it has {len(curved)} faces that are not flat; name those of the wall")
+    return curved
+
+
+def _as_tube(
+    wall: PatchWall, shape: Any, faces: Sequence[str], substrate: Substrate, label: str
+) -> SurfaceWall | None:
+    """A wall on a mesh as a tube of one surface, where it is one that ends straight across; None where it is not."""
+    ends = [rim for rim in wall.rims if rim.end]
+    if len(wall.first) != 1 or not wall.first[0].closed or len(ends) != 1:
+        return None
+    try:
+        _, both = tubes(shape, faces, label)
+    except InputError:
+        return None
+    search = substrate.solid.searched(wall.mesh.typical_edge)
+    v = 2.0 * np.pi * np.arange(12) / 12
+    lowest = [search.signed(one.surface().point(0.0 * v, v * one.period / (2.0 * np.pi)))[0].mean() for one in both]
+    tube = both[int(np.argmin(lowest))]
+    surface = tube.surface()
+    u, at = surface.inverse(ends[0].points)
+    pace = np.linalg.norm(surface.derivatives(u, at)[1], axis=1)
+    if np.abs((u - tube.end) * pace).max() > 1e-3 or len([rim for rim in wall.rims if rim.closed]) != len(wall.rims) \
+            or len(wall.rims) > 2:
+        return None
+    return SurfaceWall(
+        tube.kind, tube.sizes, tube.frame, tube.end, wall.first[0].points, tube.u, tube.v, tube.table, tube.period, label,
+        tube.faces, wall.issues,
+    )
