@@ -122,7 +122,7 @@ class PickField(Input):
         names = list(self.picks[0].names)
         if self.link.name == "Source":
             return {"source": references[0], "faces": repr(names)}
-        return {self.link.key: f"({references[0]}, {names!r})" if self.element else references[0]}
+        return {self.link.key: repr(names) if self.element else references[0]}  # edges are the wall's own
 
 
 def _button(text: str, name: str, help: str) -> Any:

@@ -91,10 +91,16 @@ class WallPanel(StagePanel):
 
     def _arm_missing(self) -> None:
         """Wait for the first input that is missing."""
-        for field in self.picks:
-            if field.missing:
-                field.pick.setChecked(True)
-                return
+        field = self._lacking()
+        if field is not None:
+            field.pick.setChecked(True)
+
+    def _lacking(self) -> PickField | None:
+        """The first input that is missing: a substrate is none where a wall starts at edges of its own."""
+        if not self._field("Source").picks:
+            return self._field("Source")
+        edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
+        return None if edges or self._field("Substrate").picks else self._field("Substrate")
 
     def addSelection(self, *_: Any) -> None:
         """Something was clicked; called by FreeCAD, which must first be done with it."""
@@ -157,6 +163,11 @@ class WallPanel(StagePanel):
             self._tell(place, "")
         wall, curves = self._field("Source").picks, []
         source, names = (wall[0].obj, wall[0].names) if wall else (None, ())
+        lacking = self._lacking()
+        if lacking is not None:
+            self._say(f"{lacking.label} is missing: click it in the tree or the 3D view.", False)
+            self.preview.show(source, names, curves)
+            return
         try:
             made = outcome(SurfaceFeature, self.document, DRAFT, self._links(), self._values())
             curves, names = first_curves(made.value), made.value.faces
@@ -183,9 +194,6 @@ class WallPanel(StagePanel):
 
     def _place(self, error: InputError) -> None:
         """Tell an error under the field it belongs to."""
-        if error.code == "NO_INPUT":
-            self._say(next((field.missing for field in self.picks if field.missing), ""), False)
-            return
         self._say("No preview: see the field marked.", False)
         for place, (field, _, fold) in self.places.items():
             if error.where.replace(".", "_") == place or error.where == f"{DRAFT}.{field.row.name}":
