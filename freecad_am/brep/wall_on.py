@@ -31,16 +31,19 @@ def wall_on(
     PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and `substrate_of`.
     """
     carrier = None if substrate is None else substrate_of(substrate, substrate_label)
+    tube = None
     if carrier is not None and carrier.shape is not None and not start_edges:
         try:
-            wall = find_wall(shape, faces, carrier.shape, label, substrate_label)
-            if not any(issue.code == "SEVERAL_LOOPS" for issue in wall.issues):
-                return wall
+            tube = find_wall(shape, faces, carrier.shape, label, substrate_label)
+            if not any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues):
+                return tube
         except InputError as error:
             if error.code not in OTHER_KIND:
                 raise
     named = named_faces(shape, faces, label)
     found = find_patch_wall(shape, named, carrier, height, label, start_edges)
+    if tube is not None and len(found.first) == 1:
+        return tube  # its other loops are in the substrate, such as in the bore of a pipe
     if carrier is None or carrier.shape is not None or start_edges:
         return found
     return _as_tube(found, shape, faces, carrier, label) or found
