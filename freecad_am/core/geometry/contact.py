@@ -65,7 +65,7 @@ def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ..
     points, piece = _settled(wall, ground, points)
     if not line.closed:
         for end in (0, -1):
-            points[end] = _on_rim(points[end], rims, ground)
+            points[end] = wall.project(_on_rim(points[end], rims, ground)[None])[0][0]
         piece = ground.located(points)[2]
     sound = np.abs(dot(points - ground.on(piece, points)[0], ground.on(piece, points)[1])) < 1e-6
     points, piece = points[sound], piece[sound]
@@ -154,6 +154,8 @@ def _with_corners(
             break
     span = np.linalg.norm(points[at] - points[following[at]], axis=1)
     kept = ~flat & (np.linalg.norm(p - middle, axis=1) < 2.0 * span + 1e-9)
+    if ground.facets and kept.any():  # planes of facets that are no neighbours meet above the solid
+        kept[kept] = np.abs(ground.signed(p[kept])) < 1e-5
     key = np.r_[np.arange(count), at[kept] + 0.5]
     order = np.argsort(key, kind="stable")
     edge = np.r_[np.zeros(count, dtype=bool), np.ones(int(kept.sum()), dtype=bool)]

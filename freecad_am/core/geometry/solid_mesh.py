@@ -86,7 +86,8 @@ class Search:
     pseudo-normals (Baerentzen 2005)."""
 
     def __init__(self, solid: SolidMesh, longest: float) -> None:
-        self.vertices = vertices = solid.vertices
+        self.vertices, self.longest = solid.vertices, longest
+        vertices = solid.vertices
         sound = np.flatnonzero(np.linalg.norm(solid.normals, axis=1) > 1e-10)
         self.triangles, self.owner, self.units = solid.triangles[sound], sound, solid.units[sound]
         corner, units = vertices[self.triangles], self.units
@@ -107,7 +108,13 @@ class Search:
     def signed(self, points: Array) -> tuple[Array, Array, Index]:
         """Distance (k,) of points (k, 3), negative inside, the nearest points (k, 3) and triangles (k,) of the solid."""
         count = min(NEAREST, len(self.of))
-        near = self.of[np.asarray(self.tree.query(points, k=count)[1]).reshape(len(points), count)]
+        # about the middle of something round all is equally near: far points are content with a little farther
+        far = np.flatnonzero(self.tree.query(points, eps=0.1)[0] > 4.0 * self.longest)
+        close = np.setdiff1d(np.arange(len(points)), far)
+        near = np.zeros((len(points), count), dtype=np.intp)
+        for which, slack in ((far, 0.1), (close, 0.0)):
+            if len(which):
+                near[which] = self.of[np.asarray(self.tree.query(points[which], k=count, eps=slack)[1]).reshape(-1, count)]
         corner = self.vertices[self.triangles[near]]
         distance, share = closest(corner[:, :, 0], corner[:, :, 1], corner[:, :, 2], points[:, None])
         row, best = np.arange(len(points)), np.argmin(distance, axis=1)

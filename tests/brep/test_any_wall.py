@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls of any connected faces: meshes, first curves and rims against the shapes' equations; refusals by real bad shapes."""
+
+import MeshPart
+import numpy as np
+import Part
+import pytest
+from FreeCAD import Placement, Rotation, Vector
+
+from freecad_am.brep.wall_on import wall_on
+from freecad_am.core.geometry.patch_wall import PatchWall
+from freecad_am.core.geometry.refined import boundary
+from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.issues import InputError
+
+BEND, TUBE, PIPE = 60.0, 15.0, 32.0
+TURN = 2.0 * np.pi
+
+
+def bend(low=0.0, high=90.0, start=0.0, width=360.0):
+    torus = Part.Toroid()
+    torus.MajorRadius, torus.MinorRadius = BEND, TUBE
+    torus.Center, torus.Axis = Vector(-BEND, 0, 0), Vector(0, -1, 0)
+    return torus.toShape(*np.radians([low, high, start, start + width]).tolist())
+
+
+def pipe():
+    return Part.makeCylinder(PIPE, 160, Vector(0, -80, 0), Vector(0, 1, 0))
+
+
+def slab(top=5.0):
+    return Part.makeBox(100, 100, 10, Vector(-50, -50, top - 10))
+
+
+def tube(radius=15.0, height=60.0):
+    return Part.makeCylinder(radius, height).Faces[0]
+
+
+def shell(*faces):
+    return Part.Compound(list(faces))
+
+
+def on_both(points):
+    x, y, z = points.T
+    assert np.hypot(x, z) == pytest.approx(PIPE, abs=1e-9)
+    assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-9)
+
+
+def sound(wall, shape):
+    """Watertight but for its rims, on the faces, turned to one side, its edges short."""
+    ends, many = boundary(wall.triangles)
+    assert not many.any()
+    rims = sum(len(rim.points) - 1 for rim in wall.rims)
+    assert rims == len(ends)
+    some = wall.vertices[:: max(1, len(wall.vertices) // 25)]
+    assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in some) < 1e-5
+    corner = wall.vertices[wall.triangles]
+    facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    feet, normals = wall.project(corner.mean(axis=1))
+    assert (np.einsum("ij,ij->i", facet, normals) > 0.0).all()
+    some = feet[:: max(1, len(feet) // 25)]
+    assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in some) < 1e-4
+
+
+def test_two_halves_of_a_bend_anywhere_in_space():
+    place = Placement(Vector(10, -20, 30), Rotation(Vector(1, 2, 3), 50))
+    halves = shell(bend(start=20.0, width=180.0), bend(start=200.0, width=180.0))
+    moved, ground = halves.copy(), pipe()
+    moved.Placement, ground.Placement = place, place.multiply(ground.Placement)
+    wall = wall_on(shell(*moved.Faces), (), ground, 5.0)
+    if isinstance(wall, SurfaceWall):  # both are of one torus: exact without a mesh
+        points = wall.first
+    else:
+        points = wall.first[0].points
+    on_both(np.array([tuple(place.inverse().multVec(Vector(*point))) for point in points]))
+
+
+def test_half_shell_starts_in_a_chain_from_side_to_side():
+    half = bend(start=20.0, width=180.0)
+    wall = wall_on(half, (), pipe(), 4.0)
+    sound(wall, half)
+    curve, = wall.first
+    assert not curve.closed
+    on_both(curve.points[1:-1])
+    x, y, z = curve.points[[0, -1]].T
+    angle = np.degrees(np.arctan2(y, np.hypot(x + BEND, z) - BEND))
+    assert np.sort(angle) == pytest.approx([-20.0, 160.0], abs=1e-5)
+    end, = (rim for rim in wall.rims if rim.end)
+    assert end.points[:, 0] == pytest.approx(-BEND, abs=1e-6)
+    assert wall.behind[np.hypot(wall.vertices[:, 0], wall.vertices[:, 2]) < PIPE - 1e-6].all()
+    assert not wall.behind[np.hypot(wall.vertices[:, 0], wall.vertices[:, 2]) > PIPE + 1e-6].any()
+
+
+def test_three_tangent_faces():
+    foot = Part.makeCylinder(TUBE, 20, Vector(0, 0, -20)).Faces[0]
+    head = Part.makeCylinder(TUBE, 30, Vector(-BEND, 0, BEND), Vector(-1, 0, 0)).Faces[0]
+    elbow = shell(foot, bend(), head)
+    wall = wall_on(elbow, (), slab(-10.0), 5.0)
+    sound(wall, elbow)
+    curve, = wall.first
+    assert curve.closed and curve.points[:, 2] == pytest.approx(-10.0, abs=1e-9)
+    assert np.hypot(*curve.points[:, :2].T) == pytest.approx(TUBE, abs=1e-9)
+    assert [rim.end for rim in wall.rims if rim.points[:, 2].mean() > 0.0] == [True]
+    assert np.abs(np.linalg.norm(curve.into, axis=1) - 1.0).max() < 1e-12
+    assert np.abs(curve.into[:, 2]).max() < 1e-9
+
+
+def test_dome_of_sphere_and_cone():
+    cone = Part.makeCone(30.0, 20.0, 40.0)  # runs on from a sphere where their slopes agree
+    slope = np.arctan2(10.0, 40.0)
+    radius = 20.0 / np.cos(slope)
+    ball = Part.makeSphere(radius, Vector(0, 0, 40.0 - radius * np.sin(slope)), Vector(0, 0, 1), np.degrees(slope), 90.0, 360.0)
+    dome = shell(cone.Faces[0], ball.Faces[0])
+    wall = wall_on(dome, (), slab(), 4.0)
+    sound(wall, dome)
+    assert wall.first[0].closed and not any(rim.end for rim in wall.rims)  # it closes in a point
+    normal = wall.project(np.array([[0.1, 0.2, 100.0]]))[1]
+    assert normal[0, 2] > 0.99
+
+
+def test_window_and_slanted_end():
+    cutter = Part.makeBox(200, 200, 100, Vector(-100, -100, 50))
+    cutter.rotate(Vector(0, 0, 50), Vector(0, 1, 0), 20)
+    cut = tube().cut(Part.makeCylinder(5, 60, Vector(0, 0, 25), Vector(1, 0, 0))).cut(cutter)
+    wall = wall_on(cut, (), slab(), 4.0)
+    assert isinstance(wall, PatchWall)
+    sound(wall, cut)
+    kinds = {bool(rim.end): rim.points.mean(axis=0)[2] for rim in wall.rims if rim.points.mean(axis=0)[2] > 5.0}
+    assert kinds[True] > 40.0 and kinds[False] == pytest.approx(25.0, abs=1.0)
+
+
+def test_splines_loft_and_pipe():
+    points = [Vector(0, 0, 0), Vector(0, 5, 40), Vector(20, 10, 80), Vector(60, 5, 110)]
+    path = Part.BSplineCurve()
+    path.interpolate(points, InitialTangent=Vector(0, 0, 1), FinalTangent=Vector(1, 0, 1))
+    circle = Part.Wire(Part.makeCircle(8, Vector(), Vector(0, 0, 1)))
+    swept = Part.Wire(path.toShape()).makePipeShell([circle], False, True)
+    ellipse = Part.Ellipse(Vector(0, 16, 40), Vector(9, 0, 40), Vector(0, 0, 40)).toShape()
+    loft = Part.makeLoft([Part.Wire(Part.makeCircle(10)), Part.Wire(ellipse)], False)
+    for shape in (swept, loft):
+        wall = wall_on(shape, ("Face1",) if len(shape.Faces) == 1 else (), slab(), 3.0)
+        points = wall.first if isinstance(wall, SurfaceWall) else wall.first[0].points
+        assert points[:, 2] == pytest.approx(5.0, abs=1e-6)
+        assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in points[::10]) < 5e-5
+
+
+def test_corners_of_the_substrate_are_corners_of_the_curve():
+    wall = wall_on(shell(Part.makeCylinder(15, 30, Vector(0, 0, 10), Vector(0, 0, 1), 180).Faces[0]), (),
+                   Part.makeBox(100, 15, 30, Vector(-50, -5, 0)), 3.0)
+    corner = [k for curve in wall.first for k, (a, b) in enumerate(zip(curve.into, curve.out)) if a @ b < 0.9]
+    assert corner
+    points = np.vstack([curve.points[[k for k, (a, b) in enumerate(zip(curve.into, curve.out)) if a @ b < 0.9]]
+                        for curve in wall.first])
+    assert points[:, 1] == pytest.approx(10.0, abs=1e-9)
+    assert points[:, 2] == pytest.approx(30.0, abs=1e-9)
+    assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx(15.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("half", [False, True])
+def test_mesh_substrate(half):
+    mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.02, AngularDeflection=0.1)
+    wall = wall_on(bend(start=20.0, width=180.0) if half else bend(), (), mesh, 5.0)
+    assert isinstance(wall, PatchWall if half else SurfaceWall)
+    points = wall.first[0].points if half else wall.first
+    x, y, z = points.T
+    assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-7)
+    assert np.hypot(x, z) == pytest.approx(PIPE, abs=0.03)
+    assert "up to" in wall.issues[0].message
+
+
+def test_chosen_edges_need_no_substrate():
+    face = tube()
+    low = next(f"Edge{k}" for k, edge in enumerate(face.Edges, 1) if edge.BoundBox.ZMax < 1e-6)
+    wall = wall_on(face, (), None, 4.0, start_edges=(low,))
+    assert wall.first[0].closed and wall.first[0].points[:, 2] == pytest.approx(0.0, abs=1e-12)
+    assert wall.first[0].curve().length == pytest.approx(TURN * 15.0, abs=1e-3)
+    assert not wall.behind.any() and [rim.points[0, 2] for rim in wall.rims if rim.end] == pytest.approx([60.0])
+
+
+def test_several_loops_are_all_taken_and_told():
+    wall = wall_on(Part.makeCylinder(5, 120, Vector(0, 0, -60)).Faces[0], (), pipe(), 3.0)
+    assert len(wall.first) == 2
+    told, = (issue.message for issue in wall.issues if issue.code == "SEVERAL_LOOPS")
+    assert "2 curves" in told and "31" in told and "-31" in told
+
+
+def refused(*args, **more):
+    with pytest.raises(InputError) as caught:
+        wall_on(*args, label="Wall", substrate_label="Pipe", **more)
+    return caught.value
+
+
+def reversed_mesh():
+    mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.5, AngularDeflection=0.5)
+    mesh.flipNormals()
+    return mesh
+
+
+def open_mesh():
+    mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.5, AngularDeflection=0.5)
+    mesh.removeFacets([0])
+    return mesh
+
+
+def reversed_solid():
+    solid = pipe()
+    solid.reverse()
+    return solid
+
+
+def moved(face, *by):
+    face = face.copy()
+    face.translate(Vector(*by))
+    return face
+
+
+def tight_pipe():
+    spine = Part.BSplineCurve()
+    spine.interpolate([Vector(0, 0, 0), Vector(0, 0, 40), Vector(8, 0, 45), Vector(16, 0, 40), Vector(16, 0, 0)])
+    return Part.Wire(spine.toShape()).makePipeShell([Part.Wire(Part.makeCircle(10))], False, True)
+
+
+@pytest.mark.parametrize(("make", "substrate", "height", "code", "words"), [
+    (lambda: bend(start=0, width=180), lambda: Part.makeBox(9, 9, 9, Vector(200, 0, 0)), 5.0, "NO_CONTACT", ["mm away"]),
+    (lambda: bend(start=0, width=180), lambda: Part.makeSphere(300.0), 5.0, "INSIDE", ["deep"]),
+    (lambda: bend(start=0, width=180), reversed_solid, 5.0, "INSIDE_OUT", ["volume"]),
+    (lambda: bend(), reversed_mesh, 5.0, "INSIDE_OUT", ["volume"]),
+    (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["3 edges"]),
+    (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 30.1)), slab, 4.0, "GAP", ["0.1 mm", "0.01 mm"]),
+    (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 33)), slab, 4.0, "GAP", ["separate", "3 mm"]),
+    (lambda: shell(tube(height=30), Part.makeCone(15, 25, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "CREASE", ["18.4 deg"]),
+    (lambda: shell(tube(2.0, 30.0), Part.makeCylinder(2.0, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "LAYER_HEIGHT", ["2 mm"]),
+    (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
+])
+def test_refusals_by_real_shapes(make, substrate, height, code, words):
+    error = refused(make(), (), substrate(), height)
+    assert error.code == code, error.line()
+    assert error.where.split()[0] in ("Wall", "Pipe")
+    assert "(" in error.message
+    for word in words:
+        assert word in error.message
