@@ -39,7 +39,7 @@ def flat(layers):
 
 CASES = {
     "a cap": (lambda: ball(FLOOR, 1500), 2.6, 0.0),
-    "a slanted meeting": (lambda: ball(Both([0, 0, -12.0], [0.1, 0.3, 1], [0, 3.0, 14], [0.3, 0.1, -1]), 2500), 1.9, 0.0),
+    "a slanted meeting": (lambda: ball(Both([0, 0, -12.0], [0.1, 0.3, 1], [0, 3.0, 14], [0.3, 0.1, -1]), 3000), 1.6, 0.0),
     "a meeting head on": (lambda: tube(Both([0, 0, 0.0], [0, 0, 1], [0, 0, 14.8], [0, 0, -1]), 20.0, 1.0, 10.0), 2.0, 0.0),
     "behind holes": (lambda: sheet(SILL, [(2.0, 20.0, 9.0), (-15.0, 25.0, 6.0), (17.0, 37.0, 5.0)]), 1.7, 1.7),
 }
@@ -76,4 +76,4 @@ def test_fronts_from_two_ends_of_a_tube_leave_one_ring_to_close():
 def test_where_beads_lie_close_enough_nothing_is_closed():
     slanted = HalfSpace(np.zeros(3), np.array([0.2, 0.1, 1.0]))
     assert not flat(fronts.layers(tube(slanted, 20.0, 2.0, low=-10.0), 3.0).closing)
-    assert not flat(fronts.layers(ball(FLOOR, 1500), 2.3).closing)  # the last circle is 0.5 heights wide
+    assert not flat(fronts.layers(ball(FLOOR, 4000), 1.15).closing)  # the last circle is 0.5 heights wide
