@@ -31,22 +31,27 @@ def wall_on(
     PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and `substrate_of`.
     """
     carrier = None if substrate is None else substrate_of(substrate, substrate_label)
-    tube = None
     if carrier is not None and carrier.shape is not None and not start_edges:
         try:
             tube = find_wall(shape, faces, carrier.shape, label, substrate_label)
-            if not any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues):
+            if _starts_all_around(tube):
                 return tube
         except InputError as error:
             if error.code not in OTHER_KIND:
                 raise
     named = named_faces(shape, faces, label)
     found = find_patch_wall(shape, named, carrier, height, label, start_edges)
-    if tube is not None and len(found.first) == 1:
-        return tube  # its other loops are in the substrate, such as in the bore of a pipe
     if carrier is None or carrier.shape is not None or start_edges:
         return found
     return _as_tube(found, shape, faces, carrier, label) or found
+
+
+def _starts_all_around(tube: SurfaceWall) -> bool:
+    """Whether the first layer runs around the tube: then the other loops lie below it, such as in the bore of a pipe."""
+    surface = tube.surface()
+    v = surface.inverse(np.vstack([tube.first, tube.first[:1]]))[1]
+    turn = np.remainder(np.diff(v) + 0.5 * tube.period, tube.period) - 0.5 * tube.period
+    return bool(abs(abs(turn.sum()) - tube.period) < 1e-3 * tube.period)
 
 
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:

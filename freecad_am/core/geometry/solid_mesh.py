@@ -109,10 +109,10 @@ class Search:
         """Distance (k,) of points (k, 3), negative inside, the nearest points (k, 3) and triangles (k,) of the solid."""
         count = min(NEAREST, len(self.of))
         # about the middle of something round all is equally near: far points are content with a little farther
-        far = np.flatnonzero(self.tree.query(points, eps=0.1)[0] > 4.0 * self.longest)
+        far = np.flatnonzero(self.tree.query(points, eps=0.3)[0] > 4.0 * self.longest)
         close = np.setdiff1d(np.arange(len(points)), far)
         near = np.zeros((len(points), count), dtype=np.intp)
-        for which, slack in ((far, 0.1), (close, 0.0)):
+        for which, slack in ((far, 0.3), (close, 0.0)):
             if len(which):
                 near[which] = self.of[np.asarray(self.tree.query(points[which], k=count, eps=slack)[1]).reshape(-1, count)]
         corner = self.vertices[self.triangles[near]]
