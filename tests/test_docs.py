@@ -125,11 +125,11 @@ def test_jobs_shown_are_read(tmp_path):
 
 
 def imports_table():
-    """OURS and FOREIGN of tests/test_imports.py."""
+    """OURS, FOREIGN and ALONE of tests/test_imports.py."""
     spec = importlib.util.spec_from_file_location("imports_table", ROOT / "tests" / "test_imports.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.OURS, module.FOREIGN
+    return module.OURS, module.FOREIGN, module.ALONE
 
 
 def listed(cell):
@@ -137,7 +137,7 @@ def listed(cell):
 
 
 def test_architecture_has_the_table_of_imports():
-    ours, foreign = imports_table()
+    ours, foreign, alone = imports_table()
     text = (DOCS / "architecture.md").read_text(encoding="utf-8")
     section = text.split("## Who may import whom")[1].split("\n## ")[0]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]
@@ -145,6 +145,8 @@ def test_architecture_has_the_table_of_imports():
     assert shown == ours
     for cells in rows:
         assert listed(cells[2]) == foreign[cells[0].strip("`").split("/")[0]], cells[0]
+    told = re.search(r"One file may import more: (`.+`) has (`.+`)\.", section)
+    assert {file: listed(told[2]) for file in listed(told[1])} == alone
 
 
 def test_decisions_are_numbered_and_whole():

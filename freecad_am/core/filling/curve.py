@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a filling is made of, and what its patterns share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..geometry.plane_curve import Array, begun_at, doubled_area, length
+
+LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
+
+
+@dataclass(frozen=True)
+class PlaneCurve:
+    """The middle of a bead: points (n, 2) mm; a closed one does not repeat its first point.
+
+    kind: 'contour', 'line', 'spiral', 'zigzag' or 'centre'. ring: counts from the outermost contour, 0, inwards. turns: how
+    often a closed one goes round the hub, so that behind its last point follows the first, moved on by the period as often.
+    """
+
+    points: Array
+    closed: bool
+    kind: str
+    ring: int
+    turns: int = 0
+
+
+@dataclass(frozen=True)
+class Beads:
+    """How a region is filled: what all patterns ask for.
+
+    spacing: mm between the middles of neighbouring beads. gap: the widest (mm) that may stay open between beads.
+    shortest: beads below this length (mm) are dropped. thin: 'single' lays one bead where a region, or a neck of it, is
+    narrower than a bead; 'refuse' refuses. clockwise: sense of closed beads. start: a point (x, y) that closed beads begin
+    nearest to, or the direction (rad) in which they begin farthest out. chord_error: mm, of arcs; 0: 0.005 spacings.
+    """
+
+    spacing: float
+    gap: float
+    shortest: float
+    thin: str = "single"
+    clockwise: bool = False
+    start: tuple[float, float] | float = 0.0
+    chord_error: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.spacing > 0.0 or not self.gap > 0.0 or self.shortest < 0.0 or self.thin not in ("single", "refuse"):
+            raise ValueError("spacing and gap must be positive, shortest not negative, thin 'single' or 'refuse'")
+        if self.chord_error <= 0.0:
+            object.__setattr__(self, "chord_error", 0.005 * self.spacing)
+
+    def ring(self, points: Array) -> Array:
+        """A ring (n, 2) with the sense and the start asked for."""
+        turned = points[::-1] if (doubled_area(points) < 0.0) != self.clockwise else points
+        return begun_at(turned, self.start_of(turned))
+
+    def start_of(self, points: Array) -> Array:
+        """The place (2,) that a ring should begin nearest to."""
+        if isinstance(self.start, tuple):
+            return np.array(self.start, dtype=float)
+        way = np.array([np.cos(self.start), np.sin(self.start)])
+        out, aside = points @ way, points @ np.array([-way[1], way[0]])
+        far = np.flatnonzero(out >= out.max() - LEVEL * max(np.ptp(out), np.ptp(aside)))
+        found: Array = points[far[np.argmax(aside[far])]]
+        return found
+
+
+def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
+    """The curves without those below a length, mm."""
+    return [curve for curve in curves if length(curve.points, curve.closed) >= shortest and len(curve.points) > 1]
+
+
+def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
+    """A closed curve with the sense and start asked for; an open one as it is."""
+    return replace(curve, points=beads.ring(curve.points)) if curve.closed and not curve.turns else curve

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Contours linked to spirals: almost round, then over to the next contour by a short line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..geometry.plane_curve import Array, begun_at, doubled_area, length, nearest, up_to
+from ..geometry.region import Region
+from .contours import levels, middles
+from .curve import Beads, PlaneCurve, long_enough
+
+PROBES = 64  # places of a ring that tell which ring it follows
+BESIDE = 0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
+SHORT = 4.0  # spacings; contours shorter than that are not linked
+LINK = 3.0  # spacings; longest link
+
+
+def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
+    """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
+    join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
+    found = levels(region, beads)
+    rings = [[ring for part in parts for ring in part.rings()] for parts in found.rings]
+    follower = [_followers(here, there, beads.spacing) for here, there in zip(rings, rings[1:])] + [{}]
+    led: set[tuple[int, int]] = set()
+    curves = []
+    for k, level in enumerate(rings):
+        for number in range(len(level)):
+            if (k, number) in led:
+                continue
+            chain = [(k, number)]
+            while (following := follower[chain[-1][0]].get(chain[-1][1])) is not None:
+                chain.append((chain[-1][0] + 1, following))
+            pieces = _linked([rings[j][n] for j, n in chain], found.rings[k:], beads)
+            led.update(chain[: len(pieces)])
+            curves.append(_curve(pieces, beads, k))
+    curves += middles(found, beads)
+    return long_enough(curves, beads.shortest)
+
+
+def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) -> dict[int, int]:
+    """Which ring of the next level follows each of this one, where no other does and it follows no other."""
+    beside = np.zeros((len(here), len(there)), dtype=bool)
+    for j, ring in enumerate(there):
+        probes = ring[np.unique(np.linspace(0, len(ring) - 1, PROBES).astype(int))]
+        probes = np.vstack([probes, 0.5 * (probes + np.roll(ring, -1, axis=0)[nearest(ring, probes, True).edge])])
+        away = np.stack([nearest(outer, probes, True).distance for outer in here])
+        close = np.abs(away - spacing) < BESIDE * spacing
+        beside[:, j] = close.mean(axis=1) > 0.05
+    single = beside & (beside.sum(axis=1) == 1)[:, None] & (beside.sum(axis=0) == 1)
+    return {int(i): int(j) for i, j in zip(*np.nonzero(single))}
+
+
+def _linked(chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: Beads) -> list[Array]:
+    """The rings as far as links lead, each begun where the link arrives and ended where the next leaves."""
+    ring = beads.ring(chain[0])
+    pieces = []
+    for following, inside in zip(chain[1:], regions):
+        way = length(ring, True)
+        if way < SHORT * beads.spacing:
+            break
+        cut = up_to(np.vstack([ring, ring[:1]]), way - beads.spacing)
+        turned = following[::-1] if (doubled_area(following) < 0.0) != beads.clockwise else following
+        arrives = nearest(turned, ring[:1], True).points[0]
+        link = cut[-1] + np.linspace(0.0, 1.0, 17)[1:-1, None] * (arrives - cut[-1])
+        if np.hypot(*(arrives - cut[-1])) > LINK * beads.spacing or not _inside(link, inside):
+            break
+        pieces.append(cut)
+        ring = begun_at(turned, arrives)
+    pieces.append(ring)
+    return pieces
+
+
+def _curve(pieces: Sequence[Array], beads: Beads, ring: int) -> PlaneCurve:
+    if len(pieces) == 1:
+        return PlaneCurve(pieces[0], True, "spiral", ring)
+    last = np.vstack([pieces[-1], pieces[-1][:1]])
+    last = up_to(last, max(length(last, False) - 0.5 * beads.spacing, 0.5 * length(last, False)))
+    return PlaneCurve(np.vstack([*pieces[:-1], last]), False, "spiral", ring)
+
+
+def _inside(points: Array, regions: Sequence[Region]) -> bool:
+    return bool(np.any([region.contains(points) for region in regions], axis=0).all())

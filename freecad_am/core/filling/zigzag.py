@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parallel lines linked to zigzags: from the end of one along the border to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..geometry.plane_curve import Array, length, nearest
+from ..geometry.region import Region
+from .centre import single_beads
+from .curve import Beads, PlaneCurve, long_enough
+from .lines import frame, rest, rows
+
+LINK = 3.0  # of the spacing
+
+
+def zigzag(
+    region: Region, beads: Beads, angle: float = 0.0, ring: bool = False, longest_link: float = 0.0
+) -> list[PlaneCurve]:
+    """Lines as of `lines`, each linked to the next along the border of the room that beads have, so that no link is outside.
+
+    longest_link: mm, by default LINK spacings; where a link would be longer another zigzag begins.
+    """
+    limit = longest_link if longest_link > 0.0 else LINK * beads.spacing
+    place = frame(region, beads, ring)
+    borders = [line for part in place.room for line in part.rings()]
+    levels = rows(place.room, beads, angle)
+    open_ = [list(range(len(level))) for level in levels]
+    curves = single_beads(place.thin, beads) + place.curves
+    for row in range(len(levels)):
+        while open_[row]:
+            points = _chain(levels, open_, row, borders, limit)
+            curves.append(PlaneCurve(points, False, "zigzag", int(ring)))
+    curves += rest(region, curves, beads, int(ring) + 1)
+    return long_enough(curves, beads.shortest)
+
+
+def _chain(
+    levels: Sequence[Sequence[Array]], open_: list[list[int]], row: int, borders: Sequence[Array], limit: float
+) -> Array:
+    """A zigzag from the first line open in a row up; takes its lines off the list."""
+    piece = levels[row][open_[row].pop(0)]
+    parts, far = [piece], 1
+    while row + 1 < len(levels):
+        row += 1
+        links = [
+            (length(way, False), number, way) for number in open_[row]
+            if (way := _link(parts[-1][-1], levels[row][number][far], borders, limit)) is not None
+        ]
+        if not links:
+            break
+        _, number, way = min(links, key=lambda link: link[:2])
+        open_[row].remove(number)
+        far = 1 - far
+        parts += [way[1:-1], levels[row][number][:: 1 if far else -1]]
+    return np.vstack(parts)
+
+
+def _link(start: Array, end: Array, borders: Sequence[Array], limit: float) -> Array | None:
+    """The shorter way (n, 2) along a border that both ends lie on; None where there is none below the limit."""
+    if float(np.hypot(*(end - start))) > limit:
+        return None
+    both = np.stack([start, end])
+    found = [nearest(border, both, closed=True) for border in borders]
+    best = int(np.argmin([places.distance.max() for places in found]))
+    border, places = borders[best], found[best]
+    if places.distance.max() > 1e-6 * limit:
+        return None
+    ways = [_way(border, start, end, *places.edge, *places.share)]
+    ways.append(_way(border, end, start, *places.edge[::-1], *places.share[::-1])[::-1])
+    way = min(ways, key=lambda points: length(points, False))
+    return way if length(way, False) <= limit else None
+
+
+def _way(border: Array, start: Array, end: Array, leaves: int, arrives: int, share: float, share_at: float) -> Array:
+    """From a place on edge `leaves` on along a ring to one on edge `arrives`."""
+    count = (arrives - leaves) % len(border)
+    if count == 0 and share_at < share:
+        count = len(border)
+    between = border[(leaves + 1 + np.arange(count)) % len(border)]
+    return np.vstack([start[None], between, end[None]])

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Polylines in the plane: area, winding number, nearest places, cuts by arc length."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+AT_ONCE = 4_000_000  # pairs of points and edges
+
+
+class Nearest(NamedTuple):
+    """Places (n, 2) on a polyline, their edges (n,), shares along those (n,) and distances (n,) mm."""
+
+    points: Array
+    edge: Index
+    share: Array
+    distance: Array
+
+
+def doubled_area(ring: Array) -> float:
+    """Twice the area (mm^2) a ring (n, 2) encloses, positive when it runs counter-clockwise."""
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def length(points: Array, closed: bool) -> float:
+    """mm."""
+    return float(np.hypot(*steps(points, closed).T).sum())
+
+
+def steps(points: Array, closed: bool) -> Array:
+    """Edges of a polyline as vectors, (n, 2) when closed and (n - 1, 2) when open."""
+    return np.roll(points, -1, axis=0) - points if closed else np.diff(points, axis=0)
+
+
+def winding(rings: Sequence[Array], points: Array) -> NDArray[np.intp]:
+    """How often rings (n, 2) go round each of points (k, 2), counted with their sense."""
+    count = np.zeros(len(points), dtype=np.intp)
+    for ring in rings:
+        low, high = ring.min(axis=0), ring.max(axis=0)
+        near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+        following = np.roll(ring, -1, axis=0)
+        size = max(AT_ONCE // len(ring), 1)
+        for some in (near[k : k + size] for k in range(0, len(near), size)):
+            x, y = points[some, :1], points[some, 1:]
+            up = (ring[:, 1] <= y) & (following[:, 1] > y)
+            down = (ring[:, 1] > y) & (following[:, 1] <= y)
+            row, edge = np.nonzero(up | down)
+            a, b = ring[edge], following[edge]
+            side = (b[:, 0] - a[:, 0]) * (y[row, 0] - a[:, 1]) - (x[row, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
+            turned = np.where(up[row, edge], (side > 0.0).astype(int), -(side < 0.0).astype(int))
+            count[some] += np.bincount(row, weights=turned, minlength=len(some)).astype(np.intp)
+    return count
+
+
+def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
+    """The places of a polyline (m, 2) nearest to points (k, 2)."""
+    way = steps(curve, closed)
+    start = curve[: len(way)]
+    square = np.maximum((way**2).sum(axis=1), 1e-300)
+    size = max(AT_ONCE // max(len(way), 1), 1)
+    edges, shares = [], []
+    for some in (points[k : k + size] for k in range(0, len(points), size)):
+        x, y = some[:, :1] - start[:, 0], some[:, 1:] - start[:, 1]
+        share = np.clip((x * way[:, 0] + y * way[:, 1]) / square, 0.0, 1.0)
+        away = (x - share * way[:, 0]) ** 2 + (y - share * way[:, 1]) ** 2
+        best = np.argmin(away, axis=1)
+        edges.append(best)
+        shares.append(share[np.arange(len(some)), best])
+    edge = np.concatenate(edges) if edges else np.zeros(0, dtype=np.intp)
+    part = np.concatenate(shares) if shares else np.zeros(0)
+    place = start[edge] + part[:, None] * way[edge]
+    return Nearest(place, edge, part, np.hypot(*(points - place).T))
+
+
+def begun_at(ring: Array, point: Array) -> Array:
+    """A ring (n, 2) that begins where it is nearest to a point (2,); that place becomes one of its points."""
+    found = nearest(ring, point[None], closed=True)
+    edge, place = int(found.edge[0]), found.points[0]
+    rest = np.roll(ring, -(edge + 1), axis=0)
+    close = 1e-9 * float(np.abs(steps(ring, True)[edge]).max())
+    if np.abs(rest[0] - place).max() <= close:
+        return rest
+    if np.abs(rest[-1] - place).max() <= close:
+        return np.roll(rest, 1, axis=0)
+    return np.vstack([place[None], rest])
+
+
+def up_to(points: Array, way: float) -> Array:
+    """The first `way` mm of an open polyline (n, 2)."""
+    at = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    if way >= at[-1]:
+        return points
+    k = int(np.searchsorted(at, way, side="right"))
+    share = (way - at[k - 1]) / max(at[k] - at[k - 1], 1e-300)
+    end = points[k - 1] + share * (points[k] - points[k - 1])
+    return np.vstack([points[:k], end[None]]) if share > 1e-9 else points[:k]
+
+
+def turned(points: Array, angle: float) -> Array:
+    """Points (..., 2) turned about the origin by an angle, rad."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.stack([points[..., 0] * cos - points[..., 1] * sin, points[..., 0] * sin + points[..., 1] * cos], axis=-1)
