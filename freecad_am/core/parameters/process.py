@@ -61,7 +61,7 @@ class ProcessParameters:
         "Direction of closed beads seen against the build direction; open beads run as found unless alternate.",
         choices=("counter-clockwise", "clockwise", "alternate", "as found"),
     )
-    bead_width: float = f.parameter(8.0, f.LENGTH, "Width of the bead; only reported without a bead model.",
+    bead_width: float = f.parameter(8.0, f.LENGTH, "Width of the bead; held by the bead model, only reported without one.",
                                     low=0.0, open_low=True)
     wire: WireParameters = f.group(WireParameters, "The feedstock.")
     temperature: float | None = f.parameter(None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True)
@@ -71,7 +71,14 @@ class ProcessParameters:
     lead_off: float = f.parameter(0.0, f.TIME, "Deposit switched off this long after a bead ends.", low=0.0)
     overlap: float = f.parameter(0.0, f.LENGTH, "How far a closed bead runs on past its seam.", low=0.0)
     between_layers: BetweenLayersParameters = f.group(BetweenLayersParameters, "What happens between two layers.")
-    bead_model: str = f.parameter("none", f.TEXT, "none, csw, or the path of a calibration table.")
+    bead_model: str = f.parameter(
+        "none", f.TEXT, "Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or "
+        "the path of a calibration table."
+    )
+    acceleration: float = f.parameter(
+        20.0, f.NUMBER, "Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.",
+        low=0.0, open_low=True, advanced=True,
+    )
 
     def __post_init__(self) -> None:
         f.check(self, "process")

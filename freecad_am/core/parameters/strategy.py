@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..issues import InputError
 from . import field as f
 
 SPACINGS = ("constant-distance", "smooth", "iso-parameter")
@@ -84,3 +85,95 @@ class SurfaceParameters(LayerParameters):
         for spacing in self.compare:
             if spacing not in SPACINGS:
                 raise f.unknown_choice("strategy.compare", spacing, SPACINGS)
+
+
+@dataclass(frozen=True)
+class BaseParameters:
+    """The cylinder or cone that solids grow on, where it is not found on a face. mm."""
+
+    radius: float | str = f.parameter(
+        "auto", f.LENGTH, "Radius of the base circle; auto: the face chosen, or the one that the solids stand on.",
+        low=0.0, open_low=True, words=("auto",),
+    )
+    height: float | str = f.parameter(
+        "inf", f.LENGTH, "From the base circle to the apex of the cone, along the axis; inf: a cylinder.",
+        low=0.0, open_low=True, words=("inf",),
+    )
+    axis: str = f.parameter(
+        "0 0 0 0 0 1", f.TEXT, "Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the "
+        "part's coordinates.",
+    )
+
+    def __post_init__(self) -> None:
+        if self.height == math.inf:
+            object.__setattr__(self, "height", "inf")
+        f.check(self, "strategy.base")
+        self.line()
+        if self.radius == "auto" and self.height != "inf":
+            raise InputError(
+                "BAD_VALUE", "strategy.base.radius", "a height alone is no cone; give the radius of its base circle too, or "
+                "base: auto",
+            )
+
+    def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Middle of the base circle and direction of the axis, not of unit length."""
+        try:
+            numbers = [float(word) for word in self.axis.replace(",", " ").split()]
+        except ValueError:
+            numbers = []
+        point, way = tuple(numbers[:3]), tuple(numbers[3:])
+        if len(numbers) != 6 or not all(map(math.isfinite, numbers)) or not math.hypot(*way) > 0.0:
+            raise InputError(
+                "BAD_VALUE", "strategy.base.axis",
+                f"{self.axis!r} is no axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]",
+            )
+        return point, way
+
+
+@dataclass(frozen=True)
+class DevelopableParameters(LayerParameters):
+    """How solids on a cylinder or cone are cut and filled (Dai 2020, section 2). mm and rad."""
+
+    base: BaseParameters = f.group(BaseParameters, "The cylinder or cone that the solids grow on.")
+    bead_spacing: float = f.parameter(
+        5.0, f.LENGTH, "Distance between neighbouring beads of a layer.", low=0.0, open_low=True
+    )
+    fill: str = f.parameter(
+        "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: spiral, zigzag.",
+        choices=("contours", "lines", "spiral", "zigzag"),
+    )
+    fill_angle: float = f.parameter(
+        0.0, f.ANGLE, "Direction of lines and zigzags; 0 runs around the hub, 90 deg along it."
+    )
+    fill_angle_step: float = f.parameter(
+        math.pi / 2.0, f.ANGLE, "How far the direction of lines and zigzags turns from layer to layer."
+    )
+    contour: bool = f.parameter(True, f.FLAG, "A contour is laid round lines and zigzags.")
+    margin: float = f.parameter(
+        0.0, f.LENGTH, "How far the deposit stands out on all sides of the part, to be machined off.", low=0.0
+    )
+    order: str = f.parameter(
+        "around-axis", f.CHOICE, "The same layer of all solids on a base in turn, around the axis, the same ring of each and "
+        "the inner ones first; or solid by solid (feature).",
+        choices=("around-axis", "feature"),
+    )
+    wait: float = f.parameter(
+        0.0, f.TIME, "Least time between the end of a solid's layer and the start of its next.", low=0.0
+    )
+    deflection: float = f.parameter(
+        0.0, f.ANGLE, "Torch turned outwards about the bead on outer contours.", low=-math.pi / 3.0, high=math.pi / 3.0
+    )
+    thin: str = f.parameter(
+        "single", f.CHOICE, "A region narrower than a bead gets a single bead, or the job is refused.",
+        choices=("single", "refuse"),
+    )
+    gap: float = f.parameter(
+        0.2, f.RATIO, "Widest gap that may stay open between beads, as a share of the bead spacing.",
+        low=0.01, high=1.0, advanced=True,
+    )
+    shortest: float = f.parameter(
+        2.0, f.LENGTH, "Beads shorter than this are left out.", low=0.0, advanced=True
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "strategy")
