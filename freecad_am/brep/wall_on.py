@@ -16,6 +16,7 @@ from .patch_wall import find_patch_wall
 from .substrate import Substrate, substrate_of
 from .wall import tubes
 
+BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
 # what is no closed tube of one surface that starts in one loop may still be a wall
 OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
 
@@ -34,7 +35,7 @@ def wall_on(
     if carrier is not None and carrier.shape is not None and not start_edges:
         try:
             tube = find_wall(shape, faces, carrier.shape, label, substrate_label)
-            if _starts_all_around(tube):
+            if _starts_all_around(tube, carrier.shape):
                 return tube
         except InputError as error:
             if error.code not in OTHER_KIND:
@@ -46,12 +47,20 @@ def wall_on(
     return _as_tube(found, shape, faces, carrier, label) or found
 
 
-def _starts_all_around(tube: SurfaceWall) -> bool:
-    """Whether the first layer runs around the tube: then the other loops lie below it, such as in the bore of a pipe."""
+def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
+    """Whether the first layer runs around the tube, and what is below it stays within the box of the substrate: there the
+    wall's other loops lie in it, such as in the bore of a pipe."""
     surface = tube.surface()
-    v = surface.inverse(np.vstack([tube.first, tube.first[:1]]))[1]
+    u, v = surface.inverse(np.vstack([tube.first, tube.first[:1]]))
     turn = np.remainder(np.diff(v) + 0.5 * tube.period, tube.period) - 0.5 * tube.period
-    return bool(abs(abs(turn.sum()) - tube.period) < 1e-3 * tube.period)
+    if abs(abs(turn.sum()) - tube.period) > 1e-3 * tube.period:
+        return False
+    if not any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues):
+        return True
+    below = surface.point(np.linspace(0.0, 1.0, BELOW)[:, None] * u, np.broadcast_to(v, (BELOW, len(v)))).reshape(-1, 3)
+    box = solid.BoundBox
+    low, high = np.array([box.XMin, box.YMin, box.ZMin]), np.array([box.XMax, box.YMax, box.ZMax])
+    return bool(((below > low - 1e-3) & (below < high + 1e-3)).all())
 
 
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
