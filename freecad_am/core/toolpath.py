@@ -183,9 +183,15 @@ class Bead:
 
 @dataclass(frozen=True)
 class Layer:
-    """What is deposited at one index of the slicing: one bead or more, in the order of deposit."""
+    """What is deposited at one index of the slicing: one bead or more, in the order of deposit.
+
+    wait: s that the machine stands before the layer, for what lies below to cool. first: nothing of the feature lies below, as
+    where another solid is begun.
+    """
 
     beads: tuple[Bead, ...]
+    wait: float = 0.0
+    first: bool = False
 
 
 @dataclass(frozen=True)

@@ -42,11 +42,14 @@ class Curve:
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
 
-    A spiral is one layer; there it is the distance of each point to the turn before. Beads that close gaps are left out.
+    A spiral is one layer; there it is the distance of each point to the turn before. Beads that close gaps are left out, and
+    layers that nothing of the feature lies below.
     """
     if _is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
-    above = [[bead.points for bead in layer.beads if not bead.closing] for layer in toolpath.layers[1:]]
+    above = [
+        [] if layer.first else [bead.points for bead in layer.beads if not bead.closing] for layer in toolpath.layers[1:]
+    ]
     return tuple(
         distance(np.concatenate(points), curve_of(below))
         for below, points in zip(toolpath.layers, above, strict=False) if points
@@ -56,7 +59,7 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per bead in the order of deposit, (n,) mm: the distance of each of its points to the layer before.
 
-    NaN where nothing of the feature lies below: in the first layer, and in the first turn of a spiral.
+    NaN where nothing of the feature lies below: in first layers, and in the first turn of a spiral.
     """
     if _is_spiral(toolpath):
         bead = toolpath.layers[0].beads[0]
@@ -66,6 +69,9 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
         return (found,)
     done = [np.full(len(bead), np.nan) for bead in toolpath.layers[0].beads]
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
+        if layer.first:
+            done += [np.full(len(bead), np.nan) for bead in layer.beads]
+            continue
         apart = distance(np.concatenate([bead.points for bead in layer.beads]), curve_of(below))
         done += np.split(apart, np.cumsum([len(bead) for bead in layer.beads])[:-1])
     return tuple(done)

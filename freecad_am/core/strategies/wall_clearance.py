@@ -26,7 +26,7 @@ from ..geometry.surroundings import Body
 from ..issues import ERROR, NOTE, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
-from ..toolpath import Layer, Toolpath
+from ..toolpath import Toolpath
 from .least_turn import least
 
 Array = NDArray[np.float64]
@@ -102,7 +102,8 @@ def kept_clear(
     return dataclasses.replace(
         toolpath,
         layers=tuple(
-            Layer(tuple(dataclasses.replace(bead, tool=next(layers)) for bead in layer.beads)) for layer in toolpath.layers
+            dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, tool=next(layers)) for bead in layer.beads))
+            for layer in toolpath.layers
         ),
         issues=(*toolpath.issues, *_issues(places, begin, tilt, lost)),
     )

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""In which order the beads of several solids are laid, and how long the machine waits for what lies below to cool.
+
+Around the axis (Dai 2020, section 5) the heat is spread: the same layer of all solids on a base in turn, the same ring of
+each, the inner rings first. Solid by solid is the other way.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..toolpath import Array, Bead, Layer
+
+
+class Laid(NamedTuple):
+    """A bead and where it belongs: group and solid (both numbered in their order around the axis), layer, ring from outside."""
+
+    group: int
+    solid: int
+    layer: int
+    ring: int
+    bead: Bead
+
+
+class Course(NamedTuple):
+    """Layers in the order of deposit, and for each the solid (group, solid) of each of its beads."""
+
+    layers: tuple[Layer, ...]
+    solids: tuple[tuple[tuple[int, int], ...], ...]
+
+
+def ordered(beads: Sequence[Laid], order: str) -> Course:
+    """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature')."""
+    def place(laid: Laid) -> tuple[int, ...]:
+        if order == "feature":
+            return laid.group, laid.solid, laid.layer, -laid.ring
+        return laid.group, laid.layer, -laid.ring, laid.solid
+
+    def layer_of(laid: Laid) -> tuple[int, ...]:
+        return (laid.group, laid.solid if order == "feature" else 0, laid.layer)
+
+    layers: list[list[Laid]] = []
+    for laid in sorted(beads, key=place):
+        if not layers or layer_of(layers[-1][0]) != layer_of(laid):
+            layers.append([])
+        layers[-1].append(laid)
+    made, before = [], None
+    for layer in layers:
+        one = layer_of(layer[0])[:2]
+        made.append(Layer(tuple(laid.bead for laid in layer), first=one != before))
+        before = one
+    return Course(tuple(made), tuple(tuple((laid.group, laid.solid) for laid in layer) for layer in layers))
+
+
+def waited(course: Course, wait: float, rapid_speed: float) -> tuple[Layer, ...]:
+    """The layers with so much time before each that no solid is returned to sooner than `wait` s after its layer before.
+
+    Rapids count with the straight way between beads alone, so that what is waited is rather too long.
+    """
+    now, layers = 0.0, []
+    ended: dict[tuple[int, int], float] = {}
+    at: Array | None = None
+    for layer, solids in zip(course.layers, course.solids, strict=True):
+        starts: dict[tuple[int, int], float] = {}
+        ends: dict[tuple[int, int], float] = {}
+        time = 0.0
+        for bead, solid in zip(layer.beads, solids, strict=True):
+            if at is not None:
+                time += float(np.linalg.norm(bead.points[0] - at)) / rapid_speed
+            starts.setdefault(solid, time)
+            time += float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())
+            ends[solid], at = time, bead.points[-1]
+        pause = max((ended[solid] + wait - now - start for solid, start in starts.items() if solid in ended), default=0.0)
+        pause = max(pause, 0.0)
+        layers.append(dataclasses.replace(layer, wait=pause))
+        ended.update({solid: now + pause + end for solid, end in ends.items()})
+        now += pause + time
+    return tuple(layers)
