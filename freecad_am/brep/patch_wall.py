@@ -90,16 +90,17 @@ def _from_substrate(
     value = contact.levels(wall, ground)
     outside = value >= 0.0
     if outside.all():
-        at = int(np.argmin(value))
+        at, gap = contact.nearest(wall.vertices, ground, value)
         raise InputError(
             "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at "
-            f"{place(wall.vertices[at])}, {value[at]:.4g} mm away; move it so that it reaches in, at most {contact.TOUCH:g} mm may be missing",
+            f"{place(wall.vertices[at])}, {gap:.4g} mm away; move it so that it reaches in, at most "
+            f"{contact.TOUCH:g} mm may be missing",
         )
     if not outside.any():
-        at = int(np.argmax(value))
+        at, depth = contact.nearest(wall.vertices, ground, value)
         raise InputError(
             "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is "
-            f"{-value[at]:.4g} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it",
+            f"{depth:.4g} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it",
         )
     dropped = _stays_in(wall, outside, substrate)
     value[dropped] = np.minimum(value[dropped], -1e-6)

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from .ground import Ground
 from .mesh import Index, LevelLine, Mask
 from .patch_wall import FirstCurve, PatchWall, Rim
+from .refined import boundary
 from .surface import dot
 
 Array = NDArray[np.float64]
@@ -24,22 +25,48 @@ WITHIN = 1e-5  # mm between the points of a chain and both surfaces
 
 def levels(wall: PatchWall, ground: Ground) -> Array:
     """Distances (n,) of the wall's vertices from the ground, negative inside; a boundary that ends just short of it is
-    in."""
-    value = ground.signed(wall.vertices)
+    in. Farther than an edge of the wall's mesh they may be too small, see `distances`."""
+    value = distances(wall.vertices, ground, 2.0 * wall.mesh.longest_edge)
     edge = np.zeros(len(value), dtype=bool)
-    for rim in boundary_vertices(wall):
-        edge[rim] = True
+    edge[boundary(wall.triangles)[0]] = True
     value[edge & (value < TOUCH) & (value > -1e-4)] = -1e-4
     value[np.abs(value) < 1e-7] = -1e-7
     return value
 
 
-def boundary_vertices(wall: PatchWall) -> list[Index]:
-    """The vertices on the wall's boundary, as one array in a list, empty for a closed wall."""
-    from .refined import boundary
+def distances(points: Array, ground: Ground, near: float) -> Array:
+    """Distances (n,) of points from the ground, negative inside: exact for those nearer than `near` mm, of others the right
+    sign and at most the true size.
 
-    ends, _ = boundary(wall.triangles)
-    return [np.unique(ends)] if len(ends) else []
+    A distance changes by no more than one goes: of the points in a cube that is wholly farther than its size one is asked.
+    """
+    value, open_ = np.empty(len(points)), np.arange(len(points))
+    size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
+    while len(open_) and size > near:
+        cube = np.floor((points[open_] - points.min(axis=0)) / size).astype(np.intp)
+        _, one, of = np.unique(cube @ np.array([1, 1 << 20, 1 << 40]), return_index=True, return_inverse=True)
+        asked = open_[one]
+        found, of = ground.signed(points[asked]), np.ravel(of)
+        away = np.linalg.norm(points[open_] - points[asked][of], axis=1)
+        least = np.abs(found[of]) - away
+        told = least > near
+        value[open_[told]] = (np.sign(found[of]) * least)[told]
+        open_, size = open_[~told], 0.5 * size
+    value[open_] = ground.signed(points[open_])
+    return value
+
+
+def nearest(points: Array, ground: Ground, value: Array) -> tuple[int, float]:
+    """Which point comes nearest to the boundary of the ground, and its distance, given those of `distances`."""
+    order = np.argsort(np.abs(value), kind="stable")
+    best, least = int(order[0]), np.inf
+    for some in np.array_split(order, max(1, len(order) // 256)):
+        if abs(float(value[some[0]])) > least:
+            break
+        exact = np.abs(ground.signed(points[some]))
+        if exact.min() < least:
+            best, least = int(some[np.argmin(exact)]), float(exact.min())
+    return best, least
 
 
 def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]) -> tuple[list[FirstCurve], float]:
