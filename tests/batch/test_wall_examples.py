@@ -66,32 +66,34 @@ def test_the_first_layer_lies_on_the_substrate(example, planned, exact):
 
 def test_layers_are_at_the_layer_height_everywhere(example, exact):
     """At every point, hundreds of times denser than the jobs ask for, corners included."""
-    spacing = wall_checks.spacing(exact)
-    assert np.abs(spacing.inside - example.height).max() <= TOLERANCE
-    if len(spacing.at_ends):  # cut at the end of the wall: the curve went on below
-        assert spacing.at_ends.min() >= example.height - TOLERANCE
+    spacing = wall_checks.spacing(exact, example.height, 10.0 * TOLERANCE)
+    assert np.abs(spacing.inside - example.height).max() <= example.spacing_error
+    if len(spacing.at_ends):  # cut at an edge of the wall: the curve went on below
+        assert spacing.at_ends.min() >= example.height - example.spacing_error
+    told = [issue["message"] for issue in exact.report["issues"] if issue["code"] == "CLOSING"]
+    assert len(spacing.closing) == sum(int(message.split()[0]) for message in told)
+    assert all(distance.min() >= 0.4 * example.height for distance in spacing.closing)
 
 
 def test_the_wall_is_covered(example, planned, wall):
     anywhere, at_end = wall_checks.coverage(planned, wall, 0.2 * example.height, example.height)
-    assert anywhere <= 0.6 * example.height
+    assert anywhere <= 0.6 * example.height + wall_checks.SAMPLING
     assert at_end <= example.height
 
 
 def test_beads_lie_on_what_was_deposited_before(example, exact):
     most = wall_checks.support(exact, example.depth)
-    assert most <= example.height + 2.0 * TOLERANCE + example.substrate_error
+    assert most <= example.height + 2.0 * example.spacing_error + example.substrate_error
 
 
 def test_seams_follow_one_another(example, planned):
+    """Their step is the layer height, and more where the front itself takes longer steps up the lines of the wall."""
     steps = wall_checks.seam_steps(planned)
-    assert steps.size == 0 or steps.max() <= 1.5 * example.height
+    assert steps.size == 0 or (steps.min() >= example.height - CHORD and steps.max() <= 1.75 * example.height)
 
 
 def test_build_directions_are_continuous(planned):
-    most, rate = wall_checks.turns(planned)
-    assert rate <= 1.01 * TURN
-    assert most <= TURN
+    assert wall_checks.turn_rate(planned) <= 1.01 * TURN
 
 
 def test_the_nozzle_keeps_clear_of_the_substrate(example, planned):
@@ -112,9 +114,10 @@ def test_the_half_shell_is_deposited_to_and_fro(plans):
 
 def test_the_front_of_the_branched_tube_splits_in_two(plans):
     layers = plans.plan("walls/branched-tube-on-plate").layers
-    counts = [len(layer) for layer in layers]
-    split = counts.index(2)
-    assert set(counts[:split]) == {1} and layers[split - 1][0].closed and all(bead.closed for bead in layers[split])
+    closed = [sum(bead.closed for bead in layer) for layer in layers]
+    split = closed.index(2)
+    assert all(len(layer) == 1 and layer[0].closed for layer in layers[:split])
+    assert closed[split : split + 3] == [2, 2, 2]
     centres = np.array([bead.points.mean(axis=0) for bead in layers[split + 2]])
     assert np.linalg.norm(centres[0] - centres[1]) > 12.0
 
@@ -124,4 +127,4 @@ def test_a_mesh_serves_as_well_as_the_solid(plans):
     mesh = plans.plan("walls/tube-on-scanned-pipe", plans.exact("walls/tube-on-scanned-pipe", FINE))
     assert len(mesh.layers) == len(solid.layers) == 15
     for one, other in zip(mesh.layers, solid.layers):
-        assert wall_checks.nearest(one[0].points, [other[0].points]).distance.max() <= 0.02
+        assert wall_checks.nearest(one[0].points, [other[0].points]).distance.max() <= 0.05

@@ -16,6 +16,7 @@ import Part
 from scipy.spatial import cKDTree
 
 NEAR = 16  # samples of a line in whose neighbourhood the nearest point is sought
+SAMPLING = 0.02  # mm, how far samples of a wall may lie off it
 COLUMNS = ("x_mm", "y_mm", "z_mm", "bx", "by", "bz", "tx", "ty", "tz")
 
 
@@ -118,22 +119,28 @@ def _dense(line: np.ndarray, longest: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Spacing:
-    """Of all layers but the first: the distances of their points to the beads below, and those to the end of a bead
-    that was cut, which may be larger."""
+    """Distances of the points of all layers but the first from the beads below: `inside`; `at_ends`, to the end of a bead
+    that was cut; and of the beads that close a gap between fronts, one array each, which lie nearer everywhere."""
 
     inside: np.ndarray
     at_ends: np.ndarray
+    closing: list[np.ndarray]
 
 
-def spacing(planned: Planned) -> Spacing:
+def spacing(planned: Planned, height: float, tolerance: float) -> Spacing:
     """From every point of a layer to the polylines of the layer below."""
-    found = []
+    feet, closing = [], []
     for below, above in zip(planned.layers, planned.layers[1:], strict=False):
         lines = [one.points for one in below]
-        found.append(nearest(np.concatenate([one.points for one in above]), lines))
-    distance = np.concatenate([foot.distance for foot in found])
-    at_end = np.concatenate([foot.at_end for foot in found])
-    return Spacing(distance[~at_end], distance[at_end])
+        for one in above:
+            foot = nearest(one.points, lines)
+            if (foot.distance < height - tolerance).mean() > 0.9:
+                closing.append(foot.distance)
+            else:
+                feet.append(foot)
+    distance = np.concatenate([foot.distance for foot in feet])
+    at_end = np.concatenate([foot.at_end for foot in feet])
+    return Spacing(distance[~at_end], distance[at_end], closing)
 
 
 def support(planned: Planned, depth: Callable[[np.ndarray], np.ndarray]) -> float:
@@ -148,19 +155,18 @@ def support(planned: Planned, depth: Callable[[np.ndarray], np.ndarray]) -> floa
     return worst
 
 
-def turns(planned: Planned) -> tuple[float, float]:
-    """The build direction from point to point: largest turn (deg), and largest turn per mm over stretches of 1 mm."""
-    most, rate = 0.0, 0.0
+def turn_rate(planned: Planned) -> float:
+    """The largest turn of the build direction, deg/mm, over stretches of 1 mm of a bead."""
+    rate = 0.0
     for one in planned.passes:
         cosine = np.clip((one.build[1:] * one.build[:-1]).sum(1), -1.0, 1.0)
         turn = np.degrees(np.arccos(cosine))
-        most = max(most, float(turn.max()))
         length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(one.points, axis=0), axis=1))]
         total = np.r_[0.0, np.cumsum(turn)]
         if length[-1] > 1.0:
             at = np.arange(0.0, length[-1] - 1.0, 0.25)
             rate = max(rate, float((np.interp(at + 1.0, length, total) - np.interp(at, length, total)).max()))
-    return most, rate
+    return rate
 
 
 def seam_steps(planned: Planned) -> np.ndarray:
@@ -233,17 +239,17 @@ def coverage(planned: Planned, wall: Wall, step: float, near_end: float) -> tupl
 
 
 def _face_samples(face: Part.Face, step: float) -> np.ndarray:
-    low_u, high_u, low_v, high_v = face.ParameterRange
-    surface = face.Surface
-    middle = 0.5 * (low_v + high_v)
-    along = _array([surface.value(u, middle) for u in np.linspace(low_u, high_u, 33)])
-    count_u = max(3, math.ceil(np.linalg.norm(np.diff(along, axis=0), axis=1).sum() / step))
-    around = _array([surface.value(0.5 * (low_u + high_u), v) for v in np.linspace(low_v, high_v, 33)])
-    count_v = max(3, math.ceil(np.linalg.norm(np.diff(around, axis=0), axis=1).sum() / step))
-    whole = abs(face.Area - surface.toShape(*face.ParameterRange).Area) < 1e-6 * face.Area
-    rows = low_u + (np.arange(count_u) + 0.5) / count_u * (high_u - low_u)
-    columns = low_v + (np.arange(count_v) + 0.5) / count_v * (high_v - low_v)
-    return _array([surface.value(u, v) for u in rows for v in columns if whole or face.isPartOfDomain(u, v)])
+    """Points within SAMPLING of a face: its triangles, divided until they are small."""
+    vertices, triangles = face.tessellate(SAMPLING)
+    corners = _array(vertices)[np.array(triangles)]
+    found = []
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    for count in np.unique(np.ceil(longest / step).astype(int)):
+        some = corners[np.ceil(longest / step).astype(int) == count]
+        i, j = np.nonzero(np.add.outer(np.arange(count + 1), np.arange(count + 1)) <= count)
+        share = np.column_stack([i, j, count - i - j]) / count
+        found.append(np.einsum("sk,mkc->msc", share, some).reshape(-1, 3))
+    return np.unique(np.round(np.concatenate(found), 3), axis=0)
 
 
 def _array(vectors: list) -> np.ndarray:
