@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The program: moves and process events that a post turns into a controller's text.
 
-Joint values are those the controller shows (rad), poses those of its user frame (mm). A post reads this and
-nothing else; it knows neither part nor kinematics.
+Joint values are those the controller shows (rad, and mm of axes that slide), poses those of its user frame (mm). A post
+reads this and nothing else; it knows neither part nor kinematics.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]
 
 DEPOSIT, RAPID = "deposit", "rapid"
+LINEAR, ROTARY = "linear", "rotary"
 
 
 @dataclass(frozen=True)
@@ -24,10 +25,12 @@ class Moves:
     """A run of n moves without an event between; the last one comes to a stop, the others pass through.
 
     kind: 'deposit' or 'rapid'. layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
-    values, rad. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the deposition
-    point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3), seen from the program's
-    origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one (shoulder, elbow,
-    wrist) per point.
+    values, rad, and mm of linear axes. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the
+    deposition point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3), seen from the
+    program's origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one
+    (shoulder, elbow, wrist) per point. On a rotary table, which has no rotation about the tool and no configuration:
+    position of the tip, and direction (n, 3), unit vectors from the deposit towards the torch, seen from the program's
+    origin, which turns with the part.
     """
 
     kind: str
@@ -39,6 +42,7 @@ class Moves:
     position: Array | None = None
     rotation: Array | None = None
     configuration: tuple[tuple[str, str, str], ...] | None = None
+    direction: Array | None = None
 
     def __len__(self) -> int:
         return len(self.joints)
@@ -96,9 +100,12 @@ class Program:
     name: as the user named the job; a post derives its own file names or refuses. machine: title of the machine.
     endless: for each axis, whether it turns without end (continuous turn). remarks: lines a post writes as
     comments. motion: 'joint' or 'cartesian'. deposit points run at constant speed at the deposition point.
-    max_speed: rad/s of each axis, infinite where not known. station, carried: X Y Z mm, RX RY RZ rad. With the part on
-    the robot, of the deposition point in the maker's base frame and of the program's origin on the flange; with the tool
-    on the robot, of the program's origin in the maker's base frame and of the nozzle's tip on the flange.
+    max_speed: rad/s of each axis, mm/s of linear ones, infinite where not known. station, carried: X Y Z mm, RX RY RZ
+    rad. With the part on the robot, of the deposition point in the maker's base frame and of the program's origin on the
+    flange; with the tool on the robot, of the program's origin in the maker's base frame and of the nozzle's tip on the
+    flange. On a rotary table, of the torch's tip with all axes at zero, and of the program's origin on the table's face:
+    the work offset with the rotary axes at zero. axis_names: how the controller writes each axis, such as X Y Z A C;
+    axis_kinds: 'linear' or 'rotary', one each. Both are empty for robots, whose axes go by number.
     """
 
     name: str
@@ -117,6 +124,8 @@ class Program:
     max_speed: tuple[float, ...] = ()
     station: Six | None = None
     carried: Six | None = None
+    axis_names: tuple[str, ...] = ()
+    axis_kinds: tuple[str, ...] = ()
 
     @property
     def moves(self) -> tuple[Moves, ...]:
@@ -124,14 +133,29 @@ class Program:
         return tuple(block for block in self.blocks if isinstance(block, Moves))
 
 
+def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str, ...]) -> Array:
+    """(n,) mm/s of the linear axes alone on moves that take `duration` (n,) s: V_s = |P1' P2''| V / |P1 P2| of Dai 2020,
+    section 3, for |P1 P2| / V is that time. It is 0 where only rotary axes move: such blocks need an inverse-time feed.
+
+    before: (axes,) where the first move starts. joints: (n, axes) where the moves end.
+    """
+    linear = np.array([kind == LINEAR for kind in kinds])
+    way = np.diff(np.concatenate([before[None], joints])[:, linear], axis=0)
+    feeds: Array = np.linalg.norm(way, axis=1) / duration
+    return feeds
+
+
 @dataclass(frozen=True)
 class ReadMoves:
     """What a post's reader found in a program's text, all moves in the order of execution.
 
-    joints: (n, axes) controller values, rad, exactly as many digits as the text has; rows told in Cartesian positions
-    are NaN, None when all are. digits: half of the last digit of the joint values, rad. duration: (n,) s, NaN where
-    the text gives a speed. deposit: (n,) bool, whether the deposit is on during the move that ends at the point.
-    position, rotation, position_digits (mm), rotation_digits (rad): the same for Cartesian texts.
+    joints: (n, axes) controller values, rad, and mm of linear axes, exactly as many digits as the text has; rows told in
+    Cartesian positions are NaN, None when all are; of texts that give positions and rotary axes, the linear axes alone
+    are NaN. digits: half of the last digit of the joint values, rad; linear_digits: of linear axes, mm. duration: (n,) s,
+    NaN where the text gives a speed; duration_digits: (n,) s by which its digits may be off, milliseconds and tenths
+    when left out. deposit: (n,) bool, whether the deposit is on during the move that ends at the point.
+    position, rotation, position_digits (mm), rotation_digits (rad): the same for Cartesian texts; direction (n, 3), as
+    in `Moves`, and direction_digits, half of the last digit of its numbers, for texts that tell of no rotation.
     speed: (n,) mm/s at the deposition point, NaN where the text gives a time or a percentage; speed_digits: mm/s.
     share: (n,) of the axes' largest speeds that the fastest axis runs at, NaN where the text gives a time or a path
     speed; share_digits: half of its last digit.
@@ -155,3 +179,7 @@ class ReadMoves:
     frame: Array | None = None
     tool: Array | None = None
     lever: Array | None = None
+    direction: Array | None = None
+    direction_digits: float = 0.0
+    linear_digits: float = 0.0
+    duration_digits: Array | None = None

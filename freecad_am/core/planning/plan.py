@@ -184,11 +184,11 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
         ratio = speed / cell.machine.max_speed
         point, axis = np.unravel_index(int(ratio.argmax()), ratio.shape)
         if ratio[point, axis] > 1.0:
-            unit = cell.machine.unit_values[axis]
+            value, unit = cell.machine.unit_values[axis], cell.machine.units[axis]
             found.append(Issue(
                 ERROR, "SPEED",
-                f"axis {cell.machine.axes[axis]} would move at {speed[point, axis] / unit:.0f} {cell.machine.units[axis]}/s, "
-                f"it can do {cell.machine.max_speed[axis] / unit:.0f}; lower the travel speed to "
+                f"axis {cell.machine.axes[axis]} would move at {speed[point, axis] / value:.0f} {unit}/s, it can do "
+                f"{cell.machine.max_speed[axis] / value:.0f}; lower the travel speed to "
                 f"{path.bead.speed[point + 1] / ratio[point, axis]:.2f} mm/s",
                 path.layer, path.index, int(point) + 1,
             ))

@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
-from ..kinematics.cell import PART_ON_ROBOT, Cell
+from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell
 from ..kinematics.machine import Machine
 from ..motion import Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
 from ..program import (
     DEPOSIT,
+    LINEAR,
     RAPID,
+    ROTARY,
     Block,
     Call,
     DepositOff,
@@ -58,7 +60,15 @@ def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: Pr
         max_speed=tuple(cell.machine.max_speed.tolist()),
         station=_six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0]),
         carried=_six(_frames(cell, parameters)[1]),
+        axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.machine.is_table else (),
+        axis_kinds=tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding)
+        if cell.machine.is_table else (),
     )
+
+
+def _letter(axis: str) -> str:
+    """How a controller writes an axis: X for mx, which keeps clear of the x of the part, A for a."""
+    return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
 
 
 def check_controller(machine: Machine, post: str) -> None:
@@ -150,9 +160,13 @@ def _moves(
     duration = motion.duration[rows].copy()
     if arriving:
         duration[0] = FIRST_APPROACH
-    position = rotation = None
+    position = rotation = direction = None
     configuration = None
-    if parameters.motion == "cartesian":
+    if parameters.motion == "cartesian" and cell.setup == ROTARY_TABLE:
+        station, carried = _frames(cell, parameters)
+        seen = frames.inverse(cell.machine.chain.forward(motion.joints[rows]) @ carried) @ station
+        position, direction = seen[:, :3, 3], seen[:, :3, 2]
+    elif parameters.motion == "cartesian":
         station, carried = _frames(cell, parameters)
         tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
         seen = frames.inverse(tip) @ station if cell.setup == PART_ON_ROBOT else frames.inverse(station) @ tip
@@ -163,7 +177,7 @@ def _moves(
     return Moves(
         kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
         joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
-        position=position, rotation=rotation, configuration=configuration,
+        position=position, rotation=rotation, configuration=configuration, direction=direction,
     )
 
 
@@ -172,7 +186,7 @@ def _frames(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
     if isinstance(parameters.origin, str):
         return cell.station, cell.carried
     origin = frames.inverse(cell.mount) @ frames.bryant(parameters.origin)
-    if cell.setup == PART_ON_ROBOT:
+    if cell.setup != TOOL_ON_ROBOT:
         return cell.station, cell.carried @ origin
     return cell.station @ origin, cell.carried
 
@@ -185,11 +199,16 @@ def _six(pose: Array) -> Six:
 
 def _remarks(cell: Cell, process: ProcessParameters, parameters: ProgramParameters) -> tuple[str, ...]:
     moved = not isinstance(parameters.origin, str)
-    where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
+    station, carried = _frames(cell, parameters)
+    if cell.setup == ROTARY_TABLE:
+        where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
+    else:
+        where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
+        frame = frames.inverse(cell.machine.base) @ station
     return (
         cell.machine.title,
         f"Limits: {cell.limits.name}",
-        *_pose_remarks(where, _six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0])),
+        *_pose_remarks(where, _six(frame)),
         *(() if isinstance(parameters.origin, str) else _pose_remarks("Program origin on the part", parameters.origin)),
         f"Travel speed {process.travel_speed:g} mm/s",
         *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
