@@ -187,7 +187,7 @@ def along(curves: Sequence[tuple[Array, bool]], half: float, chord_error: float)
 def simplified(points: Array, tolerance: float) -> Array:
     """An open curve (n, 2) with no more points than `tolerance` mm asks for, ends kept."""
     line = shapely().geometry.LineString(points).simplify(tolerance, preserve_topology=False)
-    found: Array = np.array(line.coords, dtype=float)[:, :2]
+    found: Array = np.array(line.coords, dtype=float)
     return found
 
 
@@ -201,7 +201,8 @@ def _distinct(loop: Array) -> Array:
     if len(loop) == 0:
         return loop
     away = np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1)
-    return loop[away > SAME * max(float(np.ptp(loop, axis=0).max()), 1e-300)]
+    kept: Array = loop[away > SAME * max(float(np.ptp(loop, axis=0).max()), 1e-300)]
+    return kept
 
 
 def _nested(loops: list[Array]) -> Any:
