@@ -21,7 +21,7 @@ OURS = {
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/strategies": {
-        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/slicing", "core/process",
+        "core/issues", "core/parameters", "core/geometry", "core/filling", "core/toolpath", "core/slicing", "core/process",
     },
     "core/kinematics": {"core/issues", "core/parameters", "core/geometry"},
     "core/planning": {

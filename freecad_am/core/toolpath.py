@@ -185,8 +185,8 @@ class Bead:
 class Layer:
     """What is deposited at one index of the slicing: one bead or more, in the order of deposit.
 
-    wait: s that the machine stands before the layer, for what lies below to cool. first: nothing of the feature lies below, as
-    where another solid is begun.
+    wait: s that the machine stands before the layer, for what lies below to cool. first: nothing of the feature lies below,
+    as where another solid is begun.
     """
 
     beads: tuple[Bead, ...]

@@ -50,8 +50,8 @@ class Group:
 
 @dataclass(frozen=True)
 class SolidsOnHub:
-    """What is to be deposited: groups, in the order in which they are; surroundings: hub and fixtures; chord_error: mm within
-    which the triangles stand for the solids."""
+    """What is to be deposited, group by group. surroundings: hub and fixtures. chord_error: mm within which the triangles
+    stand for the solids."""
 
     label: str
     groups: tuple[Group, ...]

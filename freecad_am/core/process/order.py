@@ -17,7 +17,7 @@ from ..toolpath import Array, Bead, Layer
 
 
 class Laid(NamedTuple):
-    """A bead and where it belongs: group and solid (both numbered in their order around the axis), layer, ring from outside."""
+    """A bead and where it belongs: group, solid (numbered around the axis), layer, ring counted from outside."""
 
     group: int
     solid: int

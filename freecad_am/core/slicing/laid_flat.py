@@ -25,7 +25,7 @@ ASIDE = 2.0  # chord errors; a cut keeps that far from facets that lie in its su
 
 
 class Flat(NamedTuple):
-    """Contours of one layer laid flat: loops (n, 2) mm, the solid to their left; middle: azimuth (rad) that x = 0 lies at."""
+    """Contours of one layer laid flat: loops (n, 2) mm, the solid to their left; middle: azimuth (rad) of x = 0."""
 
     loops: tuple[Array, ...]
     middle: float
@@ -34,7 +34,7 @@ class Flat(NamedTuple):
 def count(facets: Facets, height: float, margin: float, chord_error: float) -> int:
     """How many layers there are, at 0, `height`, twice that ... mm from the base."""
     top = float(facets.away.max()) + margin
-    return max(int(math.ceil((top - ASIDE * chord_error) / height)), 0)
+    return max(math.ceil((top - ASIDE * chord_error) / height), 0)
 
 
 def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
@@ -59,7 +59,7 @@ def moved(base: Developable, loop: Loop, distance: float) -> Loop:
 
 
 def opened(surface: Developable, loops: Sequence[Loop], centre: float, where: str) -> Flat:
-    """Loops of the surface that do not go round it laid flat; cut open opposite to the azimuth `centre`, or as near as can be.
+    """Loops of the surface that do not go round it laid flat; cut open opposite to the azimuth `centre`, or near that.
 
     InputError TOO_FAR_ROUND where a contour winds so far about a cone that it would lie on itself.
     """
@@ -87,12 +87,12 @@ def _in_one_piece(
     widest = max(float(np.ptp(azimuth)) for azimuth in shifted)
     if not surface.is_cylinder and widest * math.sin(surface.taper) > 0.98 * TURN:
         raise InputError(
-            "TOO_FAR_ROUND", where, f"it winds {widest / TURN:.3g} times about the cone and would lie on itself when laid flat; "
-            "divide it into shorter solids",
+            "TOO_FAR_ROUND", where, f"it winds {widest / TURN:.3g} times about the cone and would lie on itself when laid "
+            "flat; divide it into shorter solids",
         )
     flat = [surface.flat_at(azimuth, loop.points[:, 2]) for azimuth, loop in zip(shifted, loops, strict=True)]
     outer = [points for points in flat if doubled_area(points) > 0.0]
-    turns = int(math.ceil(widest / TURN)) + 1
+    turns = math.ceil(widest / TURN) + 1
     for k, points in enumerate(flat):
         if doubled_area(points) > 0.0:
             continue

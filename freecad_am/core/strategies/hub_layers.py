@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers of one solid on a hub: cut, laid flat, grown by the margin, filled (Dai 2020, section 2)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from ..filling.contours import contours
+from ..filling.curve import Beads, PlaneCurve
+from ..filling.lines import lines
+from ..filling.spiral import spiral
+from ..filling.zigzag import zigzag
+from ..geometry.developable import Array, Developable
+from ..geometry.on_hub import Base, middle_azimuth
+from ..geometry.region import Region, mended, regions
+from ..geometry.surroundings import Body
+from ..issues import InputError, Issue
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import DevelopableParameters
+from ..slicing.equidistant import Facets, Loop
+from ..slicing.laid_flat import count, cut, moved, opened
+
+CUT, BORDER, ARCS = 0.25, 0.05, 0.2  # shares of the chord error: of cuts, of borders without needless points, of fillings
+
+
+class Slice(NamedTuple):
+    """One layer of one solid: its surface, the azimuth (rad) of x = 0 on the plane, and its regions there."""
+
+    layer: int
+    surface: Developable
+    middle: float
+    regions: tuple[Region, ...]
+    issues: tuple[Issue, ...]
+
+
+def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
+    """The layers of a solid from the hub outwards, at 0, d, 2 d ... mm; those without any region are left out.
+
+    InputError APEX_INSIDE, TOO_FAR_ROUND.
+    """
+    facets = Facets(base.surface, base.inside(body.vertices), body.triangles, body.name)
+    centre = middle_azimuth(base, body.vertices)
+    error, height = strategy.chord_error, strategy.layer_height
+    below: list[list[Loop]] = []
+    for layer in range(count(facets, height, strategy.margin, error)):
+        loops = cut(facets, layer * height, CUT * error)
+        where = f"{body.name} layer {layer}"
+        surface = base.surface.offset(layer * height)
+        _refuse_round(loops, where)
+        below.append(loops)
+        near = _within_margin(base.surface, below, height, strategy.margin)
+        flat = opened(surface, [loop for _, some in near for loop in some], centre, where)
+        found, issues = _grown(near, flat.loops, strategy, layer)
+        if found:
+            yield Slice(layer, surface, flat.middle, found, issues)
+
+
+def _refuse_round(loops: Sequence[Loop], where: str) -> None:
+    if sum(loop.turns for loop in loops):
+        raise InputError(
+            "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, where equidistant surfaces have "
+            "an apex or an end; let it end beside the axis",
+        )
+    if any(loop.turns for loop in loops):
+        raise InputError("NOT_YET", where, "a solid all the way round the hub is not supported yet; divide it")
+
+
+def _within_margin(
+    base: Developable, below: Sequence[list[Loop]], height: float, margin: float
+) -> list[tuple[float, list[Loop]]]:
+    """Loops of the last layer, and of those below it within the margin moved up to it, with how far each has to grow.
+
+    Growing within a layer covers the margin beside the part; what ends below has the margin above itself.
+    """
+    last = len(below) - 1
+    found = [(margin, below[last])]
+    for layer in range(last - 1, -1, -1):
+        up = (last - layer) * height
+        if up >= margin:
+            break
+        lifted = [moved(base, loop, up) for loop in below[layer]]
+        found.append((math.sqrt(margin * margin - up * up), lifted))
+    return found
+
+
+def _grown(
+    near: Sequence[tuple[float, list[Loop]]], flat: Sequence[Array], strategy: DevelopableParameters, layer: int
+) -> tuple[tuple[Region, ...], tuple[Issue, ...]]:
+    """The regions of a layer, and what was mended."""
+    first = 0
+    issues: tuple[Issue, ...] = ()
+    rings: list[Array] = []
+    whole: tuple[Region, ...] = ()
+    for margin, loops in near:
+        read = mended(flat[first : first + len(loops)])
+        first += len(loops)
+        issues += read.issues(layer)
+        whole = tuple(part for region in read.regions for part in region.grown(margin, ARCS * strategy.chord_error))
+        rings += [ring for region in whole for ring in region.rings()]
+    if strategy.margin > 0.0:
+        whole = regions(rings)
+    return tuple(region.simple(BORDER * strategy.chord_error) for region in whole), issues
+
+
+def filled(one: Slice, centre: float, strategy: DevelopableParameters, process: ProcessParameters) -> list[PlaneCurve]:
+    """The beads of a layer on the plane. InfeasibleError THIN_REGION."""
+    seam = process.seam.angle + one.layer * process.seam.step
+    turned = (one.middle - centre) * math.sin(one.surface.taper)  # of the picture, by the cutting line
+    beads = Beads(
+        strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.shortest, strategy.thin,
+        process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error,
+    )
+    angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
+    curves: list[PlaneCurve] = []
+    for region in one.regions:
+        if strategy.fill == "contours":
+            curves += contours(region, beads)
+        elif strategy.fill == "spiral":
+            curves += spiral(region, beads)
+        elif strategy.fill == "lines":
+            curves += lines(region, beads, angle, strategy.contour)
+        else:
+            curves += zigzag(region, beads, angle, strategy.contour)
+    return curves

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is said about the beads on a hub: speeds, widths, heights against the layer height, waits, what was mended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..issues import NOTE, WARNING, Issue
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import DevelopableParameters
+from ..process.bead_model import MINUTE, BeadModel
+from ..toolpath import Array, Layer
+from .hub_beads import Rolled
+
+DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
+CLAMPED = 0.05  # of the length
+
+
+def notes(
+    made: Sequence[Rolled], layers: Sequence[Layer], mended: Sequence[Issue], strategy: DevelopableParameters,
+    process: ProcessParameters, model: BeadModel | None,
+) -> list[Issue]:
+    """All of them."""
+    found = _mended(mended)
+    if model is not None:
+        found += _of_model(made, strategy, process, model)
+    waits = [layer.wait for layer in layers if layer.wait > 0.0]
+    if waits:
+        found.append(Issue(
+            NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
+            f"{sum(waits):.5g} s in all, so that no solid is returned to sooner than after {strategy.wait:g} s",
+        ))
+    return found
+
+
+def _mended(issues: Sequence[Issue]) -> list[Issue]:
+    """One of each kind, with how many layers of solids there are like it."""
+    found = []
+    for code in sorted({issue.code for issue in issues}):
+        alike = [issue for issue in issues if issue.code == code]
+        more = f" (and {len(alike) - 1} layers of solids more)" if len(alike) > 1 else ""
+        found.append(Issue(alike[0].level, code, alike[0].message + more, alike[0].layer))
+    return found
+
+
+def _of_model(
+    made: Sequence[Rolled], strategy: DevelopableParameters, process: ProcessParameters, model: BeadModel
+) -> list[Issue]:
+    length = np.concatenate([np.linalg.norm(np.diff(one.bead.points, axis=0), axis=1) for one in made])
+    speed = np.concatenate([one.bead.speed[1:] for one in made]) * MINUTE
+    height = np.concatenate([one.height[1:] for one in made if one.height is not None])
+    fit = model.width
+    found = [Issue(
+        NOTE, "BEAD_MODEL", f"w = {fit.m:.4g} v^(-1/3) + {fit.p:.4g} / r + {fit.t:.4g} with R2 = {fit.r_squared:.4f} "
+        f"and RMSE = {fit.rmse:.3g} mm; a width of {process.bead_width:g} mm takes travel speeds of {speed.min():.4g} to "
+        f"{speed.max():.4g} mm/min",
+    )]
+    found += _outside(made, length, model)
+    mean = float((height * length).sum() / length.sum())
+    drift = abs(mean - strategy.layer_height) / strategy.layer_height
+    found.append(Issue(
+        WARNING if drift > DRIFT else NOTE, "BEAD_HEIGHT",
+        f"beads are predicted {height.min():.3g} to {height.max():.3g} mm high, {mean:.3g} mm in the mean, at layers of "
+        f"{strategy.layer_height:g} mm"
+        + ("; set strategy.layer_height to what the beads make" if drift > DRIFT else "")
+        + _sections(speed, model),
+    ))
+    if abs(process.wire.feed - model.wire_feed) > 0.01 * model.wire_feed:
+        found.append(Issue(
+            WARNING, "WIRE_FEED", f"the table was measured at a wire feed of {model.wire_feed:.4g} mm/s, the job has "
+            f"{process.wire.feed:.4g} mm/s; set process.wire.feed, or measure a table at it",
+        ))
+    return found
+
+
+def _outside(made: Sequence[Rolled], length: Array, model: BeadModel) -> list[Issue]:
+    """Where beads are not such as the table has."""
+    clamped = np.concatenate([one.clamped[1:] for one in made if one.clamped is not None])
+    tight = np.concatenate([one.tight[1:] for one in made if one.tight is not None])
+    low, high = (MINUTE * value for value in model.speeds)
+    slow, bent = (float(length[some].sum() / length.sum()) for some in (clamped, tight))
+    found = []
+    if slow > 0.0:
+        found.append(Issue(
+            WARNING if slow > CLAMPED else NOTE, "OUTSIDE_TABLE", f"on {100.0 * slow:.3g} % of the length the width "
+            f"asked for takes a speed outside of the table's {low:.4g} to {high:.4g} mm/min; it is kept within, and the width "
+            "is not held",
+        ))
+    if bent > 0.0:
+        found.append(Issue(
+            NOTE, "TIGHT_BENDS", f"{100.0 * bent:.3g} % of the length bends more than the table's beads, of "
+            f"{model.radii[0]:.4g} mm or more, and counts as bent like these; widths are only estimated there",
+        ))
+    return found
+
+
+def _sections(speed: Array, model: BeadModel) -> str:
+    """What a wire feed in proportion to the speed would be, where speeds vary."""
+    if speed.max() < 1.05 * speed.min():
+        return ""
+    feeds = model.wire_feed * speed / np.median(speed)
+    return (
+        f". At one wire feed faster stretches are lower; a feed in proportion to the speed, {feeds.min():.3g} to "
+        f"{feeds.max():.3g} mm/s, would keep the section"
+    )
