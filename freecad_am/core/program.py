@@ -94,6 +94,25 @@ Block = Moves | DepositOn | DepositOff | LayerStart | Wait | WaitInput | Call
 
 
 @dataclass(frozen=True)
+class NcOptions:
+    """How programs of five-axis machines are written; a post reads what its controller knows.
+
+    path_feed: speed of the linear axes wherever they move, in place of the time of each move. compress, smooth: block
+    compressor; rounding, jerk limit and feed forward. tolerance: mm, largest rounding of corners. deposit_on, deposit_off:
+    words that switch the deposit, empty for the numbered output. switch_kinematics: the controller knows a kinematics for
+    axes and one for the tip, and is told which.
+    """
+
+    path_feed: bool = False
+    compress: bool = True
+    smooth: bool = True
+    tolerance: float = 0.05
+    deposit_on: str = ""
+    deposit_off: str = ""
+    switch_kinematics: bool = True
+
+
+@dataclass(frozen=True)
 class Program:
     """All of a job, in order.
 
@@ -105,7 +124,8 @@ class Program:
     flange; with the tool on the robot, of the program's origin in the maker's base frame and of the nozzle's tip on the
     flange. On a rotary table, of the torch's tip with all axes at zero, and of the program's origin on the table's face:
     the work offset with the rotary axes at zero. axis_names: how the controller writes each axis, such as X Y Z A C;
-    axis_kinds: 'linear' or 'rotary', one each. Both are empty for robots, whose axes go by number.
+    axis_kinds: 'linear' or 'rotary', one each. Both are empty for robots, whose axes go by number. nc: for five-axis
+    machines alone.
     """
 
     name: str
@@ -126,6 +146,7 @@ class Program:
     carried: Six | None = None
     axis_names: tuple[str, ...] = ()
     axis_kinds: tuple[str, ...] = ()
+    nc: NcOptions = NcOptions()
 
     @property
     def moves(self) -> tuple[Moves, ...]:

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
+from ..issues import InputError
 from . import field as f
 from .cell import Pose
 
@@ -18,6 +20,42 @@ class StartParameters:
 
     def __post_init__(self) -> None:
         f.check(self, "program.start_at")
+
+
+@dataclass(frozen=True)
+class NcParameters:
+    """How programs of five-axis machines are written; each controller takes what it knows."""
+
+    feed: str = f.parameter(
+        "time", f.CHOICE, "Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move "
+        "(G94).", choices=("time", "path"),
+    )
+    compress: bool = f.parameter(True, f.FLAG, "SINUMERIK: block compressor (COMPCAD) in beads whose feed is a speed.")
+    smooth: bool = f.parameter(True, f.FLAG, "SINUMERIK: rounding (G642), jerk limit (SOFT) and feed forward (FFWON).")
+    tolerance: float = f.parameter(
+        0.05, f.LENGTH, "LinuxCNC: how far corners may be rounded (G64 P).", low=0.0, high=10.0, open_low=True
+    )
+    deposit_on: str | None = f.parameter(
+        None, f.TEXT, "M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.",
+        optional=True,
+    )
+    deposit_off: str | None = f.parameter(None, f.TEXT, "M or H word that switches the deposit off.", optional=True)
+    switch_kinematics: bool = f.parameter(
+        True, f.FLAG, "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone."
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "program.nc")
+        for key in ("deposit_on", "deposit_off"):
+            word = getattr(self, key)
+            if word and not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
+                raise InputError("BAD_VALUE", f"program.nc.{key}", f"{word!r} is no word such as M7 or H2=1")
+        if bool(self.deposit_on) != bool(self.deposit_off) or (self.deposit_on and self.deposit_on == self.deposit_off):
+            raise InputError(
+                "BAD_VALUE", "program.nc.deposit_off",
+                f"{self.deposit_on!r} and {self.deposit_off!r} cannot switch the deposit on and off; give two different words,"
+                " or none",
+            )
 
 
 @dataclass(frozen=True)
@@ -36,6 +74,7 @@ class ProgramParameters:
     dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
     start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
     blend: int = f.parameter(100, f.COUNT, "FANUC: CNT value of the moves within a bead.", low=0, high=100, advanced=True)
+    nc: NcParameters = f.group(NcParameters, "Programs of five-axis machines.")
     user_frame: int = f.parameter(1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61)
     tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)
     deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)

@@ -25,6 +25,7 @@ from ..program import (
     DepositOn,
     LayerStart,
     Moves,
+    NcOptions,
     Program,
     Six,
     Wait,
@@ -63,6 +64,10 @@ def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: Pr
         axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.machine.is_table else (),
         axis_kinds=tuple(LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding)
         if cell.machine.is_table else (),
+        nc=NcOptions(
+            parameters.nc.feed == "path", parameters.nc.compress, parameters.nc.smooth, parameters.nc.tolerance,
+            parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
+        ),
     )
 
 

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What programs of five-axis machines say in numbers: axis words, direction vectors, feeds; the same for every controller."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+from ..core.program import LINEAR, RAPID, Moves, Program, slide_feeds
+
+Array = NDArray[np.float64]
+
+# of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
+DECIMALS, VECTOR_DECIMALS = 5, 6
+# significant digits of a feed, and the range every controller takes
+FEED_DIGITS = 7
+SLOWEST, FASTEST = 0.001, 999_999.0
+# mm: where the linear axes go less than this, their speed is no measure of the time of a move
+SHORTEST_WAY = 0.01
+
+
+def shown(joints: Array, kinds: Sequence[str]) -> Array:
+    """Joint values (n, axes) in mm and deg, as the text has them."""
+    factor = np.array([1.0 if kind == LINEAR else math.degrees(1.0) for kind in kinds])
+    values: Array = np.round(joints * factor, DECIMALS) + 0.0
+    return values
+
+
+def rows(template: str, values: Array) -> list[str]:
+    """One text per row of the values (n, columns)."""
+    return [template % row for row in zip(*values.T.tolist(), strict=True)]
+
+
+def template(names: Sequence[str]) -> str:
+    """Plain words with these addresses: X%.5f Y%.5f."""
+    return " ".join(f"{name}%.{DECIMALS}f" for name in names)
+
+
+def feed(value: float) -> str:
+    """A feed with its significant digits, never in exponents."""
+    return f"F{value:.{max(FEED_DIGITS - 1 - math.floor(math.log10(value)), 0)}f}"
+
+
+class Feeds:
+    """Feed words of the moves of a program, asked for run by run in the order of motion.
+
+    Moves of axes last as long as planned: F is one over that time in minutes (G93). With `program.nc.path_feed` it is the
+    speed of the linear axes in mm/min (G94) wherever these move. Beads told in positions run at the speed of the tip.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.kinds, self.by_tip = program.axis_kinds, program.motion == "cartesian"
+        self.path_feed = program.nc.path_feed and not self.by_tip
+        self.before: Array | None = None
+
+    def __call__(self, moves: Moves) -> list[str]:
+        """One text per move, such as 'F120.0000' or, where the sort of feed is another one, 'G94 F300.0000'.
+
+        Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
+        """
+        at = shown(moves.joints, self.kinds)
+        start = at[0] if self.before is None else self.before
+        self.before = at[-1]
+        if self.by_tip and moves.kind != RAPID:
+            return [feed(value) for value in _tip_feeds(moves).tolist()]
+        inverse = _inverse_times(moves)
+        if not self.path_feed or moves.kind == RAPID:
+            return [feed(value) for value in inverse.tolist()]
+        linear = np.array([kind == LINEAR for kind in self.kinds])
+        way = np.diff(np.concatenate([start[None], at])[:, linear], axis=0)
+        slides = 60.0 * slide_feeds(start, at, moves.duration, self.kinds)
+        timed = (np.linalg.norm(way, axis=1) < SHORTEST_WAY) | (slides < SLOWEST) | (slides > FASTEST)
+        return [f"G93 {feed(by_time)}" if is_timed else f"G94 {feed(slide)}"
+                for is_timed, by_time, slide in zip(timed.tolist(), inverse.tolist(), slides.tolist(), strict=True)]
+
+
+def _inverse_times(moves: Moves) -> Array:
+    """(n,) 1/min of the moves."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse: Array = 60.0 / moves.duration
+    if moves.kind == RAPID:  # one that hardly moves may take no time at all
+        inverse = np.clip(np.nan_to_num(inverse, nan=FASTEST, posinf=FASTEST), SLOWEST, FASTEST)
+    wrong = ~((inverse >= SLOWEST) & (inverse <= FASTEST))
+    if wrong.any():
+        raise InputError(
+            "MOVE_TIME", place(moves),
+            f"a move of {moves.duration[wrong][0]:.4g} s cannot be written; moves take {60.0 / FASTEST:.2g} to"
+            f" {60.0 / SLOWEST:.0f} s: use another speed or a larger chord error",
+        )
+    return inverse
+
+
+def _tip_feeds(moves: Moves) -> Array:
+    """(n,) mm/min at the tip."""
+    feeds: Array = 60.0 * moves.speed
+    wrong = ~((feeds >= SLOWEST) & (feeds <= FASTEST))
+    if wrong.any():
+        raise InputError(
+            "MOVE_SPEED", place(moves),
+            f"{moves.speed[wrong][0]:.4g} mm/s cannot be written; use {SLOWEST / 60.0:.2g} to {FASTEST / 60.0:.0f} mm/s",
+        )
+    return feeds
+
+
+def place(moves: Moves) -> str:
+    """Where a run of moves is, for messages."""
+    return f"layer {moves.layer} bead {moves.bead}"
