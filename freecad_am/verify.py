@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .core.geometry import frames
 from .core.issues import ERROR, NOTE, Issue
-from .core.kinematics.cell import Cell
+from .core.kinematics.cell import ROTARY_TABLE, Cell
 from .core.motion import Motion
 from .core.program import Program, ReadMoves
 from .kdl import chain as kdl_chain
@@ -74,6 +74,8 @@ def verify(
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
     planned = _Planned(motion, rows)
     issues = _deposit_issues(planned, read, program) + _time_issues(cell, planned, read)
+    if read.position is not None and cell.setup == ROTARY_TABLE:
+        return _verify_tips(cell, planned, program, read, issues)
     if read.position is None:
         return _verify_joints(cell, planned, program, read, chord_error, issues)
     return _verify_poses(cell, planned, program, read, chord_error, issues)
@@ -122,6 +124,10 @@ def _time_issues(cell: Cell, planned: _Planned, read: ReadMoves) -> list[Issue]:
     timed &= ~by_speed
     allowed = np.where(wanted < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
     taken, coarse = read.duration, allowed > TENTH
+    if read.duration_digits is not None:
+        allowed, coarse = read.duration_digits + 1e-9 * wanted + 1e-12, np.ones(len(timed), dtype=bool)
+    if cell.setup == ROTARY_TABLE:  # rapids at the machine's own speed: the text says no more
+        timed &= planned.deposit | np.isfinite(taken)
     short = timed & ~planned.deposit & (wanted < MILLISECOND)  # written as 1 ms, the shortest there is
     if read.share is not None:
         times, times_allowed, turned = _share_times(cell, planned, read, read.share)
@@ -160,10 +166,9 @@ def _verify_joints(
 ) -> Verification:
     assert read.joints is not None
     shown = read.joints.copy()
-    endless = np.array(program.endless)
-    # the controller takes an endless axis the shorter way
+    endless = _shorter_way(cell, program)
     shown[:, endless] = np.unwrap(shown[:, endless], axis=0)
-    path, flange = _joint_path(cell, shown, read.digits)
+    path, flange = _joint_path(cell, shown, _digits(cell, read))
     issues += _joint_issues(cell, planned, read, endless) + _point_issues(planned, path)
     between, off = _between(cell, planned, shown, path, chord_error)
     message = f"the path between two points leaves the straight line by {between:.3g} mm, more than the chord error"
@@ -178,28 +183,56 @@ def _joint_issues(cell: Cell, planned: _Planned, read: ReadMoves, endless: Mask)
     assert read.joints is not None
     apart = read.joints - cell.machine.to_controller(planned.joints)
     apart[:, endless] -= 2.0 * np.pi * np.rint(apart[:, endless] / (2.0 * np.pi))
-    apart[np.isnan(read.joints).all(axis=1)] = 0.0  # told in Cartesian positions
-    wrong = ~(np.abs(apart).max(axis=1) <= read.digits + COMPUTED_AXIS)
-    message = f"a joint value is {np.degrees(np.abs(apart).max()):.3g} deg from the planned one"
-    return planned.issue("VERIFY_JOINT", wrong, message)
+    told = ~np.isnan(read.joints) | ~_told_by_position(cell, read.joints)
+    apart[~told] = 0.0
+    computed = np.where(cell.machine.chain.sliding, COMPUTED_MM, COMPUTED_AXIS)
+    wrong = ~(np.abs(apart) <= _digits(cell, read) + computed)
+    found = []
+    for axis in np.flatnonzero(wrong.any(axis=0)):
+        most = np.abs(apart[:, axis]).max() / cell.machine.unit_values[axis]
+        message = f"axis {cell.machine.axes[axis]} is up to {most:.3g} {cell.machine.units[axis]} from the planned value"
+        found += planned.issue("VERIFY_JOINT", wrong[:, axis], message)
+    return found
 
 
-def _joint_path(cell: Cell, shown: Array, half_digit: float) -> tuple[_Path, Array]:
+def _told_by_position(cell: Cell, joints: Array) -> Mask:
+    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: all of a
+    robot's, and those that slide of a machine with rotary axes."""
+    if cell.setup == ROTARY_TABLE:
+        return np.broadcast_to(cell.machine.chain.sliding, joints.shape)
+    return np.broadcast_to(np.isnan(joints).all(axis=1, keepdims=True), joints.shape)
+
+
+def _shorter_way(cell: Cell, program: Program) -> Mask:
+    """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
+    machine tools count their turns."""
+    return np.array(program.endless) & (cell.setup != ROTARY_TABLE)
+
+
+def _digits(cell: Cell, read: ReadMoves) -> Array:
+    """(axes,) half of the last digit of each axis, rad and mm."""
+    return np.where(cell.machine.chain.sliding, read.linear_digits, read.digits)
+
+
+def _joint_path(cell: Cell, shown: Array, digits: Array) -> tuple[_Path, Array]:
     """The path of controller joint values (n, axes) and the flange poses (n, 4, 4).
 
-    Bounds to first order: every joint value may be off by half a digit, so the tip is within the sum of the lengths
-    of the Jacobian's columns; what the second order adds is at most that times the sum of the angles.
+    Bounds to first order: every joint value may be off by half a digit (axes,), so the tip is within the sum of the
+    lengths of the Jacobian's columns; what the second order adds is at most that times the sum of the angles.
     """
     machine = cell.machine
     at = machine.chain.frames(machine.from_controller(shown))
     position, tool = cell.tip_in_part(at.flange)
     point = cell.deposition_point(at.flange)
     to_serial = np.linalg.inv(machine.controller_matrix)
-    linear = np.cross(at.directions, point[:, None, :] - at.origins)
-    linear, angular = (np.einsum("nki,kj->nji", rows, to_serial) for rows in (linear, at.directions))
-    more = 1.0 + half_digit * np.abs(to_serial).sum()
-    bound = half_digit * more * np.linalg.norm(linear, axis=2).sum(axis=1) + COMPUTED_MM
-    tool_bound = half_digit * more * np.linalg.norm(angular, axis=2).sum(axis=1) + COMPUTED_AXIS
+    slides = machine.chain.sliding[:, None]
+    linear = np.where(slides, at.directions, np.cross(at.directions, point[:, None, :] - at.origins))
+    linear, angular = (
+        np.einsum("nki,kj->nji", rows, to_serial) for rows in (linear, np.where(slides, 0.0, at.directions))
+    )
+    more = 1.0 + (np.abs(to_serial) @ digits)[~machine.chain.sliding].sum()
+    bound = more * np.linalg.norm(linear, axis=2) @ digits + COMPUTED_MM
+    tool_bound = more * np.linalg.norm(angular, axis=2) @ digits + COMPUTED_AXIS
     return _Path(position, tool, bound, tool_bound), at.flange
 
 
@@ -260,11 +293,11 @@ def _verify_poses(
     at every point, so the way between two of them is looked at too.
     """
     joints = np.concatenate([moves.joints for moves in program.moves])
-    path, flange = _joint_path(cell, joints, 0.0)
+    path, flange = _joint_path(cell, joints, np.zeros(joints.shape[1]))
     issues += _point_issues(planned, path)
     told, asked, tools = _text_path(cell, program, read)
     if read.joints is not None:
-        issues += _joint_issues(cell, planned, read, np.array(program.endless))
+        issues += _joint_issues(cell, planned, read, _shorter_way(cell, program))
     issues += _point_issues(planned, told)
     # an angle of a shows as sqrt(2) a in the sum of squares of the nine entries
     twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * told.tool_bound
@@ -281,6 +314,37 @@ def _verify_poses(
     solver_issues, solvers = _second_opinion(cell, planned, joints, flange)
     at_points = float(np.linalg.norm(told.position - planned.position, axis=1).max())
     return Verification(tuple(issues + solver_issues), at_points, between, float(told.bound.max()), solvers)
+
+
+def _verify_tips(cell: Cell, planned: _Planned, program: Program, read: ReadMoves, issues: list[Issue]) -> Verification:
+    """Tips and directions of a text for a machine with rotary axes, which finds its linear axes itself, and the planned
+    axis values against the same points. Such a controller takes the tip straight from point to point."""
+    joints = np.concatenate([moves.joints for moves in program.moves])
+    path, flange = _joint_path(cell, joints, np.zeros(joints.shape[1]))
+    told = _text_tips(cell, program, read)
+    if read.joints is not None:
+        issues += _joint_issues(cell, planned, read, _shorter_way(cell, program))
+    issues += _point_issues(planned, path) + _point_issues(planned, told)
+    solver_issues, solvers = _second_opinion(cell, planned, joints, flange)
+    at_points = float(np.linalg.norm(told.position - planned.position, axis=1).max())
+    return Verification(tuple(issues + solver_issues), at_points, 0.0, float(told.bound.max()), solvers)
+
+
+def _text_tips(cell: Cell, program: Program, read: ReadMoves) -> _Path:
+    """Tips and tool axes of a text in part coordinates, by its positions and its directions, or else its rotary axes."""
+    assert read.position is not None and program.carried is not None
+    in_part = cell.mount @ frames.inverse(cell.carried) @ frames.bryant(program.carried)
+    position = read.position @ in_part[:3, :3].T + in_part[:3, 3]
+    bound = np.full(len(position), np.sqrt(3.0) * read.position_digits + COMPUTED_MM)
+    tool, tool_bound = np.full_like(position, np.nan), np.zeros(len(position))
+    if read.direction is not None:
+        length = np.linalg.norm(read.direction, axis=1)
+        tool = (read.direction / np.maximum(length, 1e-300)[:, None]) @ in_part[:3, :3].T
+        tool_bound = np.sqrt(3.0) * read.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
+    elif read.joints is not None:  # where the linear axes stand does not turn the tool
+        told, _ = _joint_path(cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), _digits(cell, read))
+        tool, tool_bound = told.tool, told.tool_bound
+    return _Path(position, tool, bound, tool_bound)
 
 
 def _text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[_Path, Array, Array]:
@@ -306,7 +370,7 @@ def _text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[_Path, Ar
     position, tool = cell.tip_in_part(asked)
     if read.joints is not None:
         rows = np.isfinite(read.joints).all(axis=1)
-        path, asked[rows] = _joint_path(cell, read.joints[rows], read.digits)
+        path, asked[rows] = _joint_path(cell, read.joints[rows], _digits(cell, read))
         position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
     return _Path(position, tool, bound, tool_bound), asked, tools
 

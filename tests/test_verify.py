@@ -261,7 +261,7 @@ def test_the_bound_holds_and_is_tight_for_random_machines():
     half = np.radians(0.0005)
     corners = np.array(np.meshgrid(*[[-1.0, 1.0]] * 6)).reshape(6, -1).T * half
     for shown in rng.uniform(-2.0, 2.0, (20, 6)):
-        path, _ = verification._joint_path(cell, shown[None], half)
+        path, _ = verification._joint_path(cell, shown[None], np.full(6, half))
         turned = cell.machine.chain.forward(cell.machine.from_controller(shown + corners))
         tips, tools = cell.tip_in_part(turned)
         off = np.linalg.norm(tips - path.position, axis=1).max()

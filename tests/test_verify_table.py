@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs of five-axis machines read back: right ones pass, and every single thing gone wrong is caught."""
+
+import dataclasses
+import itertools
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from freecad_am import verify as verification
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.program import build
+from freecad_am.core.program import ReadMoves
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+
+CHORD_ERROR = 0.02
+MM, RAD, UNIT, RELATIVE = 5e-4, math.radians(5e-4), 5e-7, 5e-6
+CARTESIAN = ("directions", "rotary words")
+
+
+def turned_bead(distance, start):
+    base = Developable(60.0, 200.0).offset(distance)
+    theta, z = start + np.linspace(0.0, 1.2, 36), np.linspace(10.0, 70.0, 36)
+    rho = base.radius * (1.0 - z / base.height)
+    points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
+    up = base.normals(points)
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    return Bead(points, up, up, 2.0 * math.pi * length / length[-1], np.full(36, 8.0), False)
+
+
+@pytest.fixture(scope="module", params=["table-xyzac", "table-xyzbc", "head-table-xyzbc"])
+def planned(request):
+    parameters = CellParameters(
+        machine=request.param, setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part"
+    )
+    cell = cells.resolve(parameters, np.eye(4), "developable")
+    layers = tuple(Layer((turned_bead(3.0 * k, 0.9 * k),)) for k in range(3))
+    path = plan_joints(Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters())
+    motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
+    assert path.feasible and not issues
+    return cell, motion
+
+
+def written(cell, motion, way):
+    """The program, and what a reader finds in a text of it: rounded as texts are."""
+    cartesian = way in CARTESIAN
+    parameters = ProgramParameters(
+        post="siemens", motion="cartesian" if cartesian else "joint",
+        origin=(3.0, 2.0, 1.0, 0.0, 0.0, 0.2) if cartesian else "auto",
+    )
+    program = build(motion, cell, ProcessParameters(travel_speed=8.0), parameters, "cone")
+
+    def column(name):
+        return np.concatenate([getattr(moves, name) for moves in program.moves])
+
+    def rounded(values, half):
+        return np.round(values / (2.0 * half)) * 2.0 * half
+
+    slides = cell.machine.chain.sliding
+    joints = np.where(slides, rounded(column("joints"), MM), rounded(column("joints"), RAD))
+    duration = column("duration")
+    deposit = np.concatenate([np.full(len(moves), moves.kind == "deposit") for moves in program.moves])
+    if way == "joints":
+        times = duration * (1.0 + RELATIVE * np.sin(np.arange(len(duration))))
+        return program, ReadMoves(
+            joints, RAD, times, deposit, linear_digits=MM, duration_digits=duration * RELATIVE,
+        )
+    position = rounded(column("position"), MM)
+    known = {"position": position, "position_digits": MM, "speed": np.round(column("speed"), 3), "speed_digits": 5e-4}
+    nothing = np.full(len(duration), np.nan)
+    if way == "directions":
+        direction = rounded(column("direction"), UNIT)
+        return program, ReadMoves(None, 0.0, nothing, deposit, direction=direction, direction_digits=UNIT, **known)
+    return program, ReadMoves(np.where(slides, np.nan, joints), RAD, nothing, deposit, **known)
+
+
+def verify(cell, motion, program, read):
+    post = SimpleNamespace(read=lambda files: read)
+    return verification.verify(cell, motion, program, {}, post, CHORD_ERROR)
+
+
+def codes(result):
+    return {issue.code for issue in result.issues}
+
+
+@pytest.mark.parametrize("way", ["joints", *CARTESIAN])
+def test_a_right_text_passes(planned, way):
+    result = verify(*planned, *written(*planned, way))
+    assert result.issues == () and result.solvers == ("chain", "pykdl")
+    assert 1e-5 < result.at_points_mm <= result.bound_mm < 0.02
+    if way == "joints":
+        assert 0.2 * CHORD_ERROR < result.between_mm < CHORD_ERROR + result.bound_mm
+
+
+@pytest.mark.parametrize("axis", range(5))
+@pytest.mark.parametrize("row", [3, 60, -2])
+def test_an_axis_value_that_is_off_is_caught(planned, axis, row):
+    cell, motion = planned
+    program, read = written(cell, motion, "joints")
+    slides = cell.machine.chain.sliding[axis]
+    joints = read.joints.copy()
+    joints[row, axis] += 3.0 * (MM if slides else RAD)
+    result = verify(cell, motion, program, dataclasses.replace(read, joints=joints))
+    (issue,) = (issue for issue in result.issues if issue.code == "VERIFY_JOINT")
+    assert f"axis {cell.machine.axes[axis]} " in issue.message and (" mm " if slides else " deg ") in issue.message
+
+
+def test_whole_turns_are_turns(planned):
+    # a rotary axis of a machine tool counts: 360 deg further on is another place to go to
+    cell, motion = planned
+    for way in ("joints", "rotary words"):
+        program, read = written(cell, motion, way)
+        for axis in np.flatnonzero(~cell.machine.chain.sliding):
+            joints = read.joints.copy()
+            joints[60:, axis] += 2.0 * math.pi
+            assert "VERIFY_JOINT" in codes(verify(cell, motion, program, dataclasses.replace(read, joints=joints)))
+
+
+def test_times_that_do_not_give_the_speed_are_caught(planned):
+    cell, motion = planned
+    program, read = written(cell, motion, "joints")
+    for factor in (1.0 + 4.0 * RELATIVE, 1.0 - 4.0 * RELATIVE):
+        times = read.duration.copy()
+        times[40] *= factor
+        assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {"VERIFY_TIME"}
+    # a rapid that runs as fast as the machine does has no time; a bead must have one
+    times = np.where(read.deposit, read.duration, np.nan)
+    assert verify(cell, motion, program, dataclasses.replace(read, duration=times)).issues == ()
+    times[np.flatnonzero(read.deposit)[5]] = np.nan
+    assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {"VERIFY_TIME"}
+
+
+def test_deposit_and_count_are_caught(planned):
+    cell, motion = planned
+    program, read = written(cell, motion, "joints")
+    deposit = read.deposit.copy()
+    deposit[20] = ~deposit[20]
+    assert codes(verify(cell, motion, program, dataclasses.replace(read, deposit=deposit))) == {"VERIFY_DEPOSIT"}
+    fewer = dataclasses.replace(
+        read, joints=read.joints[1:], duration=read.duration[1:], deposit=read.deposit[1:],
+        duration_digits=read.duration_digits[1:],
+    )
+    assert codes(verify(cell, motion, program, fewer)) == {"VERIFY_COUNT"}
+
+
+@pytest.mark.parametrize("way", CARTESIAN)
+def test_positions_directions_and_speeds_that_are_off_are_caught(planned, way):
+    cell, motion = planned
+    program, read = written(cell, motion, way)
+    for axis in range(3):
+        position = read.position.copy()
+        position[33, axis] += 4.0 * MM
+        assert "VERIFY_POINT" in codes(verify(cell, motion, program, dataclasses.replace(read, position=position)))
+    speed = read.speed.copy()
+    speed[33] += 0.002
+    assert codes(verify(cell, motion, program, dataclasses.replace(read, speed=speed))) == {"VERIFY_SPEED"}
+    elsewhere = dataclasses.replace(program, carried=(program.carried[0] + 0.01, *program.carried[1:]))
+    assert "VERIFY_POINT" in codes(verify(cell, motion, elsewhere, read))
+    if way == "directions":
+        for change in (lambda d: -d, lambda d: d + [5e-6, 0.0, 0.0], lambda d: np.full_like(d, np.nan)):
+            direction = read.direction.copy()
+            direction[33] = change(direction[33])
+            assert "VERIFY_TOOL" in codes(verify(cell, motion, program, dataclasses.replace(read, direction=direction)))
+        # the length of a vector says nothing
+        scaled = dataclasses.replace(read, direction=2.0 * read.direction, direction_digits=2.0 * read.direction_digits)
+        assert verify(cell, motion, program, scaled).issues == ()
+    else:
+        for axis in np.flatnonzero(~cell.machine.chain.sliding):
+            joints = read.joints.copy()
+            joints[33, axis] += 3.0 * RAD
+            assert codes(verify(cell, motion, program, dataclasses.replace(read, joints=joints))) >= {"VERIFY_JOINT"}
+        nothing = dataclasses.replace(read, joints=None)
+        assert codes(verify(cell, motion, program, nothing)) == {"VERIFY_TOOL"}
+
+
+def test_the_bound_holds_and_is_tight(planned):
+    cell, _ = planned
+    rng = np.random.default_rng(4)
+    slides = cell.machine.chain.sliding
+    digits = np.where(slides, 0.0005, math.radians(0.002))
+    corners = np.array(list(itertools.product([-1.0, 1.0], repeat=5))) * digits
+    for _ in range(20):
+        shown = np.where(slides, rng.uniform(-200, 200, 5), rng.uniform(-2, 2, 5))
+        path, _ = verification._joint_path(cell, shown[None], digits)
+        tips, tools = cell.tip_in_part(cell.machine.chain.forward(shown + corners))
+        off = np.linalg.norm(tips - path.position, axis=1).max()
+        tilt = np.linalg.norm(tools - path.tool, axis=1).max()
+        assert 0.3 * path.bound[0] < off <= path.bound[0] and 0.2 * path.tool_bound[0] < tilt <= path.tool_bound[0]
