@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,14 @@ class Base:
         return part
 
 
+class Seat(NamedTuple):
+    """A base, and from where to where (mm along its axis) faces of it reach; infinite for one that is given."""
+
+    base: Base
+    low: float
+    high: float
+
+
 @dataclass(frozen=True)
 class Group:
     """Solids on one base, in the order of their azimuths."""
@@ -69,3 +78,23 @@ def middle_azimuth(base: Base, points: Array) -> float:
     k = int(np.argmax(gaps))
     middle = angle[k] + 0.5 * gaps[k] + 0.5 * TURN
     return float(np.remainder(np.round(middle, 9), TURN))
+
+
+def downwards(z: Array) -> bool:
+    """Whether an axis (3,) points against the part's Z, or against its X or Y where it has no part along Z."""
+    for component in (2, 0, 1):
+        if abs(z[component]) > 1e-9:
+            return bool(z[component] < 0.0)
+    return False
+
+
+def upright(origin: Array, z: Array) -> Array:
+    """The frame (4, 4) with an origin and unit Z (3,); its X is the part's X seen along Z, or Y where X is along it."""
+    x = np.eye(3)[0] - z[0] * z
+    if np.linalg.norm(x) < 1e-6:
+        x = np.eye(3)[1] - z[1] * z
+    x /= np.linalg.norm(x)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    frame[:3, 3] = origin
+    return frame

@@ -72,8 +72,8 @@ class ProcessParameters:
     overlap: float = f.parameter(0.0, f.LENGTH, "How far a closed bead runs on past its seam.", low=0.0)
     between_layers: BetweenLayersParameters = f.group(BetweenLayersParameters, "What happens between two layers.")
     bead_model: str = f.parameter(
-        "none", f.TEXT, "Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or "
-        "the path of a calibration table."
+        "none", f.TEXT, "Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, "
+        "csw, or the path of a calibration table."
     )
     acceleration: float = f.parameter(
         20.0, f.NUMBER, "Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.",

@@ -153,8 +153,8 @@ class DevelopableParameters(LayerParameters):
         0.0, f.LENGTH, "How far the deposit stands out on all sides of the part, to be machined off.", low=0.0
     )
     order: str = f.parameter(
-        "around-axis", f.CHOICE, "The same layer of all solids on a base in turn, around the axis, the same ring of each and "
-        "the inner ones first; or solid by solid (feature).",
+        "around-axis", f.CHOICE, "The same layer of all solids on a base in turn, around the axis, the same ring of each "
+        "and the inner ones first; or solid by solid (feature).",
         choices=("around-axis", "feature"),
     )
     wait: float = f.parameter(

@@ -22,6 +22,7 @@ from .equidistant import Facets, Loop
 STEP = math.radians(11.0)
 TRIES = 360
 ASIDE = 2.0  # chord errors; a cut keeps that far from facets that lie in its surface
+REACH = 0.05  # mm; a solid that begins no further from a surface stands on it
 
 
 class Flat(NamedTuple):
@@ -40,13 +41,15 @@ def count(facets: Facets, height: float, margin: float, chord_error: float) -> i
 def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
     """The loops (in the base's frame) of the solid just outside of the surface at `distance` mm, moved onto it.
 
-    Where facets lie in that surface, as the foot of a blade does in its hub, it is cut a hair further out: a cut through
-    them would be what noise makes of it.
+    Where facets lie in that surface, as the foot of a blade does in its hub, or the solid begins a hair outside of it, it
+    is cut further out: a cut through them would be what noise makes of it.
     """
     corners = facets.away[facets.faces]
     low, high = corners.min(axis=1), corners.max(axis=1)
     lying = (low > distance - chord_error) & (high < distance + chord_error)
-    aside = ASIDE * chord_error if lying.any() else 0.0
+    lowest = float(facets.away.min())
+    gap = lowest - distance if distance < lowest < distance + REACH else 0.0
+    aside = gap + ASIDE * chord_error if gap or lying.any() else 0.0
     found = facets.cut(distance + aside, chord_error)
     if aside == 0.0:
         return found

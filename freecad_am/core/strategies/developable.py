@@ -10,7 +10,7 @@ import numpy as np
 
 from ..filling.curve import PlaneCurve
 from ..geometry.developable import Array
-from ..geometry.on_hub import Base, SolidsOnHub, middle_azimuth
+from ..geometry.on_hub import Base, SolidsOnHub, downwards, middle_azimuth, upright
 from ..geometry.region import Region
 from ..geometry.surroundings import Body
 from ..issues import InfeasibleError, InputError, Issue
@@ -100,20 +100,10 @@ def _frame(solids: SolidsOnHub) -> Array:
     lowest end of the solids is; X the part's X seen along Z."""
     base: Base = solids.groups[0].base
     z = base.frame[:3, 2]
-    for component in (2, 0, 1):
-        if abs(z[component]) > 1e-9:
-            z = z * np.sign(z[component])
-            break
+    z = -z if downwards(z) else z
     vertices = np.vstack([body.vertices for group in solids.groups for body in group.bodies])
     low = float(((vertices - base.frame[:3, 3]) @ z).min())
-    x = np.eye(3)[0] - z[0] * z
-    if np.linalg.norm(x) < 1e-6:
-        x = np.eye(3)[1] - z[1] * z
-    x /= np.linalg.norm(x)
-    frame = np.eye(4)
-    frame[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
-    frame[:3, 3] = base.frame[:3, 3] + low * z
-    return frame
+    return upright(base.frame[:3, 3] + low * z, z)
 
 
 def without_axis_limits(build: BuildDirectionParameters) -> BuildDirectionParameters:

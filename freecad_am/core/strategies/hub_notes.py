@@ -85,8 +85,8 @@ def _outside(made: Sequence[Rolled], length: Array, model: BeadModel) -> list[Is
     if slow > 0.0:
         found.append(Issue(
             WARNING if slow > CLAMPED else NOTE, "OUTSIDE_TABLE", f"on {100.0 * slow:.3g} % of the length the width "
-            f"asked for takes a speed outside of the table's {low:.4g} to {high:.4g} mm/min; it is kept within, and the width "
-            "is not held",
+            f"asked for takes a speed outside of the table's {low:.4g} to {high:.4g} mm/min; it is kept within, and the "
+            "width is not held",
         ))
     if bent > 0.0:
         found.append(Issue(

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which cylinder or cone each solid stands on: the one that it is cut by in the longest contour."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..geometry.on_hub import Group, Seat, SolidsOnHub, downwards, middle_azimuth
+from ..geometry.surroundings import Body
+from ..geometry.told import place
+from ..issues import InputError, Issue
+from .equidistant import Facets
+from .laid_flat import cut
+
+NEAR = 0.05  # mm past the ends of a face at which a solid still stands on it
+
+
+def on_hub(
+    bodies: Sequence[Body], seats: Sequence[Seat], chord_error: float, label: str, issues: tuple[Issue, ...] = ()
+) -> SolidsOnHub:
+    """Bodies grouped by the base that each stands on with the longest contour; groups up the first base's axis.
+
+    InputError NOT_ON_HUB for a solid that stands on none, NO_BASE where there is no base.
+    """
+    if not seats:
+        raise InputError(
+            "NO_BASE", label, "the hub has no cylinder and no cone on its outside; choose a face of it, or give "
+            "strategy.base",
+        )
+    standing: dict[int, list[Body]] = {}
+    for body in bodies:
+        standing.setdefault(_seat_of(body, seats, chord_error), []).append(body)
+    axis = seats[min(standing)].base.frame[:3, 2]
+    axis = -axis if downwards(axis) else axis
+    groups = [
+        Group(seats[k].base, tuple(sorted(some, key=lambda body: middle_azimuth(seats[k].base, body.vertices))))
+        for k, some in standing.items()
+    ]
+    groups.sort(key=lambda group: min(float((body.vertices @ axis).min()) for body in group.bodies))
+    return SolidsOnHub(label, tuple(groups), chord_error, (), issues)
+
+
+def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float) -> int:
+    contact = np.zeros(len(seats))
+    away = np.zeros((len(seats), 2))
+    for k, seat in enumerate(seats):
+        facets = Facets(seat.base.surface, seat.base.inside(body.vertices), body.triangles, body.name)
+        away[k] = facets.away.min(), facets.away.max()
+        for loop in cut(facets, 0.0, chord_error):
+            step = np.linalg.norm(np.roll(loop.points, -1, axis=0) - loop.points, axis=1)
+            z = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))[:, 2]
+            contact[k] += step[(z > seat.low - NEAR) & (z < seat.high + NEAR)].sum()
+    best = int(np.argmax(contact))
+    if contact[best] > 0.0:
+        return best
+    nearest = int(np.argmin(np.where(away[:, 1] > 0.0, np.maximum(away[:, 0], 0.0), np.inf)))
+    where = place(body.vertices[np.argmin(seats[nearest].base.surface.distance(seats[nearest].base.inside(body.vertices)))])
+    if (away[:, 1] <= 0.0).all():
+        told = "it lies inside of the hub"
+    elif away[nearest, 0] > 0.0:
+        told = f"it begins {away[nearest, 0]:.4g} mm outside of {seats[nearest].base.name}, at {where}"
+    else:
+        told = f"it passes {seats[nearest].base.name} beside the face, near {where}"
+    raise InputError("NOT_ON_HUB", body.name, f"it does not stand on the hub: {told}; move it, or choose its base")
+
+
+def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str) -> int:
+    """Which of the solids of a part is the hub: the one that most of the others stand on.
+
+    seats: of each solid. InputError NO_HUB.
+    """
+    votes = np.zeros(len(bodies), dtype=int)
+    for k in range(len(bodies)):
+        for j, body in enumerate(bodies):
+            if j == k or not seats[k]:
+                continue
+            try:
+                _seat_of(body, seats[k], chord_error)
+            except InputError:
+                continue
+            votes[k] += 1
+    if not votes.any():
+        raise InputError(
+            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another; name the hub as substrate, choose "
+            "a face of it, or give strategy.base",
+        )
+    return int(np.argmax(votes))
