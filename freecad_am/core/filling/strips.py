@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..geometry.medial import spine
 from ..geometry.plane_curve import Array
-from ..geometry.region import Region, simplified
+from ..geometry.region import Region, regions, simplified
 from ..geometry.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
@@ -113,10 +113,12 @@ def _middle(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     parts = strip.between(-0.5 * turn - room, 0.5 * turn + room)
     largest = max(parts, key=lambda part: part.area)
     points, _ = spine(largest, 0.25 * beads.gap, FINE * beads.spacing)
-    if len(points) < 2:
-        return []
-    if points[0, 0] > points[-1, 0]:
+    if len(points) and points[0, 0] > points[-1, 0]:
         points = points[::-1]
+    if not len(points) or points[0, 0] > -0.5 * turn or points[-1, 0] < 0.5 * turn:  # somewhere too narrow for a bead
+        halves = [part for k in (-0.5, 0.0) for part in strip.between(k * turn, (k + 0.5) * turn)]
+        laid = [piece for half in halves for piece in regions([strip.period.laid(ring) for ring in half.rings()])]
+        return centre_beads(laid, beads, ring)
     points = simplified(points, 0.2 * beads.chord_error)
     v = np.interp(-0.5 * turn, points[:, 0], points[:, 1])
     within = points[(points[:, 0] > -0.5 * turn) & (points[:, 0] < 0.5 * turn)]

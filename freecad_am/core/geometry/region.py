@@ -238,10 +238,11 @@ def _wound(loops: list[Array]) -> tuple[Any, float]:
 
 
 def _ring(ring: Any, sense: float) -> Array:
-    points = np.asarray(ring.coords, dtype=float)[:-1, :2]
+    points = np.asarray(ring.coords)[:-1]
     if doubled_area(points) * sense < 0.0:
         points = points[::-1]
-    first = int(np.lexsort((points[:, 1], points[:, 0]))[0])
+    leftmost = np.flatnonzero(points[:, 0] == points[:, 0].min())
+    first = int(leftmost[np.argmin(points[leftmost, 1])])
     begun: Array = np.roll(points, -first, axis=0)
     return begun
 

@@ -163,7 +163,7 @@ class Strip:
 
 def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period) -> tuple[Strip | Region, ...]:
     """Strips and plane regions that borders bound: (u, v) of those that go round with their sense, and of closed ones."""
-    order = sorted(rounds, key=lambda item: float(item[0][:, 1].mean()))
+    order = sorted((_begun(ring, sense, period.around) for ring, sense in rounds), key=lambda item: float(item[0][:, 1].mean()))
     holes = [ring for ring in closed if doubled_area(ring) < 0.0]
     outers = [ring for ring in closed if doubled_area(ring) > 0.0]
     found: list[Strip | Region] = []
@@ -196,6 +196,15 @@ def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | 
         else:
             closed.append(cover)
     return parts(rounds, closed, period)
+
+
+def _begun(ring: Array, sense: int, turn: float) -> tuple[Array, int]:
+    """A border that goes round, begun where it leaves the generatrix half a turn from 0."""
+    past = np.remainder(sense * ring[:, 0] + 0.5 * turn + NEAR * turn, turn)
+    first = int(np.argmin(past))
+    ring = np.vstack([ring[first:], ring[:first] + np.array([sense * turn, 0.0])])
+    ring[:, 0] -= turn * np.round((ring[0, 0] + sense * 0.5 * turn) / turn)
+    return ring, sense
 
 
 def _within(strip: Strip, hole: Array) -> bool:

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fillings measured: spacing, cover, gaps, sense, start, links; by distances of their own."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.fill import PATTERNS, fill
+from freecad_am.core.filling.lines import levels_between
+from freecad_am.core.geometry.region import regions
+from freecad_am.core.issues import InfeasibleError, InputError
+
+_spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
+shapes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(shapes)
+SHAPES, dense, inside, raster, tree = shapes.SHAPES, shapes.dense, shapes.inside, shapes.raster, shapes.tree
+
+S, GAP, PITCH = 5.0, 2.0, 0.4
+BEADS = Beads(S, GAP, 0.0)
+STEP = 0.05
+
+
+def filled(name, pattern, beads=BEADS, **options):
+    region, = regions(SHAPES[name])
+    return fill(region, beads, pattern, **options)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_cover_gaps_and_nothing_outside(name, pattern):
+    loops = SHAPES[name]
+    gap = 1.0  # the gap allowed decides how much stays open
+    curves = filled(name, pattern, Beads(S, gap, 0.0), angle=0.4, ring=True)
+    border = tree([(loop, True) for loop in loops], STEP)
+    beads = tree([(curve.points, curve.closed) for curve in curves], STEP)
+    # no middle of a bead nearer to the border than half a bead, minus the chord error
+    points = np.vstack([dense(curve.points, curve.closed, 0.3) for curve in curves])
+    assert inside(loops, points).all()
+    assert border.query(points)[0].min() > 0.5 * S - 2.0 * BEADS.chord_error - 1e-3
+    grid, within = raster(loops, PITCH)
+    away = beads.query(grid)[0]
+    covered = away <= 0.5 * S
+    assert (covered & ~within).sum() < 0.01 * within.sum()
+    # what beads inside can reach: within half a bead of a place that is half a bead inside
+    core = within & (border.query(grid)[0] >= 0.5 * S)
+    reach = tree([(grid[core], False)], 1e9).query(grid)[0] < 0.5 * S - PITCH
+    assert (covered & reach).sum() > 0.99 * reach.sum()
+    # an open circle of the gap's diameter would have a middle that is half of it away from all beads
+    assert away[reach].max() < 0.5 * S + 0.5 * gap + PITCH
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_contours_are_a_spacing_apart(name):
+    curves = [curve for curve in filled(name, "contours") if curve.kind == "contour"]
+    border = tree([(loop, True) for loop in SHAPES[name]], 0.02)
+    for curve in curves:
+        assert curve.closed
+        # every place of contour k is k + 1/2 spacings from the border: parallel to it, not to the one before
+        away = border.query(dense(curve.points, True, 0.5))[0]
+        assert np.abs(away - (curve.ring + 0.5) * S).max() < 0.01 * S
+    for ring in range(1, 1 + max(curve.ring for curve in curves)):
+        outer = tree([(curve.points, True) for curve in curves if curve.ring == ring - 1], 0.02)
+        for curve in (curve for curve in curves if curve.ring == ring):
+            assert np.abs(outer.query(dense(curve.points, True, 0.5))[0] - S).max() < 0.01 * S
+
+
+def test_contours_cover_all_but_medial_axis_and_corners():
+    loops = SHAPES["annulus"]
+    curves = [curve for curve in filled("annulus", "contours") if curve.kind == "contour"]
+    grid, within = raster(loops, 0.25)
+    off_axis = within & (np.abs(np.hypot(*grid.T) - 38.8) > 0.5 * S)
+    away = tree([(curve.points, True) for curve in curves], STEP).query(grid)[0]
+    assert (away[off_axis] <= 0.5 * S + 0.02).mean() > 0.99
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4, 2.0])
+def test_lines_are_parallel_and_a_spacing_apart(angle):
+    curves = [curve for curve in filled("wavy 1", "lines", angle=angle) if curve.kind == "line"]
+    way, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    heights = np.array([curve.points @ across for curve in curves])
+    assert np.ptp(heights, axis=1).max() < 1e-9
+    levels = np.unique(heights.mean(axis=1).round(6))
+    gaps = np.diff(levels)
+    assert ((np.abs(gaps - S) < 0.01 * S).sum() >= len(gaps) - 2) and gaps.max() < S + GAP
+    extent = np.vstack(SHAPES["wavy 1"]) @ across
+    assert levels[0] - extent.min() == pytest.approx(0.5 * S, abs=0.02)
+    assert extent.max() - levels[-1] == pytest.approx(0.5 * S, abs=0.02)
+    senses = [np.sign((curve.points[-1] - curve.points[0]) @ way) for curve in curves]
+    assert {1.0, -1.0} == set(senses)
+
+
+def test_levels_of_lines():
+    assert levels_between(0.0, 20.1, BEADS) == pytest.approx([0, 5.025, 10.05, 15.075, 20.1], abs=1e-5)
+    assert levels_between(0.0, 21.0, BEADS) == pytest.approx([0, 5, 10, 16, 21], abs=1e-5)
+    assert levels_between(0.0, 19.0, BEADS) == pytest.approx([0, 5, 9.5, 14, 19], abs=1e-5)
+    assert levels_between(3.0, 3.0, BEADS) == pytest.approx([3.0])
+    for breadth in np.random.default_rng(3).uniform(0.0, 80.0, 300):
+        levels = levels_between(0.0, breadth, BEADS)
+        assert (np.diff(levels) > 0.0).all() and np.diff(levels, prepend=0.0).max() < S + GAP + 1e-6
+        assert breadth - levels[-1] < GAP + 1e-6
+
+
+@pytest.mark.parametrize("name", ["circle", "comb", "wavy 2"])
+def test_zigzags_link_lines_inside_and_shortly(name):
+    curves = [curve for curve in filled(name, "zigzag") if curve.kind == "zigzag"]
+    lines = [curve for curve in filled(name, "lines") if curve.kind == "line"]
+    assert 0 < len(curves) < 0.6 * len(lines)
+    for curve in curves:
+        step = np.diff(curve.points, axis=0)
+        level = np.abs(step[:, 1]) < 1e-9
+        run = np.hypot(*step.T)
+        ends = np.flatnonzero(level & (run > 1e-9))
+        for a, b in zip(ends, ends[1:]):
+            assert run[a + 1 : b].sum() < 3.0 * S + 1e-9
+    length = sum(np.hypot(*np.diff(line.points, axis=0).T).sum() for line in lines)
+    steps = np.vstack([np.diff(curve.points, axis=0) for curve in curves])
+    along = np.abs(steps[np.abs(steps[:, 1]) < 1e-9, 0]).sum()
+    assert along == pytest.approx(length, rel=0.02)
+
+
+def test_a_spiral_is_one_curve_from_the_border_to_the_middle():
+    spirals = [curve for curve in filled("circle", "spiral") if curve.kind == "spiral"]
+    spiral, = spirals
+    assert not spiral.closed
+    radius = np.hypot(*spiral.points.T)
+    assert radius[0] == pytest.approx(34.5, abs=0.03) and radius.min() < 5.0
+    assert (np.diff(radius) < 0.05).all(), "it never goes out again"
+    assert np.hypot(*np.diff(dense(spiral.points, False, 0.5), axis=0).T).max() <= 0.5 + 1e-9
+    # where the U's legs part, each has its own
+    assert len([curve for curve in filled("U", "spiral") if curve.kind == "spiral"]) >= 1
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_sense_and_start(clockwise):
+    beads = Beads(S, GAP, 0.0, clockwise=clockwise, start=(100.0, 0.0))
+    for curve in filled("annulus", "contours", beads):
+        x, y = curve.points.T
+        assert ((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() < 0) == clockwise
+        assert np.degrees(np.arctan2(y[0], x[0])) == pytest.approx(0.0, abs=1.5), "starts are lined up"
+    up = Beads(S, GAP, 0.0, start=0.5 * np.pi)
+    for curve in filled("annulus", "contours", up):
+        assert curve.points[0, 1] == pytest.approx(curve.points[:, 1].max(), abs=1e-6)
+
+
+def test_thin_regions_and_necks():
+    thin, = regions(shapes.blade(100.0, 4.0))
+    curve, = fill(thin, BEADS)
+    assert curve.kind == "centre" and not curve.closed
+    assert np.ptp(curve.points[:, 0]) > 70.0
+    neck = shapes.polygon(
+        (0, 0), (40, 0), (40, 18), (60, 18), (60, 0), (100, 0), (100, 40), (60, 40), (60, 21), (40, 21), (40, 40), (0, 40),
+    )
+    region, = regions(neck)
+    bridge, = [curve for curve in fill(region, BEADS) if curve.kind == "centre" and 45.0 < curve.points[:, 0].mean() < 55.0]
+    assert np.abs(bridge.points[:, 1] - 19.5).max() < 0.2
+    for shape in (thin, region):
+        with pytest.raises(InfeasibleError) as refused:
+            fill(shape, Beads(S, GAP, 0.0, thin="refuse"))
+        assert refused.value.code == "THIN_REGION"
+
+
+def test_short_beads_are_dropped():
+    least = 12.0
+    for pattern in PATTERNS:
+        every, kept = filled("wavy 1", pattern), filled("wavy 1", pattern, Beads(S, GAP, least))
+        long = [c for c in every if np.hypot(*np.diff(dense(c.points, c.closed, 1e9), axis=0).T).sum() >= least]
+        assert len(long) == len(kept) <= len(every)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize("scale", [1e-3, 1e4])
+def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern, scale):
+    loops = SHAPES["blade"]
+    one = filled("blade", pattern)
+    region, = regions([loop.copy() for loop in loops])
+    assert all(np.array_equal(a.points, b.points) for a, b in zip(one, fill(region, BEADS, pattern)))
+    large, = regions([loop * scale for loop in loops])
+    scaled = fill(large, Beads(S * scale, GAP * scale, 0.0), pattern)
+    mine = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in one)
+    theirs = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in scaled)
+    assert theirs / scale == pytest.approx(mine, rel=0.01)
+
+
+def test_unknown_patterns_are_refused():
+    with pytest.raises(InputError, match="there is no pattern 'fractal'"):
+        filled("circle", "fractal")

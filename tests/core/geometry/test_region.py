@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Regions: nesting, mending, parallel curves against distances of their own."""
+
+import builtins
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry import region as module
+from freecad_am.core.geometry.region import mended, regions
+from freecad_am.core.issues import InputError
+
+SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+HOLE = np.array([[2.0, 2.0], [2.0, 8.0], [8.0, 8.0], [8.0, 2.0]])
+
+
+def away(rings, points):
+    """Distance of points to rings, edge by edge."""
+    best = np.full(len(points), np.inf)
+    for ring in rings:
+        for a, b in zip(ring, np.roll(ring, -1, axis=0)):
+            t = np.clip((points - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
+            best = np.minimum(best, np.hypot(*(points - a - t[:, None] * (b - a)).T))
+    return best
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_islands_in_holes_are_regions_of_their_own(scale):
+    island = 0.3 * (SQUARE - 5.0) + 5.0
+    outer, inner = regions([island * scale, HOLE * scale, SQUARE * scale])
+    assert [outer.area / scale**2, inner.area / scale**2] == pytest.approx([64.0, 9.0])
+    assert [len(outer.rings()), len(inner.rings())] == [2, 1]
+    assert outer.width / scale == pytest.approx(2.343, rel=0.006) and inner.width / scale == pytest.approx(3.0, rel=0.006)
+    assert outer.contains(scale * np.array([[1.0, 1.0], [5.0, 5.0], [11.0, 5.0]])).tolist() == [True, False, False]
+
+
+def test_order_and_starts_do_not_depend_on_how_loops_come():
+    loops = [SQUARE, HOLE, SQUARE + [20.0, 0.0], HOLE + [20.0, 0.0]]
+    known = [ring for one in regions(loops) for ring in one.rings()]
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        mixed = [np.roll(loops[k], rng.integers(4), axis=0) for k in rng.permutation(4)]
+        again = [ring for one in regions(mixed) for ring in one.rings()]
+        assert all(np.array_equal(a, b) for a, b in zip(known, again, strict=True))
+    assert known[0][0].tolist() == [0.0, 0.0]
+
+
+def test_crossing_loops_are_mended_and_told():
+    bow = mended([np.array([[0.0, 0.0], [10.0, 0.0], [0.0, 10.0], [10.0, 10.0]])])
+    assert sum(one.area for one in bow.regions) == pytest.approx(25.0) and bow.changed == pytest.approx(25.0)
+    assert "25 mm^2" in bow.issues()[0].message
+    across = mended([SQUARE, HOLE + 5.0])
+    assert sum(one.area for one in across.regions) == pytest.approx(91.0) and across.changed == pytest.approx(27.0)
+    sound = mended([np.repeat(SQUARE, 3, axis=0), HOLE])
+    assert sound.changed == 0.0 and sound.issues() == ()
+
+
+def test_slivers_are_dropped_and_told():
+    found = mended([SQUARE, 0.01 * SQUARE + 20.0], least_area=0.1)
+    assert len(found.regions) == 1 and found.dropped == pytest.approx(0.01)
+    assert mended([]).regions == () and regions([SQUARE[::-1]]) == ()
+
+
+@pytest.mark.parametrize("distance", [-12.0, -3.0, 4.0, 25.0])
+def test_parallel_curves_are_at_the_distance(distance):
+    a = 2.0 * np.pi * np.arange(500) / 500
+    round_ = np.stack([np.cos(a), np.sin(a)], axis=1)
+    loops = [round_ * (60 + 9 * np.sin(5 * a))[:, None], (round_ * 8 + [20, 5])[::-1]]
+    whole, = regions(loops)
+    for part in whole.grown(distance, 0.01):
+        for ring in part.rings():
+            middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
+            assert np.abs(away(loops, ring) - abs(distance)).max() < 1e-3
+            off = away(loops, middles) - abs(distance)
+            assert off.min() > -0.011 and off.max() < 1e-3
+    assert whole.grown(0.0, 0.01) == (whole,)
+    assert whole.grown(-60.0, 0.01) == ()
+
+
+def test_without_the_library_a_filling_says_what_is_missing(monkeypatch):
+    honest = builtins.__import__
+
+    def refuse(name, *rest, **more):
+        if name.split(".")[0] == "shapely":
+            raise ImportError(name)
+        return honest(name, *rest, **more)
+
+    module.shapely.cache_clear()
+    monkeypatch.setattr(builtins, "__import__", refuse)
+    with pytest.raises(InputError, match="python3-shapely") as missing:
+        regions([SQUARE])
+    assert missing.value.code == "MISSING_LIBRARY"

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Strips round a hub: parallel curves measured in space over the cut, and the same wherever they are cut."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.fill import fill
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.strip import Period, Strip, strips
+
+HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0), "wide cone": Developable(90.0, 70.0)}
+BEADS = Beads(4.0, 1.5, 0.0)
+
+
+def period(hub):
+    return Period(2.0 * math.pi * hub.radius) if hub.is_cylinder else Period(hub.flat_turn, hub.slant)
+
+
+def border(hub, height, middle, back=False):
+    theta = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
+    z = height(theta) * math.cos(hub.taper)
+    rho = hub.radius if hub.is_cylinder else (hub.height - z) * math.tan(hub.taper)
+    points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
+    return hub.flat(points[::-1] if back else points, middle)
+
+
+def collar(hub, middle=0.0):
+    loops = [
+        (border(hub, lambda t: 0.6 * np.sin(3.0 * t), middle), 1),
+        (border(hub, lambda t: 25.0 + 0.3 * np.cos(2 * t), middle, True), -1),
+    ]
+    strip, = strips(loops, period(hub))
+    return strip
+
+
+def in_space(hub, strip, flat, turns, middle=0.0, step=0.03):
+    """Dense points in space of a border or bead laid flat, over its end where it goes round."""
+    after = strip.period.moved(flat[:1], turns)
+    line = np.vstack([flat, after])
+    way = np.diff(line, axis=0)
+    count = np.maximum(np.ceil(np.hypot(*way.T) / step).astype(int), 1)
+    edge = np.repeat(np.arange(len(way)), count)
+    share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
+    return hub.rolled(line[edge] + share[:, None] * way[edge], middle)
+
+
+@pytest.mark.parametrize("name", HUBS)
+def test_contours_run_on_over_the_cut(name):
+    hub = HUBS[name]
+    strip = collar(hub)
+    assert isinstance(strip, Strip)
+    curves = [curve for curve in fill(strip, BEADS) if curve.kind == "contour"]
+    assert {curve.turns for curve in curves} == {1} and len(curves) == 6
+    edges = [in_space(hub, strip, flat, turns) for flat, turns in strip.rings()]
+    for curve in curves:
+        points = in_space(hub, strip, curve.points, curve.turns)
+        assert np.linalg.norm(np.diff(points, axis=0, append=points[:1]), axis=1).max() < 0.04, "closed, no jump at the cut"
+        nearest = np.min([cKDTree(edge).query(points[::7])[0] for edge in edges], axis=0)
+        # distances in space are shorter than on the hub, by the chord of the turn alone
+        wanted = (curve.ring + 0.5) * BEADS.spacing
+        assert (nearest < wanted + 0.01 * BEADS.spacing).all()
+        assert (nearest > wanted * (1.0 - wanted**2 / (24.0 * 25.0**2)) - 0.01 * BEADS.spacing).all()
+
+
+@pytest.mark.parametrize("name", HUBS)
+@pytest.mark.parametrize("options", [{}, {"pattern": "lines"}], ids=["contours", "round"])
+def test_cutting_elsewhere_gives_the_same_beads(name, options):
+    hub = HUBS[name]
+    one, other = collar(hub), collar(hub, 1.3)
+    mine, theirs = fill(one, BEADS, **options), fill(other, BEADS, **options)
+    assert [(c.kind, c.ring) for c in mine if c.turns] == [(c.kind, c.ring) for c in theirs if c.turns]
+    clouds = [
+        np.vstack([in_space(hub, strip, c.points, c.turns, middle) for c in curves if c.turns])
+        for strip, curves, middle in ((one, mine, 0.0), (other, theirs, 1.3))
+    ]
+    for a, b in (clouds, clouds[::-1]):
+        assert cKDTree(b).query(a[::11])[0].max() < 0.01 * BEADS.spacing
+
+
+def test_a_hole_goes_all_the_way_through():
+    """Where holes part a strip, what is left no longer goes round."""
+    hub = HUBS["cylinder"]
+    back = -2.0 * np.pi * np.arange(90) / 90
+    flat = np.stack([8.0 * np.cos(back), 13.0 + 8.0 * np.sin(back)], axis=1)
+    loops = [(border(hub, lambda t: 0.0 * t, 0.0), 1), (border(hub, lambda t: 26.0 + 0.0 * t, 0.0, True), -1), (flat, 0)]
+    strip, = strips(loops, period(hub))
+    assert len(strip.holes) == 1
+    part, = strip.grown(-2.0, 0.01)
+    assert isinstance(part, Strip) and len(part.holes) == 1
+    part, = strip.grown(-4.0, 0.01)
+    assert not isinstance(part, Strip)
+    turn = 2.0 * math.pi * hub.radius
+    y = np.linspace(-9.0, 9.0, 20001)
+    lost = 2.0 * np.sqrt(144.0 - y**2)
+    assert part.area == pytest.approx(turn * 18.0 - np.sum(0.5 * (lost[1:] + lost[:-1])) * (y[1] - y[0]), rel=2e-4)
