@@ -8,7 +8,7 @@ from typing import Protocol
 
 from ..core.issues import InputError
 from ..core.program import Program, ReadMoves
-from . import fanuc, staubli
+from . import fanuc, linuxcnc, siemens, staubli
 
 
 class Post(Protocol):
@@ -27,7 +27,7 @@ class Post(Protocol):
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
 
 
-_POSTS: dict[str, ModuleType] = {"fanuc": fanuc, "staubli": staubli}
+_POSTS: dict[str, ModuleType] = {"fanuc": fanuc, "staubli": staubli, "siemens": siemens, "linuxcnc": linuxcnc}
 
 NAMES = tuple(_POSTS)
 

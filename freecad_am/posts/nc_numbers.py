@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What programs of five-axis machines say in numbers: axis words, direction vectors, feeds; the same for every controller."""
+"""What programs of five-axis machines say in numbers, whatever the controller: axis words, direction vectors, feeds."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ FEED_DIGITS = 7
 SLOWEST, FASTEST = 0.001, 999_999.0
 # mm: where the linear axes go less than this, their speed is no measure of the time of a move
 SHORTEST_WAY = 0.01
+# feed as one over the time of the move, and as a speed
+TIME, PATH = "G93", "G94"
 
 
 def shown(joints: Array, kinds: Sequence[str]) -> Array:
@@ -58,7 +60,7 @@ class Feeds:
         self.before: Array | None = None
 
     def __call__(self, moves: Moves) -> list[str]:
-        """One text per move, such as 'F120.0000' or, where the sort of feed is another one, 'G94 F300.0000'.
+        """One text per move: the sort of feed and its value, such as 'G93 F120.0000' or 'G94 F300.0000'.
 
         Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
         """
@@ -66,16 +68,27 @@ class Feeds:
         start = at[0] if self.before is None else self.before
         self.before = at[-1]
         if self.by_tip and moves.kind != RAPID:
-            return [feed(value) for value in _tip_feeds(moves).tolist()]
+            return [f"{PATH} {feed(value)}" for value in _tip_feeds(moves).tolist()]
         inverse = _inverse_times(moves)
         if not self.path_feed or moves.kind == RAPID:
-            return [feed(value) for value in inverse.tolist()]
+            return [f"{TIME} {feed(value)}" for value in inverse.tolist()]
         linear = np.array([kind == LINEAR for kind in self.kinds])
         way = np.diff(np.concatenate([start[None], at])[:, linear], axis=0)
         slides = 60.0 * slide_feeds(start, at, moves.duration, self.kinds)
         timed = (np.linalg.norm(way, axis=1) < SHORTEST_WAY) | (slides < SLOWEST) | (slides > FASTEST)
-        return [f"G93 {feed(by_time)}" if is_timed else f"G94 {feed(slide)}"
+        return [f"{TIME} {feed(by_time)}" if is_timed else f"{PATH} {feed(slide)}"
                 for is_timed, by_time, slide in zip(timed.tolist(), inverse.tolist(), slides.tolist(), strict=True)]
+
+
+def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
+    """G1 blocks of these words and feeds, the sort of feed in front, and in the blocks that change it."""
+    lines, sort = [], ""
+    for word, (before, value) in zip(words, (feed.split() for feed in feeds), strict=True):
+        if not sort:
+            lines.append(before)
+        lines.append(f"{before} G1 {word} {value}" if sort not in ("", before) else f"G1 {word} {value}")
+        sort = before
+    return lines
 
 
 def _inverse_times(moves: Moves) -> Array:

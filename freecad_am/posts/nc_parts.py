@@ -45,6 +45,16 @@ def refuse_table(program: Program, post: str) -> None:
         raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
 
 
+def refuse_words(program: Program, taken: frozenset[str]) -> None:
+    """Raises InputError DEPOSIT_WORD for words that switch the deposit and have another meaning."""
+    for key in ("deposit_on", "deposit_off"):
+        word = getattr(program.nc, key)
+        if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (word.startswith("H") and "H" in taken):
+            raise InputError(
+                "DEPOSIT_WORD", f"program.nc.{key}", f"{word} means something else to the controller; use another word"
+            )
+
+
 def refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
     """A bead that no part can hold. Raises InputError BEAD_TOO_LONG."""
     moves = next(piece.moves for piece in group if isinstance(piece, Run))
@@ -71,4 +81,5 @@ def part_names(name: str, count: int, longest: int) -> list[str]:
 
 def bad_name(name: str, where: str, why: str, proposal: str) -> InputError:
     """The error for a name a controller refuses."""
-    return InputError("PROGRAM_NAME", where, f"{name!r} cannot be a program's name on the controller: {why}; use {proposal!r}")
+    message = f"{name!r} cannot be a program's name on the controller: {why}; use {proposal!r}"
+    return InputError("PROGRAM_NAME", where, message)

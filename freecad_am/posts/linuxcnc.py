@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""LinuxCNC: programs of linear moves (.ngc) for tables and heads with two rotary axes.
+
+Joint motion is told in axes with the time of each move (G93) or the speed of the linear axes (G94), under the kinematics
+that leaves axes alone (M429). Cartesian motion is told in positions on the part and rotary axes under the kinematics of
+the machine (M428), but for the rapids between beads. What is written, what must be set in the machine's configuration and
+what was confirmed where: docs/posts/linuxcnc.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+from ..core.program import (
+    DEPOSIT,
+    ROTARY,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Program,
+    Wait,
+    WaitInput,
+)
+from . import nc_numbers as numbers
+from .linuxcnc_read import read
+from .nc_parts import CALL, bad_name, part_names, plain, refuse_bead, refuse_table, refuse_words, wrapped
+from .parts import Piece, Run, grouped, packed
+from .refusals import DEVICES
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+LONGEST_NAME = 30
+_NO_END = 10**9
+# pins motion.digital-out and -in, counted from 0 there
+LAST_PIN = 64
+# the work offset that this program sets to zero, for moves of the axes themselves
+MACHINE_OFFSET = "G59.3"
+OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
+# s: an input that does not come stops the program for good
+LONGEST_WAIT = 10_000_000
+# comments of this kind would be carried out
+_ACTIVE = re.compile(r"(?:abort|debug|error|log\w*|msg|print|probe\w*|py|warning)\s*,", re.IGNORECASE)
+# M words with a meaning of their own
+_TAKEN = frozenset(
+    {f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 19, 30, *range(48, 54), *range(60, 74), *range(428, 431))} | {"M98", "M99", "H"}
+)
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The files of a program, name -> content; the same bytes for the same program.
+
+    One file name.ngc where its points fit, else name.ngc calls the subs name01.ngc, name02.ngc and so on, each with whole
+    beads.
+
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME, MOVE_TIME, MOVE_SPEED,
+    NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, DEPOSIT_WORD, BEAD_TOO_LONG, UNREACHABLE,
+    NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in wrapped(words)]
+    groups = list(grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block)))
+    parts = packed(groups, program.max_points, _NO_END, refuse_bead)
+    if len(parts) == 1:
+        return {f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])}
+    names = part_names(name, len(parts), LONGEST_NAME)
+    _refuse_calls_of_own(program, {name, *names})
+    files = {f"{name}.ngc": _file([*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"])}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        inside = [_remark(f"part {number} of {len(parts)}"), *_modes(program), *_lines(program, pieces)]
+        files[f"{part}.ngc"] = _file([f"o<{part}> sub", *inside, f"o<{part}> endsub", "M2"])
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name of file and sub, in lower case as LinuxCNC looks for it. Raises InputError PROGRAM_NAME, proposing one."""
+    lower = name.lower() if name.isascii() else name
+    if not name:
+        raise _bad_name(name, where, "it is empty")
+    if re.search(r"[^a-z0-9_]", lower):
+        raise _bad_name(name, where, "it may hold only letters, digits and underscores")
+    if not lower[0].isalpha():
+        raise _bad_name(name, where, "it must start with a letter")
+    if len(lower) > LONGEST_NAME:
+        raise _bad_name(name, where, f"it has more than {LONGEST_NAME} characters")
+    if lower.upper() in DEVICES:
+        raise _bad_name(name, where, "it is a reserved word")
+    return lower
+
+
+def _bad_name(name: str, where: str, why: str) -> InputError:
+    proposal = re.sub(r"[^a-z0-9]+", "_", plain(name).lower()).strip("_")
+    if not proposal or not proposal[0].isalpha() or proposal.upper() in DEVICES:
+        proposal = f"am_{proposal}".rstrip("_")
+    return bad_name(name, where, why, proposal[: LONGEST_NAME - 3].rstrip("_"))
+
+
+def refuse_setup(motion: str, setup: str) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
+    if setup != "rotary-table":
+        raise InputError(
+            "UNSUPPORTED_SETUP", "cell.setup", f"the post linuxcnc cannot write {setup} ({motion} motion), only rotary-table"
+        )
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_table(program, "linuxcnc")
+    refuse_words(program, _TAKEN)
+    if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
+        raise InputError(
+            "DEPOSIT_OUTPUT", "program.deposit_output",
+            f"there are at most {LAST_PIN} digital outputs (motion.digital-out-00 is number 1), not {program.deposit_output}",
+        )
+    for block in program.blocks:
+        if isinstance(block, WaitInput) and block.number > LAST_PIN:
+            raise InputError(
+                "DEPOSIT_INPUT", "process.between_layers.input",
+                f"there are at most {LAST_PIN} digital inputs (motion.digital-in-00 is number 1), not {block.number}",
+            )
+    _refuse_calls_of_own(program, {program_name(program.name, "name")})
+    if program.motion == "cartesian":
+        _refuse_cartesian(program)
+
+
+def _refuse_cartesian(program: Program) -> None:
+    if not program.nc.switch_kinematics:
+        raise InputError(
+            "NO_TIP_KINEMATICS", "program.nc.switch_kinematics",
+            "positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`",
+        )
+    if not 1 <= program.user_frame <= len(OFFSETS):
+        raise InputError(
+            "UNSUPPORTED_FRAME", "program.user_frame",
+            f"work offset {program.user_frame} is not there for the part; use 1 to {len(OFFSETS)} (G54 to G59.2; the ninth,"
+            f" {MACHINE_OFFSET}, is set to zero for moves of the axes)",
+        )
+    if program.carried is not None and max(abs(angle) for angle in program.carried[3:5]) > 1e-9:
+        raise InputError(
+            "UNSUPPORTED_FRAME", "program.origin",
+            "a work offset of LinuxCNC turns about Z alone; use a program origin upright on the table, or `motion: joint`",
+        )
+
+
+def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
+    for block in program.blocks:
+        if isinstance(block, Call) and program_name(block.program, CALL) in names:
+            raise InputError(
+                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
+            )
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    yield f"tool length of tool {program.tool_frame}; {MACHINE_OFFSET} is set to zero"
+    if program.motion == "cartesian":
+        yield f"{OFFSETS[program.user_frame - 1]}: the program origin on the table's face with the rotary axes at zero"
+        if program.carried is not None:
+            x, y, z, _, _, turned = program.carried
+            yield f"X {x:.4f} Y {y:.4f} Z {z:.4f} R {math.degrees(turned) + 0.0:.4f}"
+    for name, endless in zip(program.axis_names, program.endless, strict=True):
+        if endless:
+            yield f"axis {name} turns without end: not WRAPPED_ROTARY, limits wide enough for all turns"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _remark(text: str) -> str:
+    """A comment of one line that nothing is carried out of."""
+    inside = text.replace("(", "[").replace(")", "]")
+    return f"(remark: {inside})" if _ACTIVE.match(inside) else f"({inside})"
+
+
+def _modes(program: Program) -> list[str]:
+    """What moves begin with: mm, absolute, the tool's length, rounding of corners, axes in the machine's own frame."""
+    tolerance = f"{program.nc.tolerance:.5f}"
+    zeros = " ".join(f"{name}0" for name in program.axis_names)
+    return [
+        "G21 G17 G90 G94 G40 G49 G80", "G92.2", f"G64 P{tolerance} Q{tolerance}", f"G43 H{program.tool_frame}",
+        f"G10 L2 P9 {zeros} R0", *_axes_again(program),
+    ]  # fmt: skip
+
+
+def _axes_again(program: Program) -> list[str]:
+    return [*(["M429"] if program.nc.switch_kinematics else []), MACHINE_OFFSET]
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    cartesian = program.motion == "cartesian"
+    if isinstance(block, DepositOn):
+        enter = ["M428", OFFSETS[program.user_frame - 1]] if cartesian else []
+        return [*enter, *(["G4 P0"] if program.dry_run else [_output(program, True), *_dwell(block.lead)])]
+    if isinstance(block, DepositOff):
+        leave = _axes_again(program) if cartesian else []
+        return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
+    if isinstance(block, LayerStart):
+        return [_remark(f"layer {block.layer}")]
+    if isinstance(block, Wait):
+        return _dwell(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"M66 P{block.number - 1} L3 Q{LONGEST_WAIT}"]
+    if isinstance(block, Call):
+        return [f"o<{program_name(block.program, CALL)}> call", *_modes(program)]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _output(program: Program, on: bool) -> str:
+    """At once and not queued: these wait for the end of the motion, so that the machine stands when the deposit switches."""
+    if program.nc.deposit_on:
+        return program.nc.deposit_on if on else program.nc.deposit_off
+    return f"M{64 if on else 65} P{program.deposit_output - 1}"
+
+
+def _dwell(seconds: float) -> list[str]:
+    return [f"G4 P{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
+
+
+def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
+    return [line for piece in pieces for line in (_motion(program, piece) if isinstance(piece, Run) else piece)]
+
+
+def _motion(program: Program, run: Run) -> list[str]:
+    """Moves through all points of a run; what follows a run waits for its end."""
+    moves, part = run.moves, slice(run.start, run.stop)
+    names = list(program.axis_names)
+    values = numbers.shown(moves.joints[part], program.axis_kinds)
+    if program.motion == "cartesian" and moves.kind == DEPOSIT:
+        assert moves.position is not None
+        rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
+        values = np.hstack([np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]])
+        names = [*"XYZ", *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns)]
+    return numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
+
+
+def _file(lines: list[str]) -> bytes:
+    return ("\n".join(lines) + "\n").encode("ascii")

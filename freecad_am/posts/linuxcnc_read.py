@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads LinuxCNC programs back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain lines a path needs and refuses every other one, so that no motion
+can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from ..core.program import ReadMoves
+from .nc_read import SLIDES, TIME, TIP, Track, unreadable
+
+_NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
+_WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")
+_SUB = re.compile(r"O<(\w+)> (SUB|ENDSUB|CALL)$")
+_COMMENT = re.compile(r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|PY|WARNING)\s*,)[^()]*\)")
+_HARMLESS = re.compile(
+    rf"G92\.2$|G64(?: P(?:{_NUMBER}))?(?: Q(?:{_NUMBER}))?$|G4 P(?:{_NUMBER})$|M66 P\d+ L3 Q\d+(?:\.\d*)?$|G43 H\d+$|G6[14]$|G61\.1$"
+)
+_ZERO = re.compile(r"G10 L2 P9( [XYZABCR]0)+$")
+_OUTPUT = re.compile(r"M(6[2-5]) P(\d+)$|M(\d+)$")
+_OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"}
+_FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
+_PLAIN = {"G17", "G40", "G49", "G80"}
+_TIP, _AXES = "M428", "M429"
+
+
+@dataclass
+class _State:
+    """What is set while the programs are followed."""
+
+    files: dict[str, list[tuple[str, str]]]
+    track: Track = field(default_factory=Track)
+    units: set[str] = field(default_factory=set)
+    feed: str = "G94"
+    linear: bool = False
+    offset: str = ""
+    kinematics: str = ""
+    zeroed: set[str] = field(default_factory=set)
+    output: str = ""
+    on_word: str = ""
+    off_word: str = ""
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the one that is no sub.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    programs: dict[str, list[tuple[str, str]]] = {}
+    main = []
+    for file, content in files.items():
+        name, lines = file.rpartition(".")[0].upper(), _lines(file, content)
+        if not file.lower().endswith(".ngc") or not lines or lines[-1][1] != "M2":
+            raise unreadable(file, "it is no program that ends with M2")
+        programs[name] = lines[:-1]
+        if not (lines[0][1] == f"O<{name}> SUB" and lines[-2][1] == f"O<{name}> ENDSUB"):
+            main.append(name)
+    if len(main) != 1:
+        raise unreadable("program", f"there are {len(main)} programs that are no subs, expected one")
+    state = _State(programs)
+    _follow(main[0], programs[main[0]], state, ())
+    if state.track.on:
+        raise unreadable("program", "it ends with the deposit on")
+    return state.track.moves()
+
+
+def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
+    """Where each line is, and its words without comments."""
+    found = []
+    for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
+        text = " ".join(_COMMENT.sub(" ", line).split())
+        if len(line) > 250 or "(" in text or ";" in text:
+            raise unreadable(f"{file} line {number}", "a comment that may be carried out, or a line that is too long")
+        if text:
+            found.append((f"{file} line {number}", text))
+    return found
+
+
+def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tuple[str, ...]) -> None:
+    """Carry out the lines of a program in order, and of the subs it calls."""
+    if name in callers:
+        raise unreadable(name, "it calls itself")
+    for where, text in lines:
+        if sub := _SUB.match(text):
+            if sub[2] != "CALL":
+                raise unreadable(where, f"{text!r} is not understood here")
+            _call(where, sub[1], state, (*callers, name))
+        elif _ZERO.match(text):
+            state.zeroed = {word[0] for word in text.split()[3:]}
+        elif output := _OUTPUT.match(text):
+            _switch(where, text, output, state)
+        elif not _HARMLESS.match(text):
+            _line(where, text, state)
+
+
+def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> None:
+    if state.track.on or state.kinematics == _TIP:
+        raise unreadable(where, "another program is called within a bead")
+    if name in state.files:
+        _follow(name, state.files[name][1:-1], state, callers)
+    else:
+        # a program of the controller; what it leaves set is not known
+        state.units, state.offset, state.zeroed, state.linear, state.kinematics = set(), "", set(), False, ""
+
+
+def _line(where: str, text: str, state: _State) -> None:
+    words: dict[str, str] = {}
+    for token in text.split():
+        if word := _WORD.match(token):
+            if word[1] in words:
+                raise unreadable(where, f"{word[1]} stands there twice")
+            words[word[1]] = word[2]
+        elif token == "G1":
+            state.linear = True
+        elif token in _FEEDS:
+            state.feed = token
+        elif token in _UNITS:
+            state.units.add(token)
+        elif token in _OFFSETS:
+            state.offset = token
+        elif token not in _PLAIN:
+            raise unreadable(where, f"{token!r} is not understood")
+    if words:
+        _move(where, words, state)
+
+
+def _move(where: str, words: dict[str, str], state: _State) -> None:
+    if not state.linear or state.units != _UNITS or not state.offset:
+        raise unreadable(where, "a move before G1, G21, G90 and a work offset are said")
+    if state.kinematics == _TIP:
+        if state.feed != "G94" or state.offset == "G59.3":
+            raise unreadable(where, "a position on the part needs G94 and a work offset of its own")
+        if {*words} != {*state.track.axes, *"XYZF"}:
+            raise unreadable(where, "a position on the part needs X Y Z and all rotary axes")
+        state.track.add(TIP, words, where)
+        return
+    if state.offset != "G59.3" or not set(words) - {"F"} <= state.zeroed:
+        raise unreadable(where, "axes are moved in another frame than that of the machine")
+    state.track.add(TIME if state.feed == "G93" else SLIDES, words, where)
+
+
+def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
+    """Kinematics, and the deposit: an output by its number; of two M words the first one switches on."""
+    if text in (_TIP, _AXES):
+        state.kinematics = text
+        return
+    if output[1]:
+        name, on, wrong = f"P{output[2]}", output[1] in ("62", "64"), False
+    else:
+        state.on_word = state.on_word or text
+        on = text == state.on_word
+        if not on:
+            state.off_word = state.off_word or text
+        name, wrong = "M", text not in (state.on_word, state.off_word) or output[3] in ("0", "1", "2", "6", "30")
+    if wrong or state.output not in ("", name):
+        raise unreadable(where, f"{text!r} is not understood, or a second output is switched")
+    state.output, state.track.on = name, on

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads SINUMERIK programs back: what the controller would do, from the text alone.
+
+Shares nothing with the writer. Understands the plain blocks a path needs and refuses every other one, so that no motion
+can hide in what was not understood.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from ..core.program import ReadMoves
+from .nc_read import SLIDES, TIME, TIP, Track, unreadable
+
+_NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
+_WORD = re.compile(rf"([XYZABCF])=?({_NUMBER})$|([ABC]3)=({_NUMBER})$")
+_SHORTER = re.compile(rf"([ABC])=DC\(({_NUMBER})\)$")
+_NAME = re.compile(r"(?:[A-Z]{2}|_[A-Z])[A-Z0-9_]*$")
+_OUTPUT = re.compile(r"\$A_OUT\[(\d+)\]=([01])$|H(\d+)=(\d+)$|M(\d+)$")
+_OFFSET = re.compile(r"G5(?:0[05-9]|[4-7]|[1-9]\d)$")
+_FEEDS = {"G93", "G94"}
+_UNITS = {"G710", "G90"}
+_COMPRESS = {"COMPCAD": True, "COMPCURV": True, "COMPON": True, "COMPOF": False}
+_HARMLESS = re.compile(r"(?:G17|G40|G64\d?|G9|G60|D\d+|SOFT|BRISK|FFWON|FFWOF|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
+_WAIT = re.compile(r"WHILE \$A_IN\[\d+\]==0$")
+_DWELL = re.compile(rf"G4 F(?:{_NUMBER})$")
+
+
+@dataclass
+class _State:
+    """What is set while the programs are followed."""
+
+    files: dict[str, list[tuple[str, str]]]
+    track: Track = field(default_factory=Track)
+    units: set[str] = field(default_factory=set)
+    feed: str = "G94"
+    linear: bool = False
+    offset: str = ""
+    tip: bool = False
+    workpiece: bool = False
+    group: bool = False
+    compress: bool = False
+    waiting: bool = False
+    output: str = ""
+    on_word: str = ""
+    off_word: str = ""
+
+
+def read(files: dict[str, bytes]) -> ReadMoves:
+    """All moves of the files in the order of execution, beginning with the one main program.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
+    main = [name for name in files if name.upper().endswith(".MPF")]
+    if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
+        raise unreadable("program", f"there are {len(main)} main programs, expected one with its parts")
+    programs = {name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()}
+    state = _State(programs)
+    start = main[0].upper().rpartition(".")[0]
+    _follow(start, state, ())
+    if state.track.on:
+        raise unreadable("program", "it ends with the deposit on")
+    return state.track.moves()
+
+
+def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
+    """Where each block is, and its words; comments and block numbers are gone."""
+    blocks, last = [], 0
+    for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
+        text = line.partition(";")[0].strip()
+        where = f"{file} line {number}"
+        if numbered := re.match(r"N(\d+)(?: +|$)", text):
+            if int(numbered[1]) <= last:
+                raise unreadable(where, "block numbers do not rise")
+            last, text = int(numbered[1]), text[numbered.end() :]
+        if text:
+            blocks.append((where, " ".join(text.split())))
+    return blocks
+
+
+def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
+    """Carry out the blocks of a program in order, and of those it calls."""
+    end = "M17" if callers else "M30"
+    blocks = state.files[name]
+    if not blocks or blocks[-1][1] != end or name in callers:
+        raise unreadable(name, f"it does not end with {end}, or calls itself")
+    for where, text in blocks[:-1]:
+        if state.waiting:
+            if text == "ENDWHILE":
+                state.waiting = False
+            elif not _DWELL.match(text):
+                raise unreadable(where, f"{text!r} in a loop that waits for an input")
+        elif _WAIT.match(text):
+            state.waiting = True
+        elif not _DWELL.match(text):
+            _block(where, text, state, (*callers, name))
+    if state.waiting:
+        raise unreadable(name, "it ends within a loop")
+
+
+def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
+    words: dict[str, str] = {}
+    rest = []
+    for token in text.split():
+        if found := _WORD.match(token) or _SHORTER.match(token):
+            address, value = (found[1], found[2]) if found[1] else (found[3], found[4])
+            if address in words:
+                raise unreadable(where, f"{address} stands there twice")
+            words[address] = value
+        elif token == "G1":
+            state.linear = True
+        elif not _mode(token, state):
+            rest.append(token)
+    if words:
+        if rest:
+            raise unreadable(where, f"{rest[0]!r} with a move is not understood")
+        _move(where, words, state)
+    elif len(rest) == 1:
+        _other(where, rest[0], state, callers)
+    elif rest:
+        raise unreadable(where, f"{text!r} is not understood")
+
+
+def _mode(token: str, state: _State) -> bool:
+    """Whether the word sets a mode; it is set then."""
+    if token in _FEEDS:
+        state.feed = token
+    elif token in _UNITS:
+        state.units.add(token)
+    elif _OFFSET.match(token):
+        state.offset = token
+    elif token in _COMPRESS:
+        state.compress = _COMPRESS[token]
+    elif token in ("TRAORI", "TRAFOOF"):
+        state.tip = token == "TRAORI"
+    elif token == "ORIWKS":
+        state.workpiece = True
+    else:
+        state.group |= token.startswith("FGROUP")
+        return _HARMLESS.match(token) is not None
+    return True
+
+
+def _move(where: str, words: dict[str, str], state: _State) -> None:
+    if not state.linear or state.units != _UNITS:
+        raise unreadable(where, "a move before G1, G90 and G710 are said")
+    if state.tip:
+        if state.feed != "G94" or not state.workpiece or set(words) != {*"XYZF", "A3", "B3", "C3"} or not state.offset:
+            raise unreadable(where, "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, ORIWKS and a work offset")
+        state.track.add(TIP, words, where)
+        return
+    if state.offset != "G500":
+        raise unreadable(where, "axes are moved in another frame than that of the machine")
+    if state.feed == "G94":
+        if not state.group:
+            raise unreadable(where, "it is not said which axes the feed is the speed of")
+        state.track.add(SLIDES, words, where)
+        return
+    if state.compress:
+        raise unreadable(where, "blocks that tell a time are compressed into one, which would take the time of the last")
+    state.track.add(TIME, words, where)
+
+
+def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> None:
+    if output := _OUTPUT.match(token):
+        if output[5] in ("0", "1", "2", "6", "17", "30"):
+            raise unreadable(where, f"{token!r} is not understood")
+        _switch(where, token, output, state)
+    elif token in state.files:
+        if state.track.on or state.tip:
+            raise unreadable(where, "another program is called within a bead")
+        _follow(token, state, callers)
+    elif not _NAME.match(token) or state.track.on or state.tip or state.compress:
+        raise unreadable(where, f"{token!r} is not understood")
+    else:
+        # a program of the controller; what it leaves set is not known
+        state.units, state.offset, state.group, state.linear = set(), "", False, False
+
+
+def _switch(where: str, token: str, output: re.Match[str], state: _State) -> None:
+    """The deposit: an output or H word with its value; of two M words the first one switches on."""
+    if output[5]:
+        state.on_word = state.on_word or token
+        on = token == state.on_word
+        if not on:
+            state.off_word = state.off_word or token
+        wrong = token not in (state.on_word, state.off_word)
+        name = "M"
+    else:
+        name, on, wrong = token.partition("=")[0], (output[2] or output[4]) != "0", False
+    if wrong or state.output not in ("", name):
+        raise unreadable(where, "a second output is switched")
+    state.output, state.track.on = name, on
