@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from freecad_am.core.kinematics.limits import Limits
@@ -24,20 +26,21 @@ def time_axis(motion: Motion) -> tuple[Array, str, tuple[float, float]]:
     return time, f"time, {name}", (0.0, float(time[-1]) or 1.0)
 
 
-def joint_plots(motion: Motion, limits: Limits) -> list[str]:
-    """One plot per axis: its angle over time, the forbidden ranges shaded."""
+def joint_plots(motion: Motion, limits: Limits, units: Sequence[str]) -> list[str]:
+    """One plot per axis: its angle or, where its unit is mm, its place over time, the forbidden ranges shaded."""
     time, label, span = time_axis(motion)
     plots = []
     for axis, name in enumerate(limits.labels[: limits.axes]):
-        angle = np.degrees(motion.joints[:, axis])
-        low, high = float(np.degrees(limits.lower[axis])), float(np.degrees(limits.upper[axis]))
-        plot = svg.Plot(name, span, _range(angle, low, high), label, "deg")
+        unit, value = units[axis], 1.0 if units[axis] == "mm" else np.radians(1.0)
+        angle = motion.joints[:, axis] / value
+        low, high = float(limits.lower[axis] / value), float(limits.upper[axis] / value)
+        plot = svg.Plot(name, span, _range(angle, low, high), label, unit)
         if np.isfinite(low):
-            plot.band(plot.y[0], low, f"below the limit of {low:g} deg")
-            plot.rule(low, f"{low:g}")
+            plot.band(plot.y[0], low, f"below the limit of {low:.6g} {unit}")
+            plot.rule(low, f"{low:.6g}")
         if np.isfinite(high):
-            plot.band(high, plot.y[1], f"above the limit of {high:g} deg")
-            plot.rule(high, f"{high:g}")
+            plot.band(high, plot.y[1], f"above the limit of {high:.6g} {unit}")
+            plot.rule(high, f"{high:.6g}")
         if not np.isfinite(low) and not np.isfinite(high):
             plot.title = f"{name} (endless)"
         plot.curve(time, angle, AXIS_COLOURS[axis % len(AXIS_COLOURS)], name)

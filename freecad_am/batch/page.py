@@ -132,7 +132,7 @@ def _cards(report: dict[str, Any]) -> str:
     ]
     if spacing["mean"] is not None:
         cards.append((f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}"))
-    if report["joints"] is not None:
+    if report["joints"] is not None and report["joints"]["condition_min"] is not None:
         cards.append((_figure(report["joints"]["condition_min"]), "smallest condition"))
     boxes = "".join(f'<div class="card"><b>{escape(value)}</b><span>{escape(word)}</span></div>' for value, word in cards)
     return f'<div class="cards">{boxes}</div>'
@@ -147,7 +147,8 @@ def _clock(seconds: float) -> str:
 def _joints(content: Content) -> list[str]:
     if content.limits is None or content.speed_ratio is None:
         return []
-    plots = "".join(f"<figure>{plot}</figure>" for plot in figures.joint_plots(content.motion, content.limits))
+    drawn = figures.joint_plots(content.motion, content.limits, content.report["machine"]["units"])
+    plots = "".join(f"<figure>{plot}</figure>" for plot in drawn)
     names = content.limits.labels[: content.limits.axes]
     sections = [f'<h2>Joints against their limits</h2><div class="grid">{plots}</div>', _joint_table(content)]
     if content.motion.reachable.any():
@@ -160,13 +161,26 @@ def _joints(content: Content) -> list[str]:
 
 
 def _joint_table(content: Content) -> str:
-    joints, axes = content.report["joints"], content.report["machine"]["axes"]
-    rows = [("", axes)] + [
-        (word, [_figure(value) for value in joints[key] or ()]) for key, word in (
+    joints = content.report["joints"]
+    rows = [("", _axes(content.report))] + [
+        (_in_units(word, content.report), [_figure(value) for value in joints[key] or ()]) for key, word in (
             ("min_deg", "smallest, deg"), ("max_deg", "largest, deg"), _PER_AXIS[0], _PER_AXIS[1], _PER_AXIS[-1],
         )
     ]
     return _table(rows)
+
+
+def _axes(report: dict[str, Any]) -> list[str]:
+    """The names of the axes, with their units where these are not all the same."""
+    axes, units = report["machine"]["axes"], report["machine"]["units"]
+    return [f"{axis}, {unit}" for axis, unit in zip(axes, units)] if "mm" in units else axes
+
+
+def _in_units(word: str, report: dict[str, Any]) -> str:
+    """The name of a figure of the axes, with mm beside degrees where some of them slide."""
+    name, _, unit = word.rpartition(", ")
+    mixed = unit.startswith("deg") and "mm" in report["machine"]["units"]
+    return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
 
 
 def _process(content: Content) -> str:
@@ -210,8 +224,9 @@ def _spacing_motion(report: dict[str, Any]) -> str:
     whole = [("", [row["method"] for row in rows])] + [
         (word, [_figure(row["motion"][key]) for row in rows]) for key, word in _MOTION
     ]
-    axes = [("", ["", *report["machine"]["axes"]])] + [
-        (word if number == 0 else "", [row["method"], *(_figure(value) for value in row["motion"][key] or ())])
+    axes = [("", ["", *_axes(report)])] + [
+        (_in_units(word, report) if number == 0 else "",
+         [row["method"], *(_figure(value) for value in row["motion"][key] or ())])
         for key, word in _MOTION_PER_AXIS for number, row in enumerate(rows)
     ]
     return f"<h2>What spacing gains in motion</h2>{_table(whole)}{_table(axes)}"
@@ -219,7 +234,7 @@ def _spacing_motion(report: dict[str, Any]) -> str:
 
 def _criteria(report: dict[str, Any]) -> str:
     """Every criterion a path can be judged by, whichever it was planned by; the smaller the better."""
-    if report["joints"] is None:
+    if report["joints"] is None or not report["joints"]["criteria"]:
         return ""
     methods = [report["joints"], *report["comparison"]]
     rows = [("", [entry["method"] for entry in methods])] + [
@@ -236,8 +251,9 @@ def _comparison(report: dict[str, Any]) -> str:
     whole = [("", [entry["method"] for entry in methods])] + [
         (word, [_figure(entry.get(key)) for entry in methods]) for key, word in _WHOLE
     ]
-    axes = [("", ["", *report["machine"]["axes"]])] + [
-        (word if number == 0 else "", [entry["method"], *(_figure(value) for value in entry.get(key) or ())])
+    axes = [("", ["", *_axes(report)])] + [
+        (_in_units(word, report) if number == 0 else "",
+         [entry["method"], *(_figure(value) for value in entry.get(key) or ())])
         for key, word in _PER_AXIS for number, entry in enumerate(methods)
     ]
     return f"<h2>Comparison of the methods</h2>{_table(whole)}{_table(axes)}"

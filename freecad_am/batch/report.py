@@ -11,14 +11,12 @@ from typing import Any
 import numpy as np
 
 from freecad_am.core.issues import Issue, has_errors
-from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
-from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Array, Toolpath
 
 VERSION = 1
@@ -52,13 +50,12 @@ def build(
 
 def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float) -> None:
     """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
-    branch = opw.branch_index(planned.branch)
     others: list[dict[str, Any]] = [dict(entry) for entry in planned.comparison]
     report["joints"] = {
         "method": planned.method,
         "objective": planned.objective,
         "feasible": planned.feasible,
-        **comparison.figures(Task(cell, branch, joints), planned.beads),
+        **comparison.of_path(planned, cell, joints),
         "planning_time_s": seconds - sum(float(entry["planning_time_s"]) for entry in others),
         "branch": list(planned.branch),
         "limits": planned.limits,
@@ -67,7 +64,7 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
     report["comparison"] = others
     report["machine"] = {
         "id": cell.machine.id, "title": cell.machine.title, "setup": cell.setup, "limits": planned.limits,
-        "axes": list(cell.machine.axes), "controller": cell.machine.controller_remark,
+        "axes": list(cell.machine.axes), "units": list(cell.machine.units), "controller": cell.machine.controller_remark,
     }
 
 

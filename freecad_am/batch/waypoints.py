@@ -15,11 +15,13 @@ _LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 20_000
 
 
-def text(motion: Motion, axes: tuple[str, ...] = ()) -> Iterator[str]:
-    """The file in pieces. `axes` names the columns of `motion.joints`, which are written in degrees."""
-    yield ",".join((HEADER, *(f"{axis}_deg" for axis in axes))) + "\n"
+def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
+    """The file in pieces. `axes` names the columns of `motion.joints`, `units` are what they are written in: 'mm' where an
+    axis slides, 'deg' where it turns and where left out."""
+    units = units or ("deg",) * len(axes)
+    yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)))) + "\n"
     for start in range(0, len(motion), _ROWS_AT_ONCE):
-        yield _rows(motion, slice(start, start + _ROWS_AT_ONCE))
+        yield _rows(motion, units, slice(start, start + _ROWS_AT_ONCE))
 
 
 def from_toolpath(toolpath: Toolpath, axes: int = 0) -> Motion:
@@ -48,13 +50,14 @@ def from_toolpath(toolpath: Toolpath, axes: int = 0) -> Motion:
     )
 
 
-def _rows(motion: Motion, rows: slice) -> str:
+def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
     counts = [column[rows].tolist() for column in (motion.layer, motion.bead, motion.point)]
     kinds = ["deposit" if deposit else "rapid" for deposit in motion.deposit[rows].tolist()]
     lengths = _columns(motion.position[rows], _LENGTHS)
     directions = _columns(motion.build[rows], _DIRECTIONS) + _columns(motion.tool[rows], _DIRECTIONS)
     process = _columns(np.column_stack((motion.speed[rows], motion.width[rows])), _LENGTHS)
-    angles = _columns(np.degrees(motion.joints[rows]), _ANGLES)
+    slides = np.array([unit == "mm" for unit in units])
+    angles = _columns(np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows])), _ANGLES)
     decimals = [_LENGTHS] * 3 + [_DIRECTIONS] * 6 + [_LENGTHS] * 2 + [_ANGLES] * len(angles)
     row = "%d,%d,%d,%s," + ",".join(f"%.{digits}f" for digits in decimals) + "\n"
     # one formatting per row of Python floats is three times as fast as numpy's own writer

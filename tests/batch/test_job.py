@@ -157,7 +157,7 @@ LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key
         ("layer_height: 1 mm", "layer_height: 1 mm\n  layer_height: 2", "DUPLICATE_KEY", "strategy.layer_height", "8 and 9"),
         ("kind: revolution", "kind: developable", "NOT_YET", "strategy.kind", "not supported yet"),
         ("kind: revolution", "kind: torus", "BAD_VALUE", "strategy.kind", "revolution, surface, developable"),
-        ("setup: part-on-robot", "setup: rotary-table", "NOT_YET", "cell.setup", "part-on-robot"),
+        ("setup: part-on-robot", "setup: tool-on-robot+positioner", "NOT_YET", "cell.setup", "part-on-robot"),
         ("mode: local", "mode: symmetry-plane", "NOT_FOR_FAMILY", "build_direction.mode", "local"),
         ("setup: part-on-robot", "setup: part_on_robot", "BAD_VALUE", "cell.setup", "did you mean part-on-robot"),
         ("[front, up, flip]", "[front, flip]", "BAD_VALUE", "cell.branch", "up|down"),

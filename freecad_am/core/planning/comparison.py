@@ -8,40 +8,57 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters.joints import OBJECTIVES
+from ..kinematics import opw
+from ..kinematics.cell import Cell
+from ..parameters.joints import OBJECTIVES, JointParameters
 from . import criteria
-from .joint_path import BeadPath
+from .joint_path import BeadPath, JointPath
 from .points import gather
 from .task import Task
 
 Array = NDArray[np.float64]
 
 
+def of_path(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
+    """The figures of a planned joint path; of a machine with rotary axes those of its axes alone, which had no choice."""
+    if not path.branch:
+        return _figures(cell, path.beads, {"condition_min": None, "objective_value": None, "criteria": {}})
+    return figures(Task(cell, opw.branch_index(path.branch), parameters), path.beads)
+
+
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
-    """The figures of a joint path, angles in degrees, lists in axis order; None where there is no value.
+    """The figures of the joint paths of a robot, angles in degrees, lists in axis order; None where there is no value.
 
     limit_margin_deg is the smallest distance to a limit of each axis (None: endless). Speeds, accelerations and jerks
-    are the largest within the beads at their travel speed, by differences over the points.
+    are the largest within the beads at their travel speed, by differences over the points. Axes that slide have mm in the
+    place of degrees.
     """
+    whole = all(path.reachable for path in paths)
+    return _figures(task.cell, paths, {
+        "condition_min": float(min(path.condition.min() for path in paths)),
+        "objective_value": float(sum(path.objective for path in paths)) if whole else None,
+        "criteria": criteria_values(task, paths),
+    })
+
+
+def _figures(cell: Cell, paths: Sequence[BeadPath], criteria_of_path: dict[str, object]) -> dict[str, object]:
     joints = np.concatenate([path.joints for path in paths])
-    limits = task.cell.limits
+    limits, units = cell.limits, cell.machine.unit_values
     ranges = np.array([np.ptp(path.joints, axis=0) for path in paths if path.reachable])
     margin = np.nanmin(np.minimum(joints - limits.lower, limits.upper - joints), axis=0) if len(ranges) else None
     rates = [_rates(path) for path in paths if path.reachable]
     largest = [np.max([rate[k] for rate in rates], axis=0) if rates else None for k in range(3)]
     speed = largest[0]
     return {
-        "min_deg": _degrees(np.nanmin(joints, axis=0) if len(ranges) else None),
-        "max_deg": _degrees(np.nanmax(joints, axis=0) if len(ranges) else None),
-        "range_per_layer_max_deg": _degrees(ranges.max(axis=0) if len(ranges) else None),
-        "limit_margin_deg": _degrees(margin),
-        "condition_min": float(min(path.condition.min() for path in paths)),
-        "objective_value": float(sum(path.objective for path in paths)) if len(ranges) == len(paths) else None,
-        "criteria": criteria_values(task, paths),
-        "speed_max_deg_s": _degrees(speed),
-        "acceleration_max_deg_s2": _degrees(largest[1]),
-        "jerk_max_deg_s3": _degrees(largest[2]),
-        "speed_ratio_max": None if speed is None else [float(v) for v in speed / task.cell.machine.max_speed],
+        "min_deg": _shown(np.nanmin(joints, axis=0) if len(ranges) else None, units),
+        "max_deg": _shown(np.nanmax(joints, axis=0) if len(ranges) else None, units),
+        "range_per_layer_max_deg": _shown(ranges.max(axis=0) if len(ranges) else None, units),
+        "limit_margin_deg": _shown(margin, units),
+        **criteria_of_path,
+        "speed_max_deg_s": _shown(speed, units),
+        "acceleration_max_deg_s2": _shown(largest[1], units),
+        "jerk_max_deg_s3": _shown(largest[2], units),
+        "speed_ratio_max": None if speed is None else [float(v) for v in speed / cell.machine.max_speed],
     }
 
 
@@ -66,7 +83,7 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
 
 
 def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
-    """Largest speed, acceleration and jerk of each axis over one bead, rad/s, rad/s^2, rad/s^3."""
+    """Largest speed, acceleration and jerk of each axis over one bead, rad or mm per s, s^2, s^3."""
     length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
     time = length / path.bead.speed[1:]
     speed = np.diff(path.joints, axis=0) / time[:, None]
@@ -81,7 +98,8 @@ def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
     return np.abs(speed).max(axis=0), np.abs(acceleration).max(axis=0), np.abs(jerk).max(axis=0)
 
 
-def _degrees(values: Array | None) -> list[float | None] | None:
+def _shown(values: Array | None, units: Array) -> list[float | None] | None:
+    """Values of the axes in the unit each is shown in."""
     if values is None:
         return None
-    return [float(value) if np.isfinite(value) else None for value in np.degrees(values)]
+    return [float(value) if np.isfinite(value) else None for value in values / units]

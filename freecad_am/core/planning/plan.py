@@ -78,7 +78,8 @@ def _on_table(
     longer = [bead.run_on(toolpath.overlap) for bead in beads]
     paths, issues = table.plan(cell, longer, places, parameters, toolpath.chord_error, progress)
     if not has_errors(issues):
-        issues += too_fast(cell, paths)
+        paths, slowed = rings_slowed(cell, paths, toolpath.layer_height)
+        issues += slowed + too_fast(cell, paths)
     return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), tuple(issues))
 
 
@@ -117,7 +118,7 @@ def _planned(
     for path in paths:
         issues += findings(task, path)
     if not has_errors(issues):
-        paths, slowed = rings_slowed(task, paths, toolpath.layer_height)
+        paths, slowed = rings_slowed(task.cell, paths, toolpath.layer_height)
         issues += slowed + too_fast(task.cell, paths)
     return paths, issues
 
@@ -140,7 +141,7 @@ def _compared(
 
 
 def rings_slowed(
-    task: Task, paths: Sequence[BeadPath], layer_height: float
+    cell: Cell, paths: Sequence[BeadPath], layer_height: float
 ) -> tuple[list[BeadPath], list[Issue]]:
     """The paths with the tightest turns at the speed the axes allow, and a warning that says so.
 
@@ -150,7 +151,7 @@ def rings_slowed(
     """
     result, slowed = [], []
     for path in paths:
-        bead, ratio = path.bead, (_axis_speeds(path) / task.cell.machine.max_speed).max(axis=1)
+        bead, ratio = path.bead, (_axis_speeds(path) / cell.machine.max_speed).max(axis=1)
         radius = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / np.abs(np.diff(bead.parameter))
         tight = (ratio > 1.0) & (radius < layer_height)
         if tight.any():

@@ -211,14 +211,14 @@ def _between(cell: Cell, bead: Bead, axes: Array) -> tuple[Array, Array]:
 
 def _path(cell: Cell, bead: Bead, axes: Array, place: tuple[int, int]) -> BeadPath:
     """The bead with its axes. A machine with five axes has no condition to keep: its poles are told apart above."""
-    count = len(bead)
+    count, none = len(bead), np.full(len(bead), np.nan)
     limits = cell.limits
     half = 0.5 * (limits.upper - limits.lower)
     room = np.minimum(axes - limits.lower, limits.upper - axes) / np.where(np.isfinite(half), half, 1.0)
     margin = float(np.where(np.isfinite(half), room, np.inf).min()) if np.isfinite(axes).all() else -math.inf
     moved = np.abs(np.diff(axes, axis=0)).sum(axis=0) / np.where(np.isfinite(half), half, TURN)
     return BeadPath(
-        place[0], place[1], bead, np.zeros(count), axes, np.ones(count), np.zeros(count), float(np.linalg.norm(moved)),
+        place[0], place[1], bead, np.zeros(count), axes, none, none, float(np.linalg.norm(moved)),
         margin, reason="closed form",
     )
 
