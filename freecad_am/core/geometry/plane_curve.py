@@ -26,8 +26,8 @@ class Nearest(NamedTuple):
 
 def doubled_area(ring: Array) -> float:
     """Twice the area (mm^2) a ring (n, 2) encloses, positive when it runs counter-clockwise."""
-    x, y = (ring - ring[0]).T
-    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+    x, y = (ring - ring[0]).T.copy()  # the first point is the origin: the edge back to it adds nothing
+    return float(x[:-1] @ y[1:] - x[1:] @ y[:-1])
 
 
 def length(points: Array, closed: bool) -> float:

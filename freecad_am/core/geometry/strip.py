@@ -163,7 +163,8 @@ class Strip:
 
 def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period) -> tuple[Strip | Region, ...]:
     """Strips and plane regions that borders bound: (u, v) of those that go round with their sense, and of closed ones."""
-    order = sorted((_begun(ring, sense, period.around) for ring, sense in rounds), key=lambda item: float(item[0][:, 1].mean()))
+    begun = [_begun(ring, sense, period.around) for ring, sense in rounds]
+    order = sorted(begun, key=lambda item: float(item[0][:, 1].mean()))
     holes = [ring for ring in closed if doubled_area(ring) < 0.0]
     outers = [ring for ring in closed if doubled_area(ring) > 0.0]
     found: list[Strip | Region] = []
