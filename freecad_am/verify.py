@@ -166,7 +166,7 @@ def _verify_joints(
 ) -> Verification:
     assert read.joints is not None
     shown = read.joints.copy()
-    endless = _shorter_way(cell, program)
+    endless = _shorter_way(cell, program, read)
     shown[:, endless] = np.unwrap(shown[:, endless], axis=0)
     path, flange = _joint_path(cell, shown, _digits(cell, read))
     issues += _joint_issues(cell, planned, read, endless) + _point_issues(planned, path)
@@ -203,10 +203,12 @@ def _told_by_position(cell: Cell, joints: Array) -> Mask:
     return np.broadcast_to(np.isnan(joints).all(axis=1, keepdims=True), joints.shape)
 
 
-def _shorter_way(cell: Cell, program: Program) -> Mask:
+def _shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
     """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
-    machine tools count their turns."""
-    return np.array(program.endless) & (cell.setup != ROTARY_TABLE)
+    machine tools count their turns, unless the text says otherwise."""
+    if cell.setup != ROTARY_TABLE:
+        return np.array(program.endless)
+    return np.array(program.endless) & (False if read.shorter_way is None else read.shorter_way)
 
 
 def _digits(cell: Cell, read: ReadMoves) -> Array:
@@ -297,7 +299,7 @@ def _verify_poses(
     issues += _point_issues(planned, path)
     told, asked, tools = _text_path(cell, program, read)
     if read.joints is not None:
-        issues += _joint_issues(cell, planned, read, _shorter_way(cell, program))
+        issues += _joint_issues(cell, planned, read, _shorter_way(cell, program, read))
     issues += _point_issues(planned, told)
     # an angle of a shows as sqrt(2) a in the sum of squares of the nine entries
     twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * told.tool_bound
@@ -323,7 +325,7 @@ def _verify_tips(cell: Cell, planned: _Planned, program: Program, read: ReadMove
     path, flange = _joint_path(cell, joints, np.zeros(joints.shape[1]))
     told = _text_tips(cell, program, read)
     if read.joints is not None:
-        issues += _joint_issues(cell, planned, read, _shorter_way(cell, program))
+        issues += _joint_issues(cell, planned, read, _shorter_way(cell, program, read))
     issues += _point_issues(planned, path) + _point_issues(planned, told)
     solver_issues, solvers = _second_opinion(cell, planned, joints, flange)
     at_points = float(np.linalg.norm(told.position - planned.position, axis=1).max())

@@ -180,6 +180,7 @@ class ReadMoves:
     speed: (n,) mm/s at the deposition point, NaN where the text gives a time or a percentage; speed_digits: mm/s.
     share: (n,) of the axes' largest speeds that the fastest axis runs at, NaN where the text gives a time or a path
     speed; share_digits: half of its last digit.
+    shorter_way: (axes,) rotary axes of machine tools that the text sends the shorter way, so that it tells no turns.
     Where the text holds its own frames: frame (4, 4), in the maker's base frame, is what `position` is seen in;
     tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. lever: (n,) how far out a tool
     stands on another one that carries it. All mm.
@@ -204,3 +205,4 @@ class ReadMoves:
     direction_digits: float = 0.0
     linear_digits: float = 0.0
     duration_digits: Array | None = None
+    shorter_way: NDArray[np.bool_] | None = None

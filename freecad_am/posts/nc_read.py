@@ -22,12 +22,14 @@ _LINEAR, _VECTOR = "XYZ", ("A3", "B3", "C3")
 
 @dataclass
 class Track:
-    """The moves found so far, and whether the deposit is on. axes: names of the words of a move in axes, in their order."""
+    """The moves found so far, and whether the deposit is on. axes: names of the words of a move in axes, in their order;
+    shorter: those that were sent the shorter way."""
 
     rows: list[tuple[str, dict[str, str]]] = field(default_factory=list)
     deposit: list[bool] = field(default_factory=list)
     axes: tuple[str, ...] = ()
     on: bool = False
+    shorter: set[str] = field(default_factory=set)
 
     def add(self, sort: str, words: dict[str, str], where: str) -> None:
         """A move with these words, F among them. Raises InputError UNREADABLE_PROGRAM."""
@@ -59,7 +61,8 @@ class Track:
         duration, duration_digits = _durations(sorts, joints[:, linear], feeds[:, 0], feed_digits[:, 0])
         joints[:, ~linear] = np.radians(joints[:, ~linear])
         turning, sliding = (float(np.max(digits[side], initial=0.0)) for side in (~linear, linear))
-        read = {"linear_digits": sliding, "duration_digits": duration_digits}
+        shorter = np.array([name in self.shorter for name in self.axes])
+        read = {"linear_digits": sliding, "duration_digits": duration_digits, "shorter_way": shorter}
         deposit = np.array(self.deposit)
         if not tips.any():
             return ReadMoves(joints, math.radians(turning), duration, deposit, **read)  # type: ignore[arg-type]

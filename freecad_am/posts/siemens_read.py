@@ -103,8 +103,10 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
     words: dict[str, str] = {}
     rest = []
     for token in text.split():
-        if found := _WORD.match(token) or _SHORTER.match(token):
-            address, value = (found[1], found[2]) if found[1] else (found[3], found[4])
+        if shorter := _SHORTER.match(token):
+            state.track.shorter.add(shorter[1])
+        if found := _WORD.match(token) or shorter:
+            address, value = (group for group in found.groups() if group is not None)
             if address in words:
                 raise unreadable(where, f"{address} stands there twice")
             words[address] = value
