@@ -72,7 +72,7 @@ class Region:
         """mm^2."""
         return float(self.shape.area)
 
-    @property
+    @cached_property
     def extent(self) -> float:
         """Diagonal of the box about it, mm."""
         return float(np.hypot(*np.ptp(self._rings[0], axis=0)))
