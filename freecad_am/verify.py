@@ -196,11 +196,10 @@ def _joint_issues(cell: Cell, planned: _Planned, read: ReadMoves, endless: Mask)
 
 
 def _told_by_position(cell: Cell, joints: Array) -> Mask:
-    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: all of a
-    robot's, and those that slide of a machine with rotary axes."""
-    if cell.setup == ROTARY_TABLE:
-        return np.broadcast_to(cell.machine.chain.sliding, joints.shape)
-    return np.broadcast_to(np.isnan(joints).all(axis=1, keepdims=True), joints.shape)
+    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: all in a row,
+    and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
+    slides = cell.machine.chain.sliding & (cell.setup == ROTARY_TABLE)
+    return np.asarray(slides | np.isnan(joints).all(axis=1, keepdims=True), dtype=np.bool_)
 
 
 def _shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
@@ -333,7 +332,8 @@ def _verify_tips(cell: Cell, planned: _Planned, program: Program, read: ReadMove
 
 
 def _text_tips(cell: Cell, program: Program, read: ReadMoves) -> _Path:
-    """Tips and tool axes of a text in part coordinates, by its positions and its directions, or else its rotary axes."""
+    """Tips and tool axes of a text in part coordinates, by its positions and its directions, or else its rotary axes; of
+    the rows it tells in axes, by these."""
     assert read.position is not None and program.carried is not None
     in_part = cell.mount @ frames.inverse(cell.carried) @ frames.bryant(program.carried)
     position = read.position @ in_part[:3, :3].T + in_part[:3, 3]
@@ -346,6 +346,10 @@ def _text_tips(cell: Cell, program: Program, read: ReadMoves) -> _Path:
     elif read.joints is not None:  # where the linear axes stand does not turn the tool
         told, _ = _joint_path(cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), _digits(cell, read))
         tool, tool_bound = told.tool, told.tool_bound
+    if read.joints is not None:
+        rows = np.isfinite(read.joints).all(axis=1)  # told in axes
+        path, _ = _joint_path(cell, read.joints[rows], _digits(cell, read))
+        position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
     return _Path(position, tool, bound, tool_bound)
 
 
