@@ -35,9 +35,10 @@ from .core.parameters.cell import CellParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
-from .core.parameters.strategy import RevolutionParameters, SurfaceParameters
+from .core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
 from .objects import stage as stages
 from .objects.cell import Cell
+from .objects.developable_feature import DevelopableFeature
 from .objects.feature import RevolutionFeature
 from .objects.joint_path import JointPath
 from .objects.program import Program, files_of
@@ -48,8 +49,9 @@ from .objects.surface_feature import SurfaceFeature
 from .objects.toolpath import Toolpath
 
 __all__ = (
-    "change", "export", "issues", "make_all", "make_cell", "make_feature", "make_joint_path", "make_program",
-    "make_surface_feature", "make_toolpath", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
+    "change", "export", "issues", "make_all", "make_cell", "make_developable_feature", "make_feature", "make_joint_path",
+    "make_program", "make_surface_feature", "make_toolpath", "open_part", "proposed_name", "recompute", "result",
+    "stages_of", "told_to",
 )
 
 _NAME_LENGTH = 20
@@ -88,6 +90,25 @@ def make_surface_feature(
     if start_edges:
         links["StartEdges"] = (source, list(start_edges))
     return _make(doc, SurfaceFeature, "Feature", label, links, [strategy, build_direction], values)
+
+
+def make_developable_feature(
+    doc: Any, source: Any, substrate: Any = None, base_faces: Sequence[str] = (), label: str = "Feature", *,
+    faces: Sequence[str] = (), further: Sequence[Any] = (), fixtures: Sequence[Any] = (),
+    strategy: DevelopableParameters | None = None, build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Solids, or closed meshes, that grow on cylinders and cones of a hub (substrate), on the base_faces of it or on those
+    that they are found to stand on. `am.make_developable_feature(doc, doc.Blades, doc.Spindle, layer_height=2.5)`
+
+    faces: of the source itself, where hub and solids are one. further: more objects to deposit; fixtures: objects, solids
+    or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
+    """
+    links = {
+        "Source": _with_faces(source, faces), "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
+    }
+    if base_faces:
+        links["BaseFaces"] = (substrate, list(base_faces))
+    return _make(doc, DevelopableFeature, "Feature", label, links, [strategy, build_direction], values)
 
 
 def make_toolpath(
@@ -160,6 +181,9 @@ def change(obj: Any, **values: Any) -> Any:
         if "start_edges" in values:
             wall = values.get("source") or obj.Source
             values["start_edges"] = (wall[0], list(values["start_edges"])) if wall and values["start_edges"] else None
+        if "base_faces" in values:
+            hub = values.get("substrate") or obj.Substrate
+            values["base_faces"] = (hub, list(values["base_faces"])) if hub and values["base_faces"] else None
         chosen = {links[key]: values.pop(key) for key in links if key in values}
         given(obj, proxy, [], values)
         for property_name, value in chosen.items():

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import re
 from dataclasses import dataclass, field
@@ -15,13 +16,15 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
+from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
 
 from . import fields, quantity, tree
 
-STRATEGIES: dict[str, type] = {"revolution": RevolutionParameters, "surface": SurfaceParameters}
-PLANNED_STRATEGIES = ("developable",)  # names the interface promises; refused until they exist
-PLANNED_SETUPS = ("rotary-table", "tool-on-robot+positioner")
+STRATEGIES: dict[str, type] = {
+    "revolution": RevolutionParameters, "surface": SurfaceParameters, "developable": DevelopableParameters,
+}
+Strategy = RevolutionParameters | SurfaceParameters | DevelopableParameters
+PLANNED_SETUPS = ("tool-on-robot+positioner",)
 SECTIONS = (
     "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "cell", "joints", "process", "program",
 )
@@ -43,16 +46,15 @@ class PartSource:
 
 @dataclass(frozen=True)
 class Job:
-    """A checked job. `substrate` is there for SurfaceParameters alone, and not
-    needed where the part has start_edges. `cell` or `program` None: the stages that need
-    them are left out."""
+    """A checked job. `substrate` is there for SurfaceParameters, but where the part has start_edges, and may be there for
+    DevelopableParameters. `cell` or `program` None: the stages that need them are left out."""
 
     path: str
     name: str
     part: PartSource
     substrate: PartSource | None
     fixtures: tuple[PartSource, ...]
-    strategy: RevolutionParameters | SurfaceParameters
+    strategy: Strategy
     build_direction: BuildDirectionParameters
     joints: JointParameters
     process: ProcessParameters
@@ -89,8 +91,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
     strategy = _strategy(values.get("strategy") or {})
     process = fields.build(ProcessParameters, values.get("process") or {}, "process")
-    if process.bead_model != "none":
-        raise _not_yet("process.bead_model", process.bead_model, "none")
+    process = _with_bead_model(process, strategy, path)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     _refuse_direction(strategy, build_direction)
     part = _part(fields.mapping(values["part"], "part"), path)
@@ -128,7 +129,30 @@ def _name(value: Any, path: str) -> str:
     return name
 
 
+def _with_bead_model(process: ProcessParameters, strategy: Strategy, path: str) -> ProcessParameters:
+    """The process with the path of its calibration table made absolute; the table is read, so that what is wrong with it is
+    told at once."""
+    if process.bead_model == "none":
+        return process
+    if not isinstance(strategy, DevelopableParameters):
+        raise InputError(
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind developable alone; "
+            "use none",
+        )
+    from freecad_am.core.process import bead_table
+
+    if process.bead_model not in bead_table.BUILT_IN:
+        process = dataclasses.replace(process, bead_model=absolute(process.bead_model, path))
+    bead_table.load(process.bead_model)
+    return process
+
+
 def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
+    if isinstance(strategy, DevelopableParameters) and build_direction.mode != "local":
+        raise InputError(
+            "NOT_FOR_FAMILY", "build_direction.mode",
+            f"{build_direction.mode} is not for solids on a hub, which grow along its normals; use local",
+        )
     if isinstance(strategy, RevolutionParameters) and build_direction.mode == "symmetry-plane":
         raise InputError(
             "NOT_FOR_FAMILY", "build_direction.mode",
@@ -152,8 +176,10 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str) -> Part
         if found.faces:
             raise _not_yet("substrate.faces", ", ".join(found.faces), "the whole solid")
         return found
+    if section is not None and isinstance(strategy, DevelopableParameters):
+        return _part(fields.mapping(section, "substrate"), path, "substrate")
     if section is not None:
-        raise InputError("NOT_FOR_FAMILY", "substrate", "only strategy.kind surface grows on a substrate; leave it out")
+        raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
     return None
 
 
@@ -214,14 +240,29 @@ def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
     return settings
 
 
-def _strategy(section: Any) -> RevolutionParameters | SurfaceParameters:
+def _strategy(section: Any) -> Strategy:
     kind = fields.mapping(section, "strategy").get("kind", "revolution")
-    if kind in PLANNED_STRATEGIES:
-        raise _not_yet("strategy.kind", kind, "revolution or surface")
     if not isinstance(kind, str) or kind not in STRATEGIES:
-        raise f.unknown_choice("strategy.kind", kind, (*STRATEGIES, *PLANNED_STRATEGIES))
-    factory: type[RevolutionParameters] | type[SurfaceParameters] = STRATEGIES[kind]
+        raise f.unknown_choice("strategy.kind", kind, tuple(STRATEGIES))
+    if kind == "developable":
+        section = _with_base(section)
+    factory: type[Strategy] = STRATEGIES[kind]
     return fields.build(factory, section, "strategy", also=("kind",))
+
+
+def _with_base(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with a base of `auto` left out, and the axis, a point and a direction, as the text of six numbers."""
+    base = section.get("base")
+    if base == "auto":
+        return {key: value for key, value in section.items() if key != "base"}
+    if not isinstance(base, dict) or not isinstance(base.get("axis"), list):
+        return section
+    rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
+    numbers = [
+        quantity.read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis")
+        for k, row in enumerate(rows) for number in row
+    ]
+    return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}
 
 
 def _joints(section: Any) -> JointParameters:
@@ -238,7 +279,7 @@ def _cell(section: Any, path: str) -> CellParameters | None:
         section["machine"] = absolute(machine, path)
     cell = fields.build(CellParameters, section, "cell")
     if cell.setup in PLANNED_SETUPS:
-        raise _not_yet("cell.setup", cell.setup, "part-on-robot or tool-on-robot")
+        raise _not_yet("cell.setup", cell.setup, "part-on-robot, tool-on-robot or rotary-table")
     return cell
 
 

@@ -15,16 +15,15 @@ from freecad_am.core.issues import InputError
 from .job import PartSource
 
 
-def bring(document: Any, part: PartSource, key: str = "part") -> Any:
-    """The part, or what else the job's section `key` names, as an object of the document.
+def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = False) -> Any:
+    """The part, or what else the job's section `key` names, as an object of the document. meshes: the part may be one.
 
     Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
     """
-    if key == "part" and part.file.lower().endswith((".stl", ".obj", ".3mf")):
+    if key == "part" and not meshes and part.file.lower().endswith((".stl", ".obj", ".3mf")):
         raise InputError(
-            "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part needs STEP, IGES, BREP or FCStd; a "
-            "mesh may be "
-            "the substrate, or a fixture",
+            "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part of this family needs STEP, IGES, "
+            "BREP or FCStd; a mesh may be the substrate, or a fixture",
         )
     if not part.settings:
         return api.open_part(document, part.file, part.object or "")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
-from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters
 
 from . import outputs, paths
 from .job import SECTIONS, Job
@@ -127,7 +127,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
 
     stages = Stages(document)
     with stages.timed("part", session):
-        part = bring(document, job.part)
+        part = bring(document, job.part, meshes=isinstance(job.strategy, DevelopableParameters))
         substrate = None if job.substrate is None else bring(document, job.substrate, "substrate")
         fixtures = [bring(document, fixture, f"fixtures[{number}]") for number, fixture in enumerate(job.fixtures)]
     cell = None
@@ -139,6 +139,11 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
             feature = api.make_feature(
                 document, part, job.part.faces, fixtures=fixtures, strategy=job.strategy,
                 build_direction=job.build_direction,
+            )
+        elif isinstance(job.strategy, DevelopableParameters):
+            feature = api.make_developable_feature(
+                document, part, substrate, () if job.substrate is None else job.substrate.faces, faces=job.part.faces,
+                fixtures=fixtures, strategy=job.strategy, build_direction=job.build_direction,
             )
         else:
             feature = api.make_surface_feature(
@@ -183,7 +188,7 @@ def _write(
     axes = () if cell is None else cell.machine.axes
     motion = waypoints.from_toolpath(toolpath, len(axes)) if planned is None else planned.motion
     with stages.timed("waypoints", session):
-        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes))
+        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, () if cell is None else cell.machine.units))
     programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
     for name, content in programs.items():
         files.write(f"{outputs.PROGRAMS}/{name}", content)
@@ -234,7 +239,8 @@ def _page(
 
     if planned is None:
         return page.render(page.Content(content, toolpath, motion, distances, compared=compared))
-    condition, threshold = report.along_motion(planned.joint_path, motion)
+    judged = bool(planned.joint_path.branch)  # machines with rotary axes have no condition
+    condition, threshold = report.along_motion(planned.joint_path, motion) if judged else (None, None)
     return page.render(page.Content(
         content, toolpath, motion, distances, job.cell.platform_diameter if job.cell else None, cell.limits,
         report.speed_ratio(motion, cell), condition, threshold, compared,

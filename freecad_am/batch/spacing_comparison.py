@@ -12,15 +12,14 @@ import numpy as np
 from freecad_am.core.geometry.surface_wall import SurfaceWall
 from freecad_am.core.issues import AmError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.task import Task
 from freecad_am.core.process.spacing import SMOOTH
 from freecad_am.core.strategies import wall_comparison
 from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared, Refused
@@ -36,17 +35,18 @@ _MOTION = (
     "speed_ratio_max",
 )
 _LINES = "the wall is not one surface with one closed parameter, whose lines such layers follow"
+_OTHER = "not planned; choose it as strategy.spacing"
 _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut so
     "iso-parameter": _LINES,
     NORMAL: "the wall is not a tube of one surface closed around, whose sections have a centreline",
-    "constant-distance": "not planned; choose it as strategy.spacing",
-    "smooth": _LINES,
+    "constant-distance": _OTHER,
+    "smooth": _OTHER,
 }
 
 
 def compare(wall: Any, job: Job) -> tuple[Compared | Refused, ...]:
     """The wall of a job cut by every method; walls without one closed parameter by none, parts of revolution not at all."""
-    if job.strategy.spacing not in METHODS:
+    if not isinstance(job.strategy, SurfaceParameters):
         return ()
     if isinstance(wall, SurfaceWall):
         return wall_comparison.compare(wall, job.strategy)
@@ -57,9 +57,11 @@ def rows(
     found: Sequence[Compared | Refused], job: Job, toolpath: Toolpath, distances: Sequence[Array]
 ) -> list[dict[str, Any]]:
     """The rows of report.json without motion; that of the method planned comes first."""
+    if not found:
+        return []
     known = {one.method: _row(one) for one in found}
     own = job.strategy.spacing
-    if found and own not in known:  # a wall cut by this method alone
+    if own not in known:  # a wall cut by this method alone
         spread = report.spread(distances)
         known[own] = _empty(own) | {
             "layers": len(toolpath.layers), "min_mm": spread["min"], "mean_mm": spread["mean"], "max_mm": spread["max"],
@@ -85,7 +87,7 @@ def _corners(toolpath: Toolpath) -> dict[str, Any]:
 def motion_of(path: JointPath, motion: Motion, cell: Cell, joints: JointParameters) -> dict[str, Any]:
     """How the robot moves while it deposits. axis_limited_s: the deposit's time if each step took as long as the slowest
     axis needs."""
-    figures = comparison.figures(Task(cell, opw.branch_index(path.branch), joints), path.beads)
+    figures = comparison.of_path(path, cell, joints)
     deposit = motion.deposit & (motion.point > 0)
     share = np.nanmax(report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
     time = motion.duration[deposit]

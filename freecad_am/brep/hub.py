@@ -45,7 +45,7 @@ def bodies_of(source: Any, label: str, chord_error: float) -> Bodies:
         raise InputError("NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit")
     solids = []
     for solid in source.Solids:
-        vertices, corners, _ = tessellated(solid.copy(), SHARE * chord_error)
+        vertices, corners = tessellated(solid.copy(), SHARE * chord_error)[:2]
         mesh = SolidMesh(vertices, corners)
         solids.append(dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh)
         solids[-1].refuse_unsound(label)

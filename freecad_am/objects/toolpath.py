@@ -8,14 +8,18 @@ from typing import Any
 
 import numpy as np
 
+from ..core.geometry.on_hub import SolidsOnHub
 from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.surroundings import disc
+from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
-from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
-from ..core.strategies import revolution, surface, surface_directions, wall_clearance, wall_fronts
+from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from ..core.process import bead_table
+from ..core.strategies import developable, revolution, surface, surface_directions, wall_clearance, wall_fronts
 from ..core.toolpath import Toolpath as CoreToolpath
+from .developable_feature import DevelopableFeature
 from .stage import Link, Outcome, Section, Stage, stage_of
 from .surface_feature import SurfaceFeature
 
@@ -42,7 +46,7 @@ class Toolpath(Stage):
         shape = stage_of(feature)
         assert shape is not None
         carried = None if cell is None else cell.Proxy.value(cell)
-        family = SurfaceParameters if isinstance(shape, SurfaceFeature) else RevolutionParameters
+        family = family_of(shape)
         toolpath = planned(
             shape.value(feature), shape.parameters(feature, family), shape.parameters(feature, BuildDirectionParameters),
             self.parameters(obj, ProcessParameters), carried,
@@ -53,12 +57,29 @@ class Toolpath(Stage):
         )
         return Outcome(toolpath, toolpath.issues, figures)
 
+    def further_inputs(self, obj: Any) -> list[str]:
+        model = self.parameters(obj, ProcessParameters).bead_model
+        return [] if model == "none" else [repr(bead_table.load(model))]
+
+
+def family_of(feature: Stage) -> type:
+    """The parameters dataclass of a feature's strategy."""
+    if isinstance(feature, DevelopableFeature):
+        return DevelopableParameters
+    return SurfaceParameters if isinstance(feature, SurfaceFeature) else RevolutionParameters
+
 
 def planned(
-    wall: Any, strategy: RevolutionParameters | SurfaceParameters, build: BuildDirectionParameters,
-    process: ProcessParameters, cell: CellParameters | None,
+    wall: Any, strategy: RevolutionParameters | SurfaceParameters | DevelopableParameters,
+    build: BuildDirectionParameters, process: ProcessParameters, cell: CellParameters | None,
 ) -> CoreToolpath:
-    """The toolpath of a wall, the result of a feature, cut by the strategy of its family."""
+    """The toolpath of a wall or of solids, the result of a feature, cut by the strategy of its family."""
+    if isinstance(strategy, DevelopableParameters):
+        return _of_solids(wall, strategy, build, process, cell)
+    if process.bead_model != "none":
+        raise InputError(
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids on a hub alone; use none"
+        )
     if isinstance(strategy, SurfaceParameters):
         family = wall_fronts if isinstance(wall, PatchWall) else surface
         return _kept_clear(family.plan(wall, strategy, build, process), wall, build, cell)
@@ -68,6 +89,19 @@ def planned(
         np.eye(4) if cell is not None and cell.mount == "part" else None,
     )
     return _kept_clear(toolpath, wall, build, cell)
+
+
+def _of_solids(
+    solids: SolidsOnHub, strategy: DevelopableParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    cell: CellParameters | None,
+) -> CoreToolpath:
+    """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
+    model = None if process.bead_model == "none" else bead_table.load(process.bead_model)
+    toolpath = developable.plan(solids, strategy, build, process, model)
+    if build.clearance == "none":
+        return toolpath
+    nozzle = NozzleParameters() if cell is None else cell.nozzle
+    return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, developable.without_axis_limits(build))
 
 
 def _kept_clear(
