@@ -72,6 +72,11 @@ class FiveAxis:
         lock = rotary_pair.with_first_locked if axis == 0 else rotary_pair.with_second_locked
         return lock(first, second, at, source, target)
 
+    def best_lock(self, axis: int, tools: Array, torch: Array, low: float, high: float) -> float:
+        """Where between low and high, rad, the turning axis `axis` (0 or 1) leaves the smallest largest residual."""
+        first, second, source, target = self._pair(tools, torch)
+        return rotary_pair.least_residual(first, second, axis, source, target, low, high)
+
     def placed(self, turned: Array, points: Array, station: Array) -> Array:
         """Axis values (n, 5) with the turning axes at angles (n, 2) that bring points (n, 3) to the torch's tip."""
         axes = np.zeros((len(points), 5))

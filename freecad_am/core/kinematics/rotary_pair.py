@@ -95,6 +95,42 @@ def with_second_locked(first: Array, second: Array, at: Array | float, source: A
     return _nearest(first, np.einsum("nij,nj->ni", turned, source), target)
 
 
+def least_residual(
+    first: Array, second: Array, locked: int, source: Array, target: Array, low: float, high: float
+) -> float:
+    """Where between low and high, rad, the axis `locked` (0 first, 1 second) leaves the smallest largest residual.
+
+    The other axis meets all of a direction but its angle to itself, so the residual is the difference of these angles:
+    of source and Rot(first, -at) target to the second axis, of Rot(second, at) source and target to the first.
+    """
+    target = np.broadcast_to(target, source.shape)
+
+    def worst(angles: Array) -> Array:
+        if locked == 0:
+            stands = _heights(target, first, second, -angles)
+            turns = source @ second
+        else:
+            stands = _heights(source, second, first, angles)
+            turns = target @ first
+        apart = np.arccos(np.clip(stands, -1.0, 1.0)) - np.arccos(np.clip(turns, -1.0, 1.0))[:, None]
+        found: Array = np.abs(apart).max(axis=0)
+        return found
+
+    for steps in (361, *[21] * 8):  # there may be several valleys: look all round, then closer
+        angles = np.linspace(low, high, steps)
+        best = float(angles[int(np.argmin(worst(angles) + 1e-9 * np.abs(angles)))])
+        width = 2.0 * (high - low) / (steps - 1)
+        low, high = max(low, best - width), min(high, best + width)
+    return best
+
+
+def _heights(vectors: Array, axis: Array, other: Array, angles: Array) -> Array:
+    """(n, k) other . Rot(axis, angle) vector for vectors (n, 3) and angles (k,), by Rodrigues' formula."""
+    along = (vectors @ axis) * float(axis @ other)
+    straight, sideways = vectors @ other - along, vectors @ np.cross(other, axis)
+    return along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
+
+
 def _nearest(axis: Array, source: Array, target: Array) -> Locked:
     free = _on(source, axis) | _on(target, axis)
     angle = np.where(free, 0.0, _angle(axis, source, target))

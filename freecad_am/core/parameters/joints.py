@@ -57,6 +57,10 @@ class JointParameters:
     lock_at: float | str = f.parameter(
         "auto", f.ANGLE, "Where the locked axis stands; auto: where the largest angle left is least.", words=("auto",)
     )
+    max_residual: float = f.parameter(
+        math.radians(45.0), f.ANGLE, "Four axes only: by how much the tool may miss the direction asked for.",
+        low=0.0, high=math.pi,
+    )
     compare: tuple[str, ...] = f.parameter((), f.TEXT, "Further methods planned for the comparison of the report.")
 
     def __post_init__(self) -> None:

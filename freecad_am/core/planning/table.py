@@ -56,7 +56,7 @@ def plan(
             strays.append(stray)
         paths.append(_path(cell, bead, axes, place))
     if lock is not None and strays:
-        issues.append(_residual_note(arm, cell, lock, max(strays)))
+        issues.append(_residual_issue(arm, cell, lock, max(strays), parameters.max_residual))
     return paths, issues
 
 
@@ -84,19 +84,11 @@ def _lock(arm: FiveAxis, cell: Cell, parameters: JointParameters, tools: Sequenc
     axis = 0 if parameters.lock == "first" else 1
     if not isinstance(parameters.lock_at, str):
         return Lock(axis, parameters.lock_at)
-    directions: Array = np.unique(np.round(np.concatenate(tools), 9), axis=0)
-    torch = cell.station[:3, 2]
-
-    def worst(angles: Array) -> Array:
-        return np.array([arm.locked(axis, a, directions, torch).residual.max() for a in angles.tolist()])
-
-    low, high = -math.pi, math.pi
-    for _ in range(8):  # the residual of a direction has one valley on either side: look close, then closer
-        angles = np.linspace(low, high, 41)
-        best = angles[int(np.argmin(worst(angles) + 1e-9 * np.abs(angles)))]
-        width = (high - low) / 20.0
-        low, high = best - width, best + width
-    return Lock(axis, float(best))
+    directions: Array = np.unique(np.round(np.concatenate(tools), 5), axis=0)
+    turning = arm.turning[axis]
+    low = max(float(cell.limits.lower[turning]) + RESERVE, -math.pi)
+    high = min(float(cell.limits.upper[turning]) - RESERVE, math.pi)
+    return Lock(axis, arm.best_lock(axis, directions, cell.station[:3, 2], low, high))
 
 
 def _bead(
@@ -246,11 +238,16 @@ def _as_held(cell: Cell, bead: Bead, axes: Array, place: tuple[int, int]) -> tup
     return dataclasses.replace(bead, tool=tool), Stray(float(missed.max()), *place, int(missed.argmax()))
 
 
-def _residual_note(arm: FiveAxis, cell: Cell, lock: Lock, worst: Stray) -> Issue:
+def _residual_issue(arm: FiveAxis, cell: Cell, lock: Lock, worst: Stray, allowed: float) -> Issue:
     name = cell.machine.axes[arm.turning[lock.axis]]
+    stands, off, most = (math.degrees(angle) for angle in (lock.angle, worst.angle, allowed))
+    place = worst.layer, worst.bead, worst.point
+    told = f"axis {name} stands at {stands:.4g} deg; the tool is up to {off:.3g} deg off the direction asked for"
+    if worst.angle <= allowed:
+        return Issue(NOTE, "FOUR_AXES", told, *place)
     return Issue(
-        NOTE, "FOUR_AXES", f"axis {name} stands at {math.degrees(lock.angle):.4g} deg; the tool is up to "
-        f"{math.degrees(worst.angle):.3g} deg off the direction asked for", worst.layer, worst.bead, worst.point,
+        ERROR, "FOUR_AXES", f"{told}, more than joints.max_residual allows ({most:.3g} deg); lock the other axis, elsewhere "
+        "or none", *place,
     )
 
 

@@ -109,3 +109,22 @@ def test_no_other_angle_of_the_axis_left_comes_nearer(first, second):
             assert missed(found.angle[0]) == pytest.approx(found.residual[0], abs=1e-6)
             best = min(minimize_scalar(missed, bounds=(low, low + 2.2), method="bounded").fun for low in (-3.2, -1.1, 1.0))
             assert found.residual[0] <= best + 1e-6
+
+
+@pytest.mark.parametrize("locked", [0, 1])
+@pytest.mark.parametrize("low, high", [(-math.pi, math.pi), (-0.7, 0.4)])
+def test_no_place_of_the_locked_axis_leaves_less(locked, low, high):
+    rng = np.random.default_rng(11)
+    lock = (rotary_pair.with_first_locked, rotary_pair.with_second_locked)[locked]
+    for _ in range(12):
+        first, second, target = (v / np.linalg.norm(v) for v in rng.normal(size=(3, 3)))
+        source = rng.normal(size=(30, 3)) * [1.0, 1.0, 0.3] + 2.0 * rng.normal(size=3)
+        source /= np.linalg.norm(source, axis=1)[:, None]
+
+        def worst(at):
+            return lock(first, second, at, source, target).residual.max()  # noqa: B023
+
+        at = rotary_pair.least_residual(first, second, locked, source, target, low, high)
+        assert low <= at <= high
+        every = min(worst(angle) for angle in np.linspace(low, high, 1441))
+        assert worst(at) <= every + 1e-9

@@ -169,6 +169,38 @@ def test_four_axes(lock_at):
     np.testing.assert_allclose(tip, path.beads[1].bead.points, atol=1e-9)
 
 
+def test_four_axes_that_miss_too_much_are_refused():
+    cell, beads = resolved(), [around(Developable(60.0, 200.0), 0.0, 40.0)]
+    parameters = JointParameters(lock="first", lock_at=math.radians(60.0), max_residual=math.radians(13.0))
+    path = plan_joints(toolpath(*beads), cell, parameters)
+    assert [issue.code for issue in path.issues if issue.level == "error"] == ["FOUR_AXES"]
+    assert "13.3 deg off" in path.issues[-1].message and "max_residual" in path.issues[-1].message
+
+
+def test_a_cone_and_a_cylinder_on_one_spindle_share_what_is_missed():
+    # the tilt that suits both leaves each half of the angle between them
+    cell = resolved()
+    beads = [around(Developable(60.0, 200.0), 2.0, 40.0), around(Developable(60.0), 2.0, -20.0)]
+    path = plan_joints(toolpath(*beads), cell, JointParameters(lock="first"))
+    assert path.feasible
+    half = math.degrees(math.atan2(60.0, 200.0)) / 2.0
+    told = next(issue for issue in path.issues if issue.code == "FOUR_AXES").message
+    assert f"{half:.3g} deg off" in told
+    for one, build in zip(path.beads, beads):
+        missed = np.arccos(np.clip((one.bead.tool * one.bead.build).sum(axis=1), -1, 1))
+        np.testing.assert_allclose(np.degrees(missed), half, atol=0.01)
+        assert len(one.bead) >= len(build)
+
+
+def test_the_locked_axis_stands_within_its_limits():
+    cell = resolved()
+    lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
+    lower[3], upper[3] = math.radians(-40.0), math.radians(50.0)
+    cell = dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+    path = plan_joints(toolpath(around(Developable(60.0, 200.0), 0.0, 40.0)), cell, JointParameters(lock="first"))
+    assert path.feasible and math.degrees(path.beads[0].joints[0, 3]) == pytest.approx(49.95, abs=0.01)
+
+
 def test_a_direction_out_of_reach_is_told():
     cell = resolved("head-xyzab", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0))
     points = np.stack([np.linspace(0, 20, 30), np.zeros(30), np.zeros(30)], axis=1)
