@@ -146,6 +146,8 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
 def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
     """Kinematics, and the deposit: an output by its number; of two M words the first one switches on."""
     if text in (_TIP, _AXES):
+        if state.track.on:
+            raise unreadable(where, "the kinematics changes while the deposit is on")
         state.kinematics = text
         return
     if output[1]:

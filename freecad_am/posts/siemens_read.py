@@ -112,6 +112,8 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
             words[address] = value
         elif token == "G1":
             state.linear = True
+        elif token in ("TRAORI", "TRAFOOF") and state.track.on:
+            raise unreadable(where, "the transformation changes while the deposit is on")
         elif not _mode(token, state):
             rest.append(token)
     if words:
