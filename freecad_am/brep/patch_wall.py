@@ -20,7 +20,7 @@ from ..core.issues import NOTE, InputError, Issue
 from .sheet import sheet
 from .start_edges import curves_of
 from .substrate import Substrate
-from .wall_checks import refuse_creases, refuse_crossing, refuse_gaps, refuse_tight, smallest_radii
+from .wall_checks import refuse_creases, refuse_crossing, refuse_folded, refuse_gaps, refuse_tight, smallest_radii
 
 COARSE, SHARE = 4.0, 0.04  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
 
@@ -67,6 +67,8 @@ def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
     """Longest edge of the mesh: the layer height, a quarter of the wall's smallest radius if that is less."""
     size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
     coarse = sheet(named, max(COARSE * height, SHARE * size), label)
+    refuse_folded(coarse, label)
+    refuse_crossing(coarse, label)  # early: where a surface is bent that tightly, a finer mesh takes long
     radius = float(smallest_radii(coarse)[0].min())
     return float(np.clip(0.25 * radius, 0.25 * height, height))
 

@@ -5,29 +5,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
 import MeshPart
 import numpy as np
 import Part
-from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from ..core.geometry.collapsed import collapsed
 from ..core.geometry.mesh import Index
 from ..core.geometry.patch import Array, Patch
 from ..core.geometry.patch_wall import PatchWall
-from ..core.geometry.refined import Edges, flipped, refined
+from ..core.geometry.refined import Edges, count_halved, flipped, refined
 from ..core.geometry.surface import dot
 from ..core.issues import InputError
+from .sheet_places import Places
 from .surface_patch import patch_of
 
 SEWN = 0.01  # mm; edges of faces that lie closer than this are one
 WELDED = 1e-5  # mm; vertices of the tessellations of two faces
 MOST = 1_500_000  # triangles
-STEPS = 8
 ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse mesh
+FEW = 6000  # triangles that are not worth a second try
+TRIED = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
 SHORT = 0.55  # of the longest edge; shorter ones are drawn together
 
 
@@ -42,39 +43,28 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     names = [names[k] for k in order]
     faces = shape.Faces
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
-    vertices, triangles, owner = tessellated(shape, max(0.1 * edge, 1e-3))
+    vertices, triangles, owner, nodes = _tessellated_for(shape, edge)
     triangles = _turned(triangles, owner, names, label)
-    curves = _Curves(shape, edge)
-
-    def place(points: Array, beside: Index, _: Index) -> Array:
-        inner = beside[:, 0] == beside[:, 1]
-        placed = points.copy()
-        for k in np.unique(beside[inner, 0]):
-            mine = np.flatnonzero(inner & (beside[:, 0] == k))
-            placed[mine] = patches[k].at(patches[k].inverse(points[mine]))[0]
-        placed[~inner] = curves.nearest(points[~inner])
-        return placed
-
-    made = refined(vertices, triangles, owner, edge, place, MOST)
+    places = Places(shape, patches, nodes, vertices, edge)
+    made = refined(vertices, triangles, owner, edge, places.middles, MOST)
     if made is None:
         raise InputError(
-            "TOO_FINE", label, f"with edges of {edge:.3g} mm the mesh of the wall has more than {MOST} triangles; use "
-            "a larger "
-            "layer height, round sharp bends more, or deposit the wall in parts",
+            "TOO_FINE", label, f"with edges of {edge:.3g} mm the mesh of the wall has more than {MOST} triangles; use a "
+            "larger layer height, round sharp bends more, or deposit the wall in parts",
         )
     vertices, triangles, owner = made
     triangles, owner = collapsed(vertices, triangles, owner, SHORT * edge, edge)
     triangles = flipped(vertices, triangles, owner)
-    used, index = np.unique(triangles, return_inverse=True)
-    vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
     uv = np.empty((len(triangles), 3, 2))
     turned = []
     for k, patch in enumerate(patches):
         mine = owner == k
         used, index = np.unique(triangles[mine], return_inverse=True)
-        found = patch.inverse(vertices[used])
+        found = places.parameters(k, vertices, used)
         uv[mine] = patch.unwrapped(found[np.ravel(index)].reshape(-1, 3, 2))
         turned.append(facing(patch, vertices[triangles[mine]]))
+    used, index = np.unique(triangles, return_inverse=True)
+    vertices, triangles = vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp)
     return PatchWall(
         vertices, triangles, owner, uv, tuple(turned), (), np.zeros(len(vertices), dtype=bool), (), label, tuple(names)
     )
@@ -103,18 +93,40 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
     return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
 
 
-def tessellated(shape: Any, chord: float) -> tuple[Array, Index, Index]:
-    """Vertices, triangles within `chord` mm of the shape, and the face of each; vertices that faces share are one."""
+def _tessellated_for(shape: Any, edge: float) -> Tessellation:
+    """Of some tessellations, the one of which the fewest triangles become by halving edges until none is longer than
+    `edge`: halves of what is a little too long are far too short."""
+    made = []
+    for share in TRIED:
+        one = tessellated(shape, max(0.1 * edge * share**2, 1e-3), ANGLE * share)
+        made.append((count_halved(one[0][one[1]], edge), one))
+        if made[0][0] < FEW:
+            break
+    return min(made, key=lambda one: one[0])[1]
+
+
+class Tessellation(NamedTuple):
+    """Vertices (n, 3), triangles (m, 3), the face (m,) of each; of each face, the parameters (k, 2) of its vertices."""
+
+    vertices: Array
+    triangles: Index
+    owner: Index
+    nodes: list[Array]
+
+
+def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
+    """Triangles within `chord` mm of the shape; vertices that faces share are one."""
     # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
-    MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=ANGLE, Relative=False)
-    points, corners, owner, count = [], [], [], 0
+    MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False)
+    points, corners, owner, nodes, count = [], [], [], [], 0
     for k, face in enumerate(shape.Faces):
         own, triangles = face.tessellate(chord)
         points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
         owner.append(np.full(len(triangles), k, dtype=np.intp))
+        nodes.append(np.array(face.getUVNodes(), dtype=float).reshape(-1, 2))
         count += len(own)
-    return welded(np.vstack(points), np.vstack(corners), np.concatenate(owner))
+    return Tessellation(*welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes)
 
 
 def welded(points: Array, triangles: Index, owner: Index) -> tuple[Array, Index, Index]:
@@ -170,40 +182,3 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
     flip = turned[owner] == 1
     triangles[flip] = triangles[flip][:, ::-1]
     return triangles
-
-
-class _Curves:
-    """The edges of a shape as splines, for the nearest points on them."""
-
-    def __init__(self, shape: Any, edge: float) -> None:
-        self.splines, points, which, at = [], [], [], []
-        for curve in shape.Edges:
-            if curve.Degenerated or curve.Length < 1e-9:
-                continue
-            low, high = curve.ParameterRange
-            count = int(np.clip(np.ceil(4.0 * curve.Length / edge), 32, 4000)) + 1
-            t = np.linspace(low, high, count)
-            own = np.array([tuple(curve.valueAt(one)) for one in t.tolist()])
-            which.append(np.full(count, len(self.splines)))
-            self.splines.append(CubicSpline(t, own))
-            points.append(own)
-            at.append(t)
-        self.tree = cKDTree(np.vstack(points))
-        self.which, self.at = np.concatenate(which), np.concatenate(at)
-
-    def nearest(self, points: Array) -> Array:
-        """Nearest points (n, 3) of all edges."""
-        if not len(points):
-            return points
-        near = self.tree.query(points)[1]
-        found = np.empty_like(points)
-        for k in np.unique(self.which[near]):
-            mine = self.which[near] == k
-            spline, t, p = self.splines[k], self.at[near[mine]], points[mine]
-            for _ in range(STEPS):
-                place, slope, bend = (spline(t, order) for order in range(3))
-                pace = dot(slope, slope)
-                t = t + dot(p - place, slope) / np.maximum(pace - dot(p - place, bend), 0.1 * pace)
-                t = np.clip(t, spline.x[0], spline.x[-1])
-            found[mine] = spline(t)
-        return found

@@ -59,8 +59,8 @@ def substrate_of(source: Any, label: str) -> Substrate:
             "INSIDE_OUT", label, f"the solid around {place(box.Center)} is turned inside out (volume {source.Volume:.4g} "
             "mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
         )
-    vertices, corners, face = tessellated(source.copy(), CHORD)
-    return Substrate(label, source, SolidMesh(vertices, corners), face)
+    made = tessellated(source.copy(), CHORD)
+    return Substrate(label, source, SolidMesh(made.vertices, made.triangles), made.owner)
 
 
 def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:

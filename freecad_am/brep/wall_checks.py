@@ -11,7 +11,7 @@ import Part
 from scipy.spatial import cKDTree
 
 from ..core.geometry.mesh import Index, Mask
-from ..core.geometry.patch import Array
+from ..core.geometry.patch import SPLINE, Array
 from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.refined import Edges, boundary
 from ..core.geometry.surface import dot
@@ -23,6 +23,9 @@ from .sheet import SEWN
 
 CREASE = np.radians(1.0)  # of the normals of two faces along their common edge
 SLIT = 0.2  # mm; boundaries of two faces nearer than this are a gap between them, not a design
+BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, and of a small part of it
+ASKED, CLOSING = 12, 20  # cuts of triangles that are followed up, and steps to the place where the faces meet
+CROSSING = 0.05  # rad; faces that touch at less run into each other, or are the same one
 STEP = 1e-5  # of the size of a parameter's step, for curvatures
 
 
@@ -163,8 +166,33 @@ def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
     return radius, patch
 
 
+def refuse_folded(wall: PatchWall, label: str) -> None:
+    """InputError SELF_INTERSECTION where the surface of a face folds back: its normal turns over at once."""
+    for k, patch in enumerate(wall.patches):
+        uv = wall.uv[wall.patch == k]
+        if patch.kind != SPLINE or not len(uv):
+            continue
+        normal = patch.at(uv.reshape(-1, 2))[1].reshape(-1, 3, 3)
+        start, end = uv, np.roll(uv, -1, axis=1)
+        bent = dot(normal, np.roll(normal, -1, axis=1)) < BENT
+        if not bent.any():
+            continue
+        t = np.linspace(0.0, 1.0, 33)[None, :, None]
+        line = start[bent][:, None] + t * (end - start)[bent][:, None]
+        normal = patch.at(line.reshape(-1, 2))[1].reshape(line.shape[:2] + (3,))
+        plain = (patch.area(line.reshape(-1, 2)) > 1e-6).reshape(line.shape[:2])
+        turn = np.where(plain[:, 1:] & plain[:, :-1], dot(normal[:, 1:], normal[:, :-1]), 1.0)
+        if turn.min() < FOLDED:
+            row, at = np.unravel_index(int(np.argmin(turn)), turn.shape)
+            raise InputError(
+                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", f"the face folds back and cuts itself at "
+                f"{place(patch.at(line[row, at : at + 1])[0][0])}; a bend must have a larger radius than the tube",
+            )
+
+
 def refuse_crossing(wall: PatchWall, label: str) -> None:
-    """InputError SELF_INTERSECTION where triangles of the wall that are no neighbours cut each other."""
+    """InputError SELF_INTERSECTION where triangles of the wall that are no neighbours cut each other, and the exact faces
+    do so too."""
     corner = wall.vertices[wall.triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
@@ -182,16 +210,36 @@ def refuse_crossing(wall: PatchWall, label: str) -> None:
             start, end = corner[one, k], corner[one, (k + 1) % 3]
             a, b, c = (corner[other, j] for j in range(3))
             low, high = dot(start - a, normal[other]), dot(end - a, normal[other])
-            across = low * high < 0.0
-            if not across.any():
-                continue
-            t = (low / np.where(across, low - high, 1.0))[:, None]
-            point = start + t * (end - start)
-            off, _ = closest(a[across], b[across], c[across], point[across])
-            if (off < 1e-9 + 1e-9 * wall.mesh.longest_edge).any():
-                at = int(np.flatnonzero(across)[np.argmin(off)])
-                names = sorted({wall.faces[wall.patch[one[at]]], wall.faces[wall.patch[other[at]]]})
+            across = np.flatnonzero(low * high < 0.0)
+            t = (low[across] / (low[across] - high[across]))[:, None]
+            point = start[across] + t * (end[across] - start[across])
+            cut = closest(a[across], b[across], c[across], point)[0] < 1e-9 + 1e-9 * wall.mesh.longest_edge
+            for at in np.flatnonzero(cut)[:: max(1, int(cut.sum()) // ASKED)]:
+                faces = one[across[at]], other[across[at]]
+                found = _crossing(wall, faces, point[at])
+                if found is None:
+                    continue
+                names = sorted({wall.faces[wall.patch[face]] for face in faces})
                 raise InputError(
-                    "SELF_INTERSECTION", label, f"the wall cuts itself at {place(point[at])} ({' and '.join(names)}); a bend "
+                    "SELF_INTERSECTION", label, f"the wall cuts itself at {place(found)} ({' and '.join(names)}); a bend "
                     "must have a larger radius than the tube, and faces must not cross",
                 )
+
+
+def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Array | None:
+    """Where the exact faces cut each other near two triangles that do so at a point; None where they do not."""
+    near = point[None]
+    patches = [wall.patches[wall.patch[k]] for k in triangles]
+    uv = [wall.uv[k].mean(axis=0)[None] for k in triangles]
+    for _ in range(CLOSING):
+        uv = [patch.inverse(near, start) for patch, start in zip(patches, uv)]
+        (one, one_up), (other, other_up) = (patch.at(at) for patch, at in zip(patches, uv))
+        apart = float(np.linalg.norm(one - other))
+        if apart < 1e-6 or np.linalg.norm(one[0] - point) > 2.0 * wall.mesh.longest_edge:
+            break
+        # where the two tangent planes meet, nearest to the middle between the feet
+        planes = np.stack([one_up[0], other_up[0]])
+        gap = np.array([one_up[0] @ (one[0] - near[0]), other_up[0] @ (other[0] - near[0])])
+        near = near + (np.linalg.pinv(planes, rcond=1e-3) @ gap)[None]
+    steep = float(np.linalg.norm(np.cross(one_up[0], other_up[0]))) > CROSSING
+    return one[0] if apart < 1e-6 and steep else None

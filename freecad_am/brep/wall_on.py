@@ -63,6 +63,15 @@ def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
     return bool(((below > low - 1e-3) & (below < high + 1e-3)).all())
 
 
+def _starts_below(tube: SurfaceWall, carrier: Substrate) -> bool:
+    """Whether the tube also comes out on the other side: its lower end lies beyond the substrate's box, not in its bore."""
+    v = tube.period * np.arange(12) / 12
+    foot = tube.surface().point(np.zeros(12), v)
+    low, high = carrier.solid.vertices.min(axis=0) - 1e-3, carrier.solid.vertices.max(axis=0) + 1e-3
+    several = any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues)
+    return several and bool(((foot < low) | (foot > high)).any())
+
+
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
     """The faces chosen: those named, else all of a shape without solids, else the only one that is not flat.
 

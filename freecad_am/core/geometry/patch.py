@@ -82,6 +82,12 @@ class Patch:
             return self._placed(self.sizes[0] * normal, normal)
         return self._placed(self.sizes[0] * out + self.sizes[1] * normal, normal)
 
+    def area(self, uv: Array) -> Array:
+        """Of a spline: how much of the surface a step of u and v spans at (u, v) (n, 2), 1 where that is as usual on it."""
+        _, along, around = self._derivatives(uv)
+        share: Array = np.linalg.norm(np.cross(along, around), axis=1) / self._typical_area
+        return share
+
     def unwrapped(self, uv: Array) -> Array:
         """(u, v) of the corners of triangles (m, 3, 2), shifted by periods to lie next to each first corner."""
         uv = uv.copy()

@@ -14,6 +14,7 @@ from .surface import dot
 Array = NDArray[np.float64]
 
 ROUNDS = 60
+NEEDLE = 0.5  # of the shortest to the longest side
 FLIPS, FEW, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
 
 # vertices (k, 3), owners of the triangles beside each new one (k, 2) -1 for none, ends of the edge it halves (k, 2)
@@ -56,7 +57,8 @@ def refined(
             break
         # halve the longest edge of each triangle that has an edge to halve, so that triangles stay in shape
         own = length[edges.of] + 1e-9 * length.max() * edges.of / len(length)  # no ties
-        top = np.take_along_axis(edges.of, np.argmax(own, axis=1)[:, None], axis=1)[:, 0]
+        first = _first_cut(edges, own, owner, longest, split)
+        top = np.take_along_axis(edges.of, first[:, None], axis=1)[:, 0]
         while True:
             more = split[edges.of].any(axis=1) & ~split[top]
             if not more.any():
@@ -70,9 +72,51 @@ def refined(
         number = np.full(len(split), -1, dtype=np.intp)
         number[split] = len(vertices) + np.arange(len(ends))
         vertices = np.vstack([vertices, middle])
-        triangles, owner = _halved(triangles, owner, number[edges.of], np.argmax(own, axis=1))
+        triangles, owner = _halved(triangles, owner, number[edges.of], first)
         triangles = flipped(vertices, triangles, owner)
     return vertices, triangles, owner
+
+
+def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Mask) -> Index:
+    """The corner (m,) of each triangle at which the edge begins that is cut first, its longest one, given the lengths
+    (m, 3) of its edges.
+
+    Of two needles along a common longest edge, as they make up a long strip, the next one: what was their diagonal is
+    turned afterwards, and the strip does not become narrower. Takes such diagonals out of `split`.
+    """
+    order = np.argsort(own, axis=1)
+    row = np.arange(len(own))
+    short, middle, long = own[row[:, None], order].T
+    top = edges.of[row, order[:, 2]]
+    needle = (short < NEEDLE * long) & (middle > longest)
+    count = np.bincount(top[needle], minlength=len(split))
+    beside = owner[edges.faces]
+    diagonal = (count == 2) & (edges.count == 2) & (beside[:, 0] == beside[:, 1])
+    split[diagonal] = False
+    return np.where(diagonal[top], order[:, 1], order[:, 2])
+
+
+def count_halved(corners: Array, longest: float) -> int:
+    """How many triangles without edges longer than `longest` mm become of triangles with the corners (m, 3, 3), about."""
+    square = np.sort(((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2), axis=1)
+    each, count = np.ones(len(square)), 0.0
+    for _ in range(ROUNDS):
+        small = square[:, 2] <= longest**2
+        count += each[small].sum()
+        short, middle, long = square[~small].T
+        if not len(long):
+            break
+        cut = 0.5 * (short + middle) - 0.25 * long
+        halves = np.stack([np.stack([0.25 * long, cut, one], axis=1) for one in (short, middle)])
+        needle = (short < NEEDLE**2 * long) & (middle > longest**2)
+        halves[:, needle] = np.stack([short, 0.25 * middle, long - 0.75 * middle], axis=1)[needle]
+        halves = halves.reshape(-1, 3)
+        # alike ones together
+        _, first, of = np.unique(np.round(np.log2(np.maximum(np.sort(halves, axis=1), 1e-12)), 1) @ [1e6, 1e3, 1.0],
+                                 return_index=True, return_inverse=True)
+        each = np.bincount(np.ravel(of), weights=np.tile(each[~small], 2))
+        square = np.sort(halves[first], axis=1)
+    return int(count)
 
 
 def _halved(triangles: Index, owner: Index, middle: Index, longest: Index) -> tuple[Index, Index]:
