@@ -18,7 +18,7 @@ from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .sheet import tessellated
 
-SHARE = 0.25  # of the chord error, between solids and their triangles
+SHARE = 0.4  # of the chord error, between solids and their triangles
 SAME = 1e-6  # relative; surfaces of faces that differ less are one
 
 
@@ -43,13 +43,25 @@ def bodies_of(source: Any, label: str, chord_error: float) -> Bodies:
         return Bodies(_named(found.solids, label), found.issues)
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit")
-    solids = []
+    made: list[tuple[Any, SolidMesh]] = []
     for solid in source.Solids:
-        vertices, corners = tessellated(solid.copy(), SHARE * chord_error)[:2]
-        mesh = SolidMesh(vertices, corners)
-        solids.append(dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh)
-        solids[-1].refuse_unsound(label)
-    return Bodies(_named(solids, label), ())
+        first = next((entry for entry in made if entry[0].isPartner(solid)), None)
+        made.append((solid, _meshed(solid, chord_error, label) if first is None else _placed(*first, solid)))
+    return Bodies(_named([mesh for _, mesh in made], label), ())
+
+
+def _meshed(solid: Any, chord_error: float, label: str) -> SolidMesh:
+    vertices, corners = tessellated(solid.copy(), SHARE * chord_error)[:2]
+    mesh = SolidMesh(vertices, corners)
+    mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
+    mesh.refuse_unsound(label)
+    return mesh
+
+
+def _placed(first: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:
+    """The mesh of a solid that differs from another by its place alone."""
+    way = np.array(solid.Placement.multiply(first.Placement.inverse()).toMatrix().A).reshape(4, 4)
+    return dataclasses.replace(mesh, vertices=mesh.vertices @ way[:3, :3].T + way[:3, 3])
 
 
 def _named(solids: Sequence[SolidMesh], label: str) -> tuple[Body, ...]:
