@@ -11,6 +11,7 @@ import numpy as np
 import Part
 
 from ..core.geometry import contact
+from ..core.geometry.ground import nearest
 from ..core.geometry.mesh import Mask
 from ..core.geometry.patch_wall import FirstCurve, PatchWall
 from ..core.geometry.refined import boundary
@@ -92,14 +93,14 @@ def _from_substrate(
     value = contact.levels(wall, ground)
     outside = value >= 0.0
     if outside.all():
-        at, gap = contact.nearest(wall.vertices, ground, value)
+        at, gap = nearest(wall.vertices, ground, value)
         raise InputError(
             "NO_CONTACT", label, f"the wall does not touch {substrate.label}: it comes nearest at "
             f"{place(wall.vertices[at])}, {gap:.4g} mm away; move it so that it reaches in, at most "
             f"{contact.TOUCH:g} mm may be missing",
         )
     if not outside.any():
-        at, depth = contact.nearest(wall.vertices, ground, value)
+        at, depth = nearest(wall.vertices, ground, value)
         raise InputError(
             "INSIDE", label, f"the wall lies wholly in {substrate.label} (at {place(wall.vertices[at])} it is "
             f"{depth:.4g} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it",
@@ -114,7 +115,8 @@ def _from_substrate(
         )
     found = f"the first layer lies on the wall and on {substrate.label}"
     if off > 0.0:
-        found += f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them"
+        found += (f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them, about as far as they "
+                  "are off what they stand for")
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
 
 

@@ -27,8 +27,9 @@ SEWN = 0.01  # mm; edges of faces that lie closer than this are one
 WELDED = 1e-5  # mm; vertices of the tessellations of two faces
 MOST = 1_500_000  # triangles
 ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse mesh
-FEW = 6000  # triangles that are not worth a second try
+FEW = 15000  # triangles that are not worth a second try
 TRIED = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
+ASKED = 200  # triangles of a face that tell its side
 SHORT = 0.55  # of the longest edge; shorter ones are drawn together
 
 
@@ -43,14 +44,15 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     names = [names[k] for k in order]
     faces = shape.Faces
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
-    vertices, triangles, owner, nodes = _tessellated_for(shape, edge)
+    (vertices, triangles, owner, nodes), about = _tessellated_for(shape, edge)
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
-    made = refined(vertices, triangles, owner, edge, places.middles, MOST)
+    made = refined(vertices, triangles, owner, edge, places.middles, MOST) if about < 2 * MOST else None
     if made is None:
         raise InputError(
-            "TOO_FINE", label, f"with edges of {edge:.3g} mm the mesh of the wall has more than {MOST} triangles; use a "
-            "larger layer height, round sharp bends more, or deposit the wall in parts",
+            "TOO_FINE", label, f"with edges of {edge:.3g} mm, by layer height and smallest radius, the mesh of the wall has "
+            f"more than {MOST} triangles, about {about:.2g}; use a larger layer height, round sharp bends more, or deposit "
+            "the wall in parts",
         )
     vertices, triangles, owner = made
     triangles, owner = collapsed(vertices, triangles, owner, SHORT * edge, edge)
@@ -72,6 +74,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
 
 def facing(patch: Patch, corners: Array) -> Patch:
     """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
+    corners = corners[:: max(1, len(corners) // ASKED)]
     facets = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
     return replace(patch, sign=patch.sign if dot(facets, normals).sum() > 0.0 else -patch.sign)
@@ -93,16 +96,17 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
     return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
 
 
-def _tessellated_for(shape: Any, edge: float) -> Tessellation:
+def _tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
     """Of some tessellations, the one of which the fewest triangles become by halving edges until none is longer than
-    `edge`: halves of what is a little too long are far too short."""
-    made = []
+    `edge`, and about how many: halves of what is a little too long are far too short."""
+    made: list[tuple[float, Tessellation]] = []
     for share in TRIED:
         one = tessellated(shape, max(0.1 * edge * share**2, 1e-3), ANGLE * share)
         made.append((count_halved(one[0][one[1]], edge), one))
-        if made[0][0] < FEW:
+        if made[0][0] < FEW or made[0][0] > 4 * MOST:
             break
-    return min(made, key=lambda one: one[0])[1]
+    about, best = min(made, key=lambda one: one[0])
+    return best, about
 
 
 class Tessellation(NamedTuple):

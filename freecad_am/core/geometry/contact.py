@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .ground import Ground
+from .ground import Ground, distances
 from .mesh import Index, LevelLine, Mask
 from .patch_wall import FirstCurve, PatchWall, Rim
 from .refined import boundary
+from .solid_mesh import SHARP
 from .surface import dot
 
 Array = NDArray[np.float64]
@@ -18,55 +19,20 @@ Array = NDArray[np.float64]
 TOUCH = 0.05  # mm; a wall that ends this short of its substrate stands on it
 STEPS = 40
 CORNER = np.radians(0.1)  # rad; smaller turns of the substrate are smooth joints
-SHARP = np.radians(20.0)  # an edge of a substrate of triangles that turns more is meant
 CLOSE = 0.3  # of the wall's typical edge; of nearer points of a chain one is enough
+ROUNDS, SAGITTAS = 8, 1.2  # of points added between others; what a smooth curve may be off a facet, in its sagittas
 WITHIN = 1e-5  # mm between the points of a chain and both surfaces
 
 
 def levels(wall: PatchWall, ground: Ground) -> Array:
     """Distances (n,) of the wall's vertices from the ground, negative inside; a boundary that ends just short of it is
-    in. Farther than an edge of the wall's mesh they may be too small, see `distances`."""
+    in. Farther than an edge of the wall's mesh they may be too small, see `ground.distances`."""
     value = distances(wall.vertices, ground, 2.0 * wall.mesh.longest_edge)
     edge = np.zeros(len(value), dtype=bool)
     edge[boundary(wall.triangles)[0]] = True
     value[edge & (value < TOUCH) & (value > -1e-4)] = -1e-4
     value[np.abs(value) < 1e-7] = -1e-7
     return value
-
-
-def distances(points: Array, ground: Ground, near: float) -> Array:
-    """Distances (n,) of points from the ground, negative inside: exact for those nearer than `near` mm, of others the right
-    sign and at most the true size.
-
-    A distance changes by no more than one goes: of the points in a cube that is wholly farther than its size one is asked.
-    """
-    value, open_ = np.empty(len(points)), np.arange(len(points))
-    size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
-    while len(open_) and size > near:
-        cube = np.floor((points[open_] - points.min(axis=0)) / size).astype(np.intp)
-        _, one, of = np.unique(cube @ np.array([1, 1 << 20, 1 << 40]), return_index=True, return_inverse=True)
-        asked = open_[one]
-        found, of = ground.signed(points[asked]), np.ravel(of)
-        away = np.linalg.norm(points[open_] - points[asked][of], axis=1)
-        least = np.abs(found[of]) - away
-        told = least > near
-        value[open_[told]] = (np.sign(found[of]) * least)[told]
-        open_, size = open_[~told], 0.5 * size
-    value[open_] = ground.signed(points[open_])
-    return value
-
-
-def nearest(points: Array, ground: Ground, value: Array) -> tuple[int, float]:
-    """Which point comes nearest to the boundary of the ground, and its distance, given those of `distances`."""
-    order = np.argsort(np.abs(value), kind="stable")
-    best, least = int(order[0]), np.inf
-    for some in np.array_split(order, max(1, len(order) // 256)):
-        if abs(float(value[some[0]])) > least:
-            break
-        exact = np.abs(ground.signed(points[some]))
-        if exact.min() < least:
-            best, least = int(some[np.argmin(exact)]), float(exact.min())
-    return best, least
 
 
 def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]) -> tuple[list[FirstCurve], float]:
@@ -215,8 +181,8 @@ def _rounded(
     """A smooth curve from one edge between facets to the next where their turns are small, with the exact corners elsewhere.
 
     The points at which the wall crosses the facets' edges are kept; between two of them that are less than four edges of the
-    wall's mesh apart the curve no longer follows the facet but runs smoothly on the wall, off it by about the facets' own
-    sagitta.
+    wall's mesh apart the curve does not follow the facet but runs smoothly on the wall, off the facet by about its sagitta;
+    where it would be farther off, points on the facet are kept too.
     """
     points, into, out, edge = _apart(points, into, out, edge, closed)
     turn = np.arccos(np.clip(dot(into, out), -1.0, 1.0))
@@ -237,13 +203,16 @@ def _rounded(
                 keep[inner] = False
     points, sharp = points[keep], sharp[keep]
     points, into, out = _splined(points, sharp, closed)
-    for _ in range(4):
+    for _ in range(ROUNDS):
         curve = FirstCurve(points, into, out, closed).curve()
         middle = curve.at(curve.w[:-1] + 0.5 * curve.span)[0]
         on_wall = wall.project(middle)[0]
-        bad = np.flatnonzero(np.linalg.norm(on_wall - middle, axis=1) > WITHIN)
+        foot, up, piece = ground.located(on_wall)
+        far = np.abs(dot(on_wall - foot, up)) > SAGITTAS * ground.sagitta(piece) + WITHIN
+        bad = np.flatnonzero((np.linalg.norm(on_wall - middle, axis=1) > WITHIN) | far)
         if not len(bad):
             break
+        on_wall[far] = _settled(wall, ground, on_wall[far])[0]
         order = np.argsort(np.r_[np.arange(len(points)), bad + 0.5], kind="stable")
         points = np.vstack([points, on_wall[bad]])[order]
         sharp = np.r_[sharp, np.zeros(len(bad), dtype=bool)][order]

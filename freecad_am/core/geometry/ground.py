@@ -30,6 +30,9 @@ class Ground(Protocol):
     def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
         """Nearest points and normals, each (k, 3), on the pieces (k,) wherever these end."""
 
+    def sagitta(self, piece: Index) -> Array:
+        """How far (k,) the pieces may lie off what they stand for, mm."""
+
 
 class ExactGround:
     """A solid of exact faces: its triangles (within `chord` mm of it), the face (m,) of each, the faces as patches whose
@@ -65,6 +68,10 @@ class ExactGround:
             feet[mine], normals[mine] = patch.at(patch.inverse(points[mine]))
         return feet, normals
 
+    def sagitta(self, piece: Index) -> Array:
+        """None."""
+        return np.zeros(len(piece))
+
 
 class FacetGround:
     """A solid of triangles."""
@@ -88,3 +95,42 @@ class FacetGround:
         normal = self.solid.units[piece]
         corner = self.solid.vertices[self.solid.triangles[piece, 0]]
         return points - dot(points - corner, normal)[:, None] * normal, normal
+
+    def sagitta(self, piece: Index) -> Array:
+        """By the turns between triangles."""
+        return self.solid.sagitta[piece]
+
+
+def distances(points: Array, ground: Ground, near: float) -> Array:
+    """Distances (n,) of points from the ground, negative inside: exact for those nearer than `near` mm, of others the right
+    sign and at most the true size.
+
+    A distance changes by no more than one goes: of the points in a cube that is wholly farther than its size one is asked.
+    """
+    value, open_ = np.empty(len(points)), np.arange(len(points))
+    size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
+    while len(open_) and size > near:
+        cube = np.floor((points[open_] - points.min(axis=0)) / size).astype(np.intp)
+        _, one, of = np.unique(cube @ np.array([1, 1 << 20, 1 << 40]), return_index=True, return_inverse=True)
+        asked = open_[one]
+        found, of = ground.signed(points[asked]), np.ravel(of)
+        away = np.linalg.norm(points[open_] - points[asked][of], axis=1)
+        least = np.abs(found[of]) - away
+        told = least > near
+        value[open_[told]] = (np.sign(found[of]) * least)[told]
+        open_, size = open_[~told], 0.5 * size
+    value[open_] = ground.signed(points[open_])
+    return value
+
+
+def nearest(points: Array, ground: Ground, value: Array) -> tuple[int, float]:
+    """Which point comes nearest to the boundary of the ground, and its distance, given those of `distances`."""
+    order = np.argsort(np.abs(value), kind="stable")
+    best, least = int(order[0]), np.inf
+    for some in np.array_split(order, max(1, len(order) // 256)):
+        if abs(float(value[some[0]])) > least:
+            break
+        exact = np.abs(ground.signed(points[some]))
+        if exact.min() < least:
+            best, least = int(some[np.argmin(exact)]), float(exact.min())
+    return best, least

@@ -96,7 +96,7 @@ def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Ma
     return np.where(diagonal[top], order[:, 1], order[:, 2])
 
 
-def count_halved(corners: Array, longest: float) -> int:
+def count_halved(corners: Array, longest: float) -> float:
     """How many triangles without edges longer than `longest` mm become of triangles with the corners (m, 3, 3), about."""
     square = np.sort(((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2), axis=1)
     each, count = np.ones(len(square)), 0.0
@@ -116,7 +116,7 @@ def count_halved(corners: Array, longest: float) -> int:
                                  return_index=True, return_inverse=True)
         each = np.bincount(np.ravel(of), weights=np.tile(each[~small], 2))
         square = np.sort(halves[first], axis=1)
-    return int(count)
+    return float(count)
 
 
 def _halved(triangles: Index, owner: Index, middle: Index, longest: Index) -> tuple[Index, Index]:

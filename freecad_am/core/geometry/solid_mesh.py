@@ -20,7 +20,7 @@ from .triangles import closest
 Array = NDArray[np.float64]
 
 NEAREST = 12
-TILT = np.radians(0.05)  # facets that meet flatter than this are one
+SHARP = np.radians(20.0)  # facets that meet at more do not stand for something round
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,21 @@ class SolidMesh:
         a, b, c = (self.vertices[self.triangles[:, k]] for k in range(3))
         normals: Array = np.cross(b - a, c - a)
         return normals
+
+    @cached_property
+    def sagitta(self) -> Array:
+        """How far (m,), about, each triangle lies off the round surface that it and its neighbours stand for: an eighth of
+        its width across each edge times the turn there; edges that turn by more than SHARP are meant."""
+        edges = Edges(self.triangles)
+        two = edges.count == 2
+        turn = np.zeros(len(edges.ends))
+        one, other = (self.units[edges.faces[two, side]] for side in (0, 1))
+        turn[two] = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
+        turn[turn > SHARP] = 0.0
+        length = np.linalg.norm(self.vertices[edges.ends[:, 1]] - self.vertices[edges.ends[:, 0]], axis=1)
+        width = np.linalg.norm(self.normals, axis=1)[:, None] / np.maximum(length[edges.of], 1e-300)
+        sagitta: Array = (0.125 * width * turn[edges.of]).max(axis=1)
+        return sagitta
 
     @cached_property
     def units(self) -> Array:
@@ -128,8 +143,6 @@ class Search:
         normal[on_vertex] = self.at_vertex[self.triangles[triangle[on_vertex], np.argmin(small[on_vertex], axis=1)]]
         side = np.where(dot(points - foot, normal) < 0.0, -1.0, 1.0)
         return side * distance, foot, self.owner[triangle]
-
-
 
 
 def _spread(corner: Array, longest: float) -> tuple[Array, Index]:
