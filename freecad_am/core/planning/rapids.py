@@ -22,8 +22,9 @@ from ..motion import Motion
 
 Array = NDArray[np.float64]
 
-# largest turn of an axis between two looks, rad, and the distance between neighbouring obstacle points, mm
+# largest turn of an axis between two looks, rad, and way of one that slides, mm; between neighbouring obstacle points, mm
 STEP = np.radians(5.0)
+SLIDE = 5.0
 GRAIN = 1.5
 PLATFORM_GRAIN = 4.0
 # how deep a point must be inside the nozzle to count: beads are followed to their chord error, mm
@@ -70,7 +71,8 @@ def collisions(
 def _way(motion: Motion, cell: Cell, row: int) -> tuple[Array, Array]:
     """Tip and tool axis (k, 3) at looks along the travel to a row, in part coordinates."""
     start, end = motion.joints[row - 1], motion.joints[row]
-    looks = 1 + int(np.ceil(np.abs(end - start).max() / STEP))
+    steps = np.where(cell.machine.chain.sliding, SLIDE, STEP)
+    looks = 1 + int(np.ceil((np.abs(end - start) / steps).max()))
     joints = start + np.linspace(0.0, 1.0, looks + 1)[:, None] * (end - start)
     return cell.tip_in_part(cell.machine.chain.forward(joints))
 
@@ -107,6 +109,18 @@ def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, NDArray[np.int64]]:
 def _met(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
     """Whether any obstacle point (m, 3) is inside the nozzle at any of the looks: tip and tool axis (k, 3)."""
     nozzle = cell.nozzle
+    reach = nozzle.length + 0.5 * nozzle.diameter + nozzle.length * np.tan(nozzle.half_angle)
+    near = ((obstacles > tip.min(axis=0) - reach) & (obstacles < tip.max(axis=0) + reach)).all(axis=1)
+    if near.any() and _inside(tip, axis, obstacles[near], cell):
+        return True
+    below = (tip - cell.mount[:3, 3]) @ cell.mount[:3, 2] < -TOUCH
+    across = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :2]
+    return bool((below & (np.linalg.norm(across, axis=1) < 0.5 * cell.platform_diameter)).any())
+
+
+def _inside(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
+    """Whether any of the points (m, 3) is inside the nozzle."""
+    nozzle = cell.nozzle
     # heights over the tip plane and squared distances from the tip, (m, k), as products of matrices
     height = obstacles @ axis.T - (tip * axis).sum(axis=1)
     centre = obstacles.mean(axis=0)
@@ -114,8 +128,4 @@ def _met(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
     square = (local * local).sum(axis=1)[:, None] - 2.0 * local @ seat.T + (seat * seat).sum(axis=1)
     room = np.maximum(0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - TOUCH, 0.0)
     inside = (height > TOUCH) & (height <= nozzle.length)
-    if (inside & (square - height * height < room * room)).any():
-        return True
-    below = (tip - cell.mount[:3, 3]) @ cell.mount[:3, 2] < -TOUCH
-    across = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :2]
-    return bool((below & (np.linalg.norm(across, axis=1) < 0.5 * cell.platform_diameter)).any())
+    return bool((inside & (square - height * height < room * room)).any())
