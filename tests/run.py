@@ -84,6 +84,11 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
 
 def main() -> int:
     arguments = sys.argv[1:]
+    if not arguments or any("posts" in word for word in arguments):
+        sys.path.insert(0, str(ROOT))
+        from tests.posts import interpreters
+
+        interpreters.provide()
     with tempfile.TemporaryDirectory() as folder:
         print("freecad-am: plain and headless tests", flush=True)
         plain = watched([sys.executable, "-m", "pytest", *arguments, "--ignore=tests/gui"], private_home(Path(folder)))

@@ -46,6 +46,8 @@ LAST_PIN = 64
 # the work offset that this program sets to zero, for moves of the axes themselves
 MACHINE_OFFSET = "G59.3"
 OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
+# mm/min or deg/min: its interpreter takes 0.1 where the time of a move asks for less, which would be too fast
+SLOWEST = 0.2
 # s: an input that does not come stops the program for good
 LONGEST_WAIT = 10_000_000
 # comments of this kind would be carried out
@@ -69,7 +71,7 @@ def write(program: Program) -> dict[str, bytes]:
     name = program_name(program.name, "name")
     _refuse(program)
     remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in wrapped(words)]
-    groups = list(grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block)))
+    groups = list(grouped(program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)))
     parts = packed(groups, program.max_points, _NO_END, refuse_bead)
     if len(parts) == 1:
         return {f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])}
@@ -120,13 +122,13 @@ def _refuse(program: Program) -> None:
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
-            f"there are at most {LAST_PIN} digital outputs (motion.digital-out-00 is number 1), not {program.deposit_output}",
+            f"digital outputs are 1 to {LAST_PIN} (motion.digital-out-00 is number 1), not {program.deposit_output}",
         )
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_PIN:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
-                f"there are at most {LAST_PIN} digital inputs (motion.digital-in-00 is number 1), not {block.number}",
+                f"digital inputs are 1 to {LAST_PIN} (motion.digital-in-00 is number 1), not {block.number}",
             )
     _refuse_calls_of_own(program, {program_name(program.name, "name")})
     if program.motion == "cartesian":

@@ -11,21 +11,21 @@ import re
 from dataclasses import dataclass, field
 
 from ..core.program import ReadMoves
-from .nc_read import SLIDES, TIME, TIP, Track, unreadable
+from .nc_read import AXES, TIME, TIP, Track, unreadable
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")
 _SUB = re.compile(r"O<(\w+)> (SUB|ENDSUB|CALL)$")
 _COMMENT = re.compile(r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|PY|WARNING)\s*,)[^()]*\)")
 _HARMLESS = re.compile(
-    rf"G92\.2$|G64(?: P(?:{_NUMBER}))?(?: Q(?:{_NUMBER}))?$|G4 P(?:{_NUMBER})$|M66 P\d+ L3 Q\d+(?:\.\d*)?$|G43 H\d+$|G6[14]$|G61\.1$"
+    rf"(?:G92\.2|G61(?:\.1)?|G64(?: P(?:{_NUMBER}))?(?: Q(?:{_NUMBER}))?|G4 P(?:{_NUMBER})|M66 P\d+ L3 Q\d+|G43 H\d+)$"
 )
 _ZERO = re.compile(r"G10 L2 P9( [XYZABCR]0)+$")
 _OUTPUT = re.compile(r"M(6[2-5]) P(\d+)$|M(\d+)$")
 _OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"}
 _FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
 _PLAIN = {"G17", "G40", "G49", "G80"}
-_TIP, _AXES = "M428", "M429"
+_TIP_ON, _TIP_OFF = "M428", "M429"
 
 
 @dataclass
@@ -98,7 +98,7 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
 
 
 def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> None:
-    if state.track.on or state.kinematics == _TIP:
+    if state.track.on or state.kinematics == _TIP_ON:
         raise unreadable(where, "another program is called within a bead")
     if name in state.files:
         _follow(name, state.files[name][1:-1], state, callers)
@@ -131,7 +131,7 @@ def _line(where: str, text: str, state: _State) -> None:
 def _move(where: str, words: dict[str, str], state: _State) -> None:
     if not state.linear or state.units != _UNITS or not state.offset:
         raise unreadable(where, "a move before G1, G21, G90 and a work offset are said")
-    if state.kinematics == _TIP:
+    if state.kinematics == _TIP_ON:
         if state.feed != "G94" or state.offset == "G59.3":
             raise unreadable(where, "a position on the part needs G94 and a work offset of its own")
         if {*words} != {*state.track.axes, *"XYZF"}:
@@ -140,12 +140,12 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
         return
     if state.offset != "G59.3" or not set(words) - {"F"} <= state.zeroed:
         raise unreadable(where, "axes are moved in another frame than that of the machine")
-    state.track.add(TIME if state.feed == "G93" else SLIDES, words, where)
+    state.track.add(TIME if state.feed == "G93" else AXES, words, where)
 
 
 def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
     """Kinematics, and the deposit: an output by its number; of two M words the first one switches on."""
-    if text in (_TIP, _AXES):
+    if text in (_TIP_ON, _TIP_OFF):
         if state.track.on:
             raise unreadable(where, "the kinematics changes while the deposit is on")
         state.kinematics = text

@@ -52,12 +52,16 @@ class Feeds:
 
     Moves of axes last as long as planned: F is one over that time in minutes (G93). With `program.nc.path_feed` it is the
     speed of the linear axes in mm/min (G94) wherever these move. Beads told in positions run at the speed of the tip.
+    slowest: mm/min or deg/min that a controller does not fall below by itself however long the time told; slower moves are
+    told by this speed: of the linear axes, or of the rotary ones where these alone move.
     """
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, slowest: float = 0.0) -> None:
+        self.linear = np.array([kind == LINEAR for kind in program.axis_kinds])
         self.kinds, self.by_tip = program.axis_kinds, program.motion == "cartesian"
-        self.path_feed = program.nc.path_feed and not self.by_tip
+        self.path_feed, self.slowest = program.nc.path_feed and not self.by_tip, slowest
         self.before: Array | None = None
+        self.after_tip = False
 
     def __call__(self, moves: Moves) -> list[str]:
         """One text per move: the sort of feed and its value, such as 'G93 F120.0000' or 'G94 F300.0000'.
@@ -68,16 +72,21 @@ class Feeds:
         start = at[0] if self.before is None else self.before
         self.before = at[-1]
         if self.by_tip and moves.kind != RAPID:
+            self.after_tip = True
             return [f"{PATH} {feed(value)}" for value in _tip_feeds(moves).tolist()]
         inverse = _inverse_times(moves)
-        if not self.path_feed or moves.kind == RAPID:
-            return [f"{TIME} {feed(value)}" for value in inverse.tolist()]
-        linear = np.array([kind == LINEAR for kind in self.kinds])
-        way = np.diff(np.concatenate([start[None], at])[:, linear], axis=0)
-        slides = 60.0 * slide_feeds(start, at, moves.duration, self.kinds)
-        timed = (np.linalg.norm(way, axis=1) < SHORTEST_WAY) | (slides < SLOWEST) | (slides > FASTEST)
-        return [f"{TIME} {feed(by_time)}" if is_timed else f"{PATH} {feed(slide)}"
-                for is_timed, by_time, slide in zip(timed.tolist(), inverse.tolist(), slides.tolist(), strict=True)]
+        steps = np.diff(np.concatenate([start[None], at]), axis=0)
+        way = np.linalg.norm(steps[:, self.linear], axis=1)
+        speeds = 60.0 * slide_feeds(start, at, 60.0 / inverse, self.kinds)
+        turning = way == 0.0
+        speeds[turning] = (np.linalg.norm(steps[:, ~self.linear], axis=1) * inverse)[turning]
+        by_speed = (speeds > 0.0) & (speeds < self.slowest)
+        if self.path_feed and moves.kind != RAPID:
+            by_speed |= (way >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
+        by_speed[0] &= not self.after_tip  # a text that ended in a position does not tell the way
+        self.after_tip = False
+        return [f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
+                for is_slow, speed, by_time in zip(by_speed.tolist(), speeds.tolist(), inverse.tolist(), strict=True)]
 
 
 def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:

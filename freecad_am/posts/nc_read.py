@@ -15,8 +15,9 @@ from ..core.program import ReadMoves
 
 Array = NDArray[np.float64]
 
-# feed as the time of the move, as the speed of the linear axes, and as that of the tip in part coordinates
-TIME, SLIDES, TIP = "time", "slides", "tip"
+# feed as the time of the move; as the speed of the linear axes; as theirs, or that of the rotary axes where these alone
+# move; and as that of the tip in part coordinates
+TIME, SLIDES, AXES, TIP = "time", "slides", "axes", "tip"
 _LINEAR, _VECTOR = "XYZ", ("A3", "B3", "C3")
 
 
@@ -43,7 +44,7 @@ class Track:
             self.axes = names
         elif names != self.axes:
             raise unreadable(where, "the move is not told in the axes of the first one")
-        if sort == SLIDES and (not self.rows or self.rows[-1][0] == TIP):
+        if sort in (SLIDES, AXES) and (not self.rows or self.rows[-1][0] == TIP):
             raise unreadable(where, "the way of the move, and so its time, is not known")
         self.rows.append((sort, words))
         self.deposit.append(self.on)
@@ -58,7 +59,7 @@ class Track:
         told = np.where(tips[:, None], [name in self.rows[_first(tips)][1] for name in self.axes] & ~linear, True)
         joints, digits = self._values(self.axes, told)
         feeds, feed_digits = self._values(("F",), np.ones((len(self.rows), 1), bool), each=True)
-        duration, duration_digits = _durations(sorts, joints[:, linear], feeds[:, 0], feed_digits[:, 0])
+        duration, duration_digits = _durations(sorts, joints, linear, feeds[:, 0], feed_digits[:, 0])
         joints[:, ~linear] = np.radians(joints[:, ~linear])
         turning, sliding = (float(np.max(digits[side], initial=0.0)) for side in (~linear, linear))
         shorter = np.array([name in self.shorter for name in self.axes])
@@ -94,10 +95,15 @@ def _first(mask: NDArray[np.bool_]) -> int:
     return int(np.argmax(mask))
 
 
-def _durations(sorts: NDArray[np.str_], slides: Array, feeds: Array, digits: Array) -> tuple[Array, Array]:
-    """(n,) s of the moves, NaN where the feed is the speed of the tip, and by how much their digits may be off."""
-    way = np.linalg.norm(np.diff(slides, axis=0, prepend=slides[:1]), axis=1)
-    duration = np.where(sorts == TIME, 60.0 / feeds, np.where(sorts == SLIDES, 60.0 * way / feeds, np.nan))
+def _durations(
+    sorts: NDArray[np.str_], axes: Array, linear: NDArray[np.bool_], feeds: Array, digits: Array
+) -> tuple[Array, Array]:
+    """(n,) s of the moves of axes (n, axes) in mm and deg, NaN where the feed is the speed of the tip, and by how much
+    their digits may be off."""
+    steps = np.diff(axes, axis=0, prepend=axes[:1])
+    way, turn = (np.linalg.norm(steps[:, side], axis=1) for side in (linear, ~linear))
+    way = np.where((sorts == AXES) & (way == 0.0), turn, way)
+    duration = np.where(sorts == TIME, 60.0 / feeds, np.where(sorts == TIP, np.nan, 60.0 * way / feeds))
     return duration, np.nan_to_num(duration * digits / (feeds - digits))
 
 

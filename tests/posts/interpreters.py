@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Interpreters of five-axis programs that are not ours, and what they make of a text.
+
+LinuxCNC's own `rs274`, and nc-gcode-interpreter for SINUMERIK. `./freecad-am test` puts them into a folder of their own
+(.test-env): the package linuxcnc-uspace unpacked, not installed, and a Python environment. Tests skip where they are missing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ENVIRONMENT = Path(__file__).resolve().parents[2] / ".test-env"
+UNPACKED = ENVIRONMENT / "linuxcnc"
+NC_PYTHON = ENVIRONMENT / "nc" / "bin" / "python"
+PACKAGES = ("linuxcnc-uspace", "libboost-python1.74.0", "libtirpc3", "libedit2")
+WHEELS = ("nc-gcode-interpreter", "polars", "polars-runtime-32")
+LIMIT = 120
+
+
+def rs274() -> tuple[list[str], dict[str, str]] | None:
+    """Command and environment of LinuxCNC's interpreter, None where it is not there."""
+    here = UNPACKED / "usr" / "bin" / "rs274"
+    if here.exists():
+        libraries = [str(UNPACKED / "usr/lib"), *map(str, (UNPACKED / "usr/lib").glob("*-linux-gnu"))]
+        return [str(here)], {**os.environ, "LD_LIBRARY_PATH": ":".join(libraries)}
+    installed = shutil.which("rs274")
+    return ([installed], dict(os.environ)) if installed else None
+
+
+def nc_python() -> list[str] | None:
+    """A Python with nc-gcode-interpreter, None where there is none."""
+    return [str(NC_PYTHON)] if NC_PYTHON.exists() else None
+
+
+def provide() -> None:
+    """Fetch what is missing; say so where that fails."""
+    if rs274() is None and not _unpack():
+        print("freecad-am: no rs274 of LinuxCNC: its programs are NOT interpreted by the tests", flush=True)
+    if nc_python() is None and not _wheels():
+        print("freecad-am: no nc-gcode-interpreter: SINUMERIK programs are NOT interpreted by the tests", flush=True)
+
+
+def _unpack() -> bool:
+    if not (shutil.which("apt-get") and shutil.which("dpkg-deb")):
+        return False
+    print(f"freecad-am: unpacking {', '.join(PACKAGES)} into {ENVIRONMENT.name}", file=sys.stderr, flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        if not _done(["apt-get", "download", "-q", *PACKAGES], cwd=folder):
+            return False
+        shutil.rmtree(UNPACKED, ignore_errors=True)
+        return all(_done(["dpkg-deb", "-x", str(package), str(UNPACKED)]) for package in Path(folder).glob("*.deb"))
+
+
+def _wheels() -> bool:
+    print(f"freecad-am: making {ENVIRONMENT.name} with {', '.join(WHEELS)}", file=sys.stderr, flush=True)
+    folder = NC_PYTHON.parents[1]
+    if not _done([sys.executable, "-m", "venv", str(folder)]):
+        return False
+    # it needs no more than these to run
+    if _done([str(NC_PYTHON), "-m", "pip", "install", "-q", "--no-deps", "--only-binary", ":all:", *WHEELS]):
+        return _done([str(NC_PYTHON), "-c", "import nc_gcode_interpreter"])
+    shutil.rmtree(folder, ignore_errors=True)
+    return False
+
+
+def _done(command: list[str], **more: object) -> bool:
+    try:
+        return subprocess.run(command, timeout=LIMIT, check=False, **more).returncode == 0  # type: ignore[call-overload]
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+
+
+KINEMATICS = (428, 429, 430)
+
+
+def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: float = 0.0) -> tuple[list[dict], list[str]]:
+    """What LinuxCNC's interpreter makes of a program: its moves in order, and what it complains of.
+
+    A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset). seconds
+    come from the feed as LinuxCNC counts it: of the linear axes where they move, else of the rotary ones.
+    """
+    command, environment = rs274()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    remaps = "".join(f"REMAP=M{code} modalgroup=10 ngc=kinematics{code}\n" for code in KINEMATICS)
+    for code in KINEMATICS:
+        lines = [f"o<kinematics{code}> sub", f"(kinematics {code})", f"o<kinematics{code}> endsub", "M2", ""]
+        (folder / f"kinematics{code}.ngc").write_text("\n".join(lines))
+    (folder / "clean.ngc").write_text("o<clean> sub\n(cleaned)\nG20 G91\no<clean> endsub\nM2\n")
+    (folder / "machine.ini").write_text(f"[RS274NGC]\nSUBROUTINE_PATH={folder}\n{remaps}[TRAJ]\nLINEAR_UNITS=mm\n[EMCIO]\n")
+    # standing alone it takes the tool table for inches
+    (folder / "tool.tbl").write_text("".join(f"T{n} P{n} Z{tool_length / 25.4:.6f} D0.1 ;\n" for n in range(1, 30)))
+    arguments = ["-g", "-n", "2", "-t", "tool.tbl", "-v", "numbers.var", "-i", "machine.ini", main]
+    result = subprocess.run(
+        [*command, *arguments], cwd=folder, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False
+    )
+    moves, complaints, ended = [], [], False
+    at, feed, deposit, kinematics, offset = np.full(6, np.nan), 0.0, False, None, 0
+    for line in (result.stdout + result.stderr).splitlines():
+        found = re.match(r" *\d+ N\S* +(\w+)\((.*)\)\s*$", line)
+        if found is None:
+            if line.strip() not in ("", "executing") and "updating variable file" not in line:
+                complaints.append(line.strip())
+            continue
+        word, inside = found.groups()
+        if word == "SET_FEED_RATE":
+            feed = float(inside)
+        elif word == "SET_G5X_OFFSET":
+            offset = int(inside.split(",")[0])
+        elif word in ("SET_AUX_OUTPUT_BIT", "CLEAR_AUX_OUTPUT_BIT"):
+            deposit = word.startswith("SET")
+        elif word == "COMMENT" and (said := re.match(r'"kinematics (\d+)', inside)):
+            kinematics = int(said[1])
+        elif word in ("STRAIGHT_FEED", "STRAIGHT_TRAVERSE"):
+            place = np.array([float(value) for value in inside.split(",")][:6])
+            step = place - at
+            way = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
+            moves.append({"at": place, "way": way, "feed": feed, "seconds": 60.0 * way / feed if feed else np.nan,
+                          "deposit": deposit, "kinematics": kinematics, "offset": offset, "rapid": word != "STRAIGHT_FEED"})
+            at = place
+        ended |= word == "PROGRAM_END"
+    if result.returncode or not ended:
+        complaints.append(f"status {result.returncode}, {'' if ended else 'not '}at its end")
+    return moves, complaints
+
+
+# runs in the other Python: rows of the interpreter as JSON
+_INTERPRET = """
+import json, sys
+import nc_gcode_interpreter as nc
+for text, extra in json.load(sys.stdin):
+    try:
+        frame, _ = nc.nc_to_dataframe(text, extra_axes=extra or None, iteration_limit=10_000_000)
+    except Exception as error:
+        print(json.dumps({"error": str(error)}))
+    else:
+        print(json.dumps({"columns": frame.columns, "rows": frame.rows()}))
+"""
+# words of the language that the interpreter takes for calls of subprograms
+_KNOWN = {"TRAORI", "TRAFOOF", "FGROUP(X,Y,Z)", "STOPRE"}
+
+
+def run_nc(texts: list[str]) -> list[tuple[list[dict], list[str], str]]:
+    """What nc-gcode-interpreter makes of SINUMERIK programs, each by itself: its blocks as rows, the names it takes for calls,
+    and its complaint, or ''.
+
+    Words it has no address for (A3=, H1=) become variables of other names, rows have them under the old ones; C=DC(..) is
+    taken as the value; input 3 reads as on.
+    """
+    asked = []
+    for text in texts:
+        plain = re.sub(r"\b([A-Z]\d+)=(?!=)", r"V_\1=", text)
+        plain = re.sub(r"=DC\(([^()]*)\)", r"=\1", plain).replace("$A_IN[3]==0", "0==1")
+        asked.append((plain, sorted(set(re.findall(r"\bV_[A-Z]\d+(?==)", plain)))))
+    result = subprocess.run(
+        [*(nc_python() or []), "-c", _INTERPRET], input=json.dumps(asked), capture_output=True, text=True, timeout=LIMIT,
+        check=True,
+    )  # fmt: skip
+    return [_rows(json.loads(line)) for line in result.stdout.splitlines()]
+
+
+def _rows(found: dict) -> tuple[list[dict], list[str], str]:
+    if "error" in found:
+        return [], [], found["error"]
+    rows = [
+        {name.removeprefix("V_"): value for name, value in zip(found["columns"], row, strict=True)} for row in found["rows"]
+    ]
+    calls = []
+    for row in rows:
+        names = row.get("function_call") or row.get("non_returning_function_call") or []
+        calls += [name for name in ([names] if isinstance(names, str) else names) if name not in _KNOWN]
+    return rows, calls, ""
