@@ -26,7 +26,8 @@ STRATEGIES: dict[str, type] = {
 Strategy = RevolutionParameters | SurfaceParameters | DevelopableParameters
 PLANNED_SETUPS = ("tool-on-robot+positioner",)
 SECTIONS = (
-    "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "cell", "joints", "process", "program",
+    "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "cell", "joints", "process",
+    "program",
 )
 _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)

@@ -14,7 +14,6 @@ from ..core.geometry import contact
 from ..core.geometry.ground import nearest
 from ..core.geometry.mesh import Mask
 from ..core.geometry.patch_wall import FirstCurve, PatchWall
-from ..core.geometry.refined import boundary
 from ..core.geometry.told import place
 from ..core.geometry.wall_rims import outward_volume, parts, rims_of, with_ends
 from ..core.issues import NOTE, InputError, Issue
@@ -110,13 +109,13 @@ def _from_substrate(
     first, off = contact.first_curves(wall, ground, value, rims)
     if not first:
         raise InputError(
-            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than a "
-            f"few {wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
+            "NO_CONTACT", label, f"the wall meets {substrate.label} in no curve that a layer can start from (shorter than "
+            f"a few {wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
         )
     found = f"the first layer lies on the wall and on {substrate.label}"
     if off > 0.0:
-        found += (f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them, about as far as they "
-                  "are off what they stand for")
+        found += (f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them, about as far as "
+                  "they are off what they stand for")
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
 
 

@@ -51,7 +51,8 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Any:
-    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. InputErrors as `read_shape`."""
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. InputErrors as `read_shape`; 3MF needs
+    FreeCAD 0.21."""
     file = Path(path)
     where = file.name or str(path)
     if not file.is_file():
@@ -63,6 +64,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Any:
         with _quiet():
             mesh.read(str(file))
     except Exception as error:
+        if "not supported" in str(error):  # 3MF before FreeCAD 0.21
+            raise InputError("UNSUPPORTED_FILE", where, f"this FreeCAD reads no {file.suffix}; export STL or OBJ") from error
         raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")

@@ -161,8 +161,11 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
     count = len(names)
     links: dict[int, list[tuple[int, bool]]] = {k: [] for k in range(count)}
     pairs = np.sort(owner[np.stack([one, other], axis=1)], axis=1)
-    for a, b in np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0):
-        turn = bool(against[(pairs == (a, b)).all(axis=1)].mean() > 0.5)
+    for a, b in np.unique(pairs, axis=0):
+        share = float(against[(pairs == (a, b)).all(axis=1)].mean())
+        if (a == b and share > 0.0) or 0.02 < share < 0.98:
+            raise _twisted(label, names[a], names[b])
+        turn = share > 0.5
         links[int(a)].append((int(b), turn))
         links[int(b)].append((int(a), turn))
     turned = np.full(count, -1)
@@ -178,11 +181,16 @@ def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Ind
                     turned[near] = wanted
                     waiting.append(near)
                 elif turned[near] != wanted:
-                    raise InputError(
-                        "NOT_ORIENTABLE", label, f"{names[at]} and {names[near]} cannot be turned to one side (a twisted "
-                        "band has no outside); leave one of the faces out",
-                    )
+                    raise _twisted(label, names[at], names[near])
     triangles = triangles.copy()
     flip = turned[owner] == 1
     triangles[flip] = triangles[flip][:, ::-1]
     return triangles
+
+
+def _twisted(label: str, one: str, other: str) -> InputError:
+    named = one if one == other else f"{one} and {other}"
+    return InputError(
+        "NOT_ORIENTABLE", label, f"{named} cannot be turned to one side (a twisted band has no outside); divide the band, "
+        "or leave one of its faces out",
+    )

@@ -34,7 +34,9 @@ def patch_of(face: Any, where: str) -> Patch:
     if kind == "Toroid" and surface.MajorRadius > surface.MinorRadius:
         sizes = (float(surface.MajorRadius), float(surface.MinorRadius))
         return Patch(TORUS, sizes, _frame(surface.Center, surface.Axis), periods=(TURN, TURN))
-    return _checked(_spline(face, where), face, where)
+    patch = _spline(face, where)
+    _refuse_kinks(patch, face, where)
+    return _checked(patch, face, where)
 
 
 def _frame(origin: Any, axis: Any) -> Array:
@@ -77,6 +79,28 @@ def _spline(face: Any, where: str) -> Patch:
     low_u, high_u, low_v, high_v = surface.bounds()
     periods = (high_u - low_u if surface.isUClosed() else 0.0, high_v - low_v if surface.isVClosed() else 0.0)
     return Patch(SPLINE, (), np.eye(4), 1.0, periods, knots_u, knots_v, poles)
+
+
+def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
+    """InputError ROUGH_WALL where the spline has an edge along a line of knots."""
+    ranges = np.reshape(face.ParameterRange, (2, 2))
+    for axis, (knots, count) in enumerate(((patch.knots_u, patch.poles.shape[0]), (patch.knots_v, patch.poles.shape[1]))):
+        degree = len(knots) - count - 1
+        found, times = np.unique(knots, return_counts=True)
+        low, high = max(ranges[axis, 0], knots[degree]), min(ranges[axis, 1], knots[count])
+        step = 1e-7 * (knots[count] - knots[degree])
+        for knot in found[(times >= degree) & (found > low + 9.0 * step) & (found < high - 9.0 * step)]:
+            uv = np.empty((9, 2))
+            uv[:, axis], uv[:, 1 - axis] = knot, np.linspace(*ranges[1 - axis], 11)[1:-1]
+            side = step * np.eye(2)[axis]
+            (points, before), (_, after) = patch.at(uv - side), patch.at(uv + side)
+            turn = np.arccos(np.clip((before * after).sum(axis=1), -1.0, 1.0))
+            if turn.max() > KINK:
+                at = ", ".join(f"{number:.4g}" for number in points[np.argmax(turn)])
+                raise InputError(
+                    "ROUGH_WALL", where, f"at ({at}) the face has an edge within itself, of {np.degrees(turn.max()):.3g} "
+                    "deg; round it, or divide the face there and deposit its parts one after the other",
+                )
 
 
 def _checked(patch: Patch, face: Any, where: str) -> Patch:

@@ -30,7 +30,7 @@ STEP = 1e-5  # of the size of a parameter's step, for curvatures
 
 
 def refuse_gaps(wall: PatchWall, label: str) -> None:
-    """InputError GAP where faces that should join do not, or APART where they are nowhere near."""
+    """InputError GAP where faces that should join do not, or are nowhere near each other."""
     ends, _ = boundary(wall.triangles)
     if not len(ends):
         return
@@ -60,8 +60,7 @@ def refuse_gaps(wall: PatchWall, label: str) -> None:
                  for v in (one[index[k]], other[k])]
         raise InputError(
             "GAP", label, f"the faces form {count} separate pieces: {names[0]} and {names[1]} are {distance[k]:.4g} "
-            "mm apart at "
-            f"{place(wall.vertices[other[k]])}; choose connected faces, edges meeting within {SEWN:g} mm",
+            f"mm apart at {place(wall.vertices[other[k]])}; choose connected faces, edges meeting within {SEWN:g} mm",
         )
 
 
@@ -86,14 +85,14 @@ def _to_segments(points: Array, segments: Array) -> Array:
 
 
 def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
-    """InputError CREASE where two faces meet at an angle, NON_MANIFOLD_WALL where three meet."""
+    """InputError CREASE where two faces meet at an angle, BRANCHING_FACES where three meet."""
     edges = Edges(wall.triangles)
     middle = wall.vertices[edges.ends].mean(axis=1)
     if (edges.count > 2).any():
         at = middle[np.argmax(edges.count > 2)]
         raise InputError(
-            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; a wall branches by smooth faces "
-            "with openings: leave one of them out",
+            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; a wall branches by smooth "
+            "faces with openings: leave one of them out",
         )
     two = edges.count == 2
     pair = wall.patch[edges.faces]
@@ -130,8 +129,9 @@ def refuse_tight(wall: PatchWall, chosen: Mask, height: float, label: str) -> No
     at = int(np.argmin(radius))
     if radius[at] < height * (1.0 - 1e-6):
         raise InputError(
-            "LAYER_HEIGHT", f"{label} {wall.faces[patch[at]]}", f"layers of {height:g} mm are higher than the wall's smallest "
-            f"radius of curvature, {radius[at]:.3g} mm at {place(wall.vertices[at])}; use lower layers, or a larger radius there",
+            "LAYER_HEIGHT", f"{label} {wall.faces[patch[at]]}", f"layers of {height:g} mm are higher than the wall's "
+            f"smallest radius of curvature, {radius[at]:.3g} mm at {place(wall.vertices[at])}; use lower layers, or a "
+            "larger radius there",
         )
 
 

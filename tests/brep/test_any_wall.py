@@ -109,7 +109,8 @@ def test_dome_of_sphere_and_cone():
     cone = Part.makeCone(30.0, 20.0, 40.0)  # runs on from a sphere where their slopes agree
     slope = np.arctan2(10.0, 40.0)
     radius = 20.0 / np.cos(slope)
-    ball = Part.makeSphere(radius, Vector(0, 0, 40.0 - radius * np.sin(slope)), Vector(0, 0, 1), np.degrees(slope), 90.0, 360.0)
+    middle = Vector(0, 0, 40.0 - radius * np.sin(slope))
+    ball = Part.makeSphere(radius, middle, Vector(0, 0, 1), np.degrees(slope), 90.0, 360.0)
     dome = shell(cone.Faces[0], ball.Faces[0])
     wall = wall_on(dome, (), slab(), 4.0)
     sound(wall, dome)
@@ -228,8 +229,9 @@ def tight_pipe():
     (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["3 edges"]),
     (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 30.1)), slab, 4.0, "GAP", ["0.1 mm", "0.01 mm"]),
     (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 33)), slab, 4.0, "GAP", ["separate", "3 mm"]),
-    (lambda: shell(tube(height=30), Part.makeCone(15, 25, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "CREASE", ["18.4 deg"]),
-    (lambda: shell(tube(2.0, 30.0), Part.makeCylinder(2.0, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "LAYER_HEIGHT", ["2 mm"]),
+    (lambda: shell(tube(height=30), Part.makeCone(15, 25, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "CREASE",
+     ["18.4 deg"]),
+    (lambda: shell(tube(2.0, 30.0), moved(tube(2.0, 30.0), 0, 0, 30)), slab, 4.0, "LAYER_HEIGHT", ["2 mm"]),
     (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
 ])
 def test_refusals_by_real_shapes(make, substrate, height, code, words):

@@ -99,7 +99,8 @@ def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Ma
 def count_halved(corners: Array, longest: float) -> float:
     """How many triangles without edges longer than `longest` mm become of triangles with the corners (m, 3, 3), about."""
     square = np.sort(((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2), axis=1)
-    each, count = np.ones(len(square)), 0.0
+    each: Array = np.ones(len(square))
+    count = 0.0
     for _ in range(ROUNDS):
         small = square[:, 2] <= longest**2
         count += each[small].sum()
@@ -114,7 +115,7 @@ def count_halved(corners: Array, longest: float) -> float:
         # alike ones together
         _, first, of = np.unique(np.round(np.log2(np.maximum(np.sort(halves, axis=1), 1e-12)), 1) @ [1e6, 1e3, 1.0],
                                  return_index=True, return_inverse=True)
-        each = np.bincount(np.ravel(of), weights=np.tile(each[~small], 2))
+        each = np.bincount(np.ravel(of), weights=np.tile(each[~small], 2)).astype(np.float64)
         square = np.sort(halves[first], axis=1)
     return float(count)
 
