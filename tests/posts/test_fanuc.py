@@ -401,7 +401,7 @@ def test_speeds_that_cannot_be_written_are_refused(speed):
 
 
 def test_the_catalogue():
-    assert catalogue.load("fanuc") is fanuc and catalogue.NAMES == ("fanuc", "staubli")
+    assert catalogue.load("fanuc") is fanuc and catalogue.NAMES == ("fanuc", "staubli", "siemens", "linuxcnc")
     with pytest.raises(InputError) as raised:
         catalogue.load("fanuk")
     assert raised.value.code == "UNKNOWN_POST" and "'fanuk'" in raised.value.message and "fanuc" in raised.value.message
