@@ -12,6 +12,7 @@ from ..filling.curve import PlaneCurve
 from ..geometry.developable import Array
 from ..geometry.on_hub import Base, SolidsOnHub, downwards, middle_azimuth, upright
 from ..geometry.region import Region
+from ..geometry.strip import Strip
 from ..geometry.surroundings import Body
 from ..issues import InfeasibleError, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
@@ -83,15 +84,17 @@ def _filled(
         ) from None
 
 
-def _deflection(curve: PlaneCurve, regions: Sequence[Region], strategy: DevelopableParameters) -> float:
+def _deflection(curve: PlaneCurve, regions: Sequence[Region | Strip], strategy: DevelopableParameters) -> float:
     """The deflection of the torch to the right of a bead: outwards on outer contours, none on others."""
     if strategy.deflection == 0.0 or curve.kind != "contour" or curve.ring > 0:
         return 0.0
+    if curve.turns:
+        return strategy.deflection  # borders round the hub have the material to their left
     edge = np.roll(curve.points, -1, axis=0) - curve.points
     longest = np.argsort(np.hypot(*edge.T))[-9:]
     right = np.stack([edge[longest, 1], -edge[longest, 0]], axis=1) / np.hypot(*edge[longest].T)[:, None]
     probes = curve.points[longest] + 0.5 * edge[longest] + BESIDE * strategy.bead_spacing * right
-    inside = np.any([region.contains(probes) for region in regions], axis=0)
+    inside = np.any([region.contains(probes) for region in regions if isinstance(region, Region)], axis=0)
     return -strategy.deflection if inside.mean() > 0.5 else strategy.deflection
 
 

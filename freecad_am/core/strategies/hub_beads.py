@@ -19,6 +19,7 @@ from ..parameters.strategy import DevelopableParameters
 from ..process.bead_model import BeadModel
 from ..process.bead_speed import followed, radii
 from ..toolpath import Bead
+from .hub_layers import period
 
 Mask = NDArray[np.bool_]
 
@@ -44,9 +45,10 @@ def rolled(
 
     deflection: rad, of the torch to the right of the bead, besides the tilt.
     """
-    ended = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
+    start = period(surface).moved(curve.points[:1], curve.turns) if curve.turns else curve.points[:1]
+    ended = np.vstack([curve.points, start]) if curve.closed else curve.points
     flat = dense(ended, surface, ROLLED * strategy.chord_error)
-    local = surface.rolled(flat, middle)
+    local = _rolled(flat, surface, middle)
     if curve.closed:
         local[-1] = local[0]
     normal = _unit(surface.normals(local))
@@ -60,7 +62,7 @@ def rolled(
         points, base.turned(normal), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
         curve.closed,
     )
-    return Rolled(bead) if model is None else _at_speed(bead, flat, process, model)
+    return Rolled(bead) if model is None else _at_speed(bead, flat, curve.closed and not curve.turns, process, model)
 
 
 def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
@@ -71,7 +73,7 @@ def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
     flat = flat[np.r_[True, np.linalg.norm(np.diff(flat, axis=0), axis=1) > CLOSE]]
     edge = np.diff(flat, axis=0)
     length = np.linalg.norm(edge, axis=1)
-    theta, z = surface.unrolled(flat)
+    theta, z = _unrolled(flat, surface)
     phi = theta * math.sin(surface.taper)
     heading = np.arctan2(edge[:, 1], edge[:, 0])
     share = np.maximum(np.abs(np.cos(heading - phi[:-1])), np.abs(np.cos(heading - phi[1:])))
@@ -85,6 +87,22 @@ def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
     number = np.arange(len(start)) - np.repeat(np.cumsum(count) - count, count)
     points: Array = flat[start] + (number / count[start])[:, None] * edge[start]
     return np.vstack([points, flat[-1:]])
+
+
+def _unrolled(flat: Array, surface: Developable) -> tuple[Array, Array]:
+    """Azimuth and height (n,) along a curve (n, 2) on the plane, the azimuth counted on where the curve goes far round."""
+    theta, z = surface.unrolled(flat)
+    if surface.is_cylinder:
+        return theta, z
+    sine = math.sin(surface.taper)
+    return np.unwrap(theta * sine) / sine, z
+
+
+def _rolled(flat: Array, surface: Developable, middle: float) -> Array:
+    theta, z = _unrolled(flat, surface)
+    rho = np.full(len(z), surface.radius) if surface.is_cylinder else (surface.height - z) * math.tan(surface.taper)
+    angle = theta + middle
+    return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
 
 
 def directed(normal: Array, along: Array, build: BuildDirectionParameters, deflection: float) -> Array:
@@ -107,11 +125,11 @@ def _along(points: Array, normal: Array, closed: bool) -> Array:
     return _unit(mean - (mean * normal).sum(axis=1)[:, None] * normal)
 
 
-def _at_speed(bead: Bead, flat: Array, process: ProcessParameters, model: BeadModel) -> Rolled:
-    """The bead, laid flat (n, 2), at the speeds that keep its width."""
-    radius = radii(flat, bead.closed, process.bead_width)
+def _at_speed(bead: Bead, flat: Array, closed: bool, process: ProcessParameters, model: BeadModel) -> Rolled:
+    """The bead, laid flat (n, 2) where it may be closed or not, at the speeds that keep its width."""
+    radius = radii(flat, closed, process.bead_width)
     asked = model.speed_for(process.bead_width, radius)
-    speed = followed(flat, asked.speed, bead.closed, process.acceleration)
+    speed = followed(flat, asked.speed, closed, process.acceleration)
     segment = np.r_[speed[0], 0.5 * (speed[:-1] + speed[1:])]
     return Rolled(
         replace(bead, speed=segment, width=model.widths(speed, radius)), model.heights(speed, radius),

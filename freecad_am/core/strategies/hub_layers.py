@@ -7,14 +7,12 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ..filling.contours import contours
 from ..filling.curve import Beads, PlaneCurve
-from ..filling.lines import lines
-from ..filling.spiral import spiral
-from ..filling.zigzag import zigzag
-from ..geometry.developable import Array, Developable
+from ..filling.fill import fill
+from ..geometry.developable import TURN, Array, Developable
 from ..geometry.on_hub import Base, middle_azimuth
 from ..geometry.region import Region, mended, regions
+from ..geometry.strip import Period, Strip, strips
 from ..geometry.surroundings import Body
 from ..issues import InputError, Issue
 from ..parameters.process import ProcessParameters
@@ -31,7 +29,7 @@ class Slice(NamedTuple):
     layer: int
     surface: Developable
     middle: float
-    regions: tuple[Region, ...]
+    regions: tuple[Region | Strip, ...]
     issues: tuple[Issue, ...]
 
 
@@ -48,23 +46,31 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
         loops = cut(facets, layer * height, CUT * error)
         where = f"{body.name} layer {layer}"
         surface = base.surface.offset(layer * height)
-        _refuse_round(loops, where)
+        _refuse_apex(loops, where)
         below.append(loops)
         near = _within_margin(base.surface, below, height, strategy.margin)
-        flat = opened(surface, [loop for _, some in near for loop in some], centre, where)
-        found, issues = _grown(near, flat.loops, strategy, layer)
-        if found:
-            yield Slice(layer, surface, flat.middle, found, issues)
+        if any(loop.turns for _, some in near for loop in some):
+            one = Slice(layer, surface, 0.0, _all_round(near, surface, strategy), ())
+        else:
+            flat = opened(surface, [loop for _, some in near for loop in some], centre, where)
+            one = Slice(layer, surface, flat.middle, *_grown(near, flat.loops, strategy, layer))
+        if one.regions:
+            yield one
 
 
-def _refuse_round(loops: Sequence[Loop], where: str) -> None:
+def period(surface: Developable) -> Period:
+    """What a turn round the hub is on the plane."""
+    if surface.is_cylinder:
+        return Period(TURN * surface.radius)
+    return Period(surface.flat_turn, surface.slant)
+
+
+def _refuse_apex(loops: Sequence[Loop], where: str) -> None:
     if sum(loop.turns for loop in loops):
         raise InputError(
             "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, where equidistant surfaces have "
             "an apex or an end; let it end beside the axis",
         )
-    if any(loop.turns for loop in loops):
-        raise InputError("NOT_YET", where, "a solid all the way round the hub is not supported yet; divide it")
 
 
 def _within_margin(
@@ -104,6 +110,17 @@ def _grown(
     return tuple(region.simple(BORDER * strategy.chord_error) for region in whole), issues
 
 
+def _all_round(
+    near: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: DevelopableParameters
+) -> tuple[Region | Strip, ...]:
+    """The strips and regions of a layer that runs all the way round the hub; above what ends below there is no margin."""
+    margin, loops = next((entry for entry in near if entry[1]), near[0])
+    found = strips([(surface.flat(loop.points), loop.turns) for loop in loops], period(surface))
+    if margin == 0.0:
+        return found
+    return tuple(part for one in found for part in one.grown(margin, ARCS * strategy.chord_error))
+
+
 def filled(one: Slice, centre: float, strategy: DevelopableParameters, process: ProcessParameters) -> list[PlaneCurve]:
     """The beads of a layer on the plane. InfeasibleError THIN_REGION."""
     seam = process.seam.angle + one.layer * process.seam.step
@@ -113,14 +130,6 @@ def filled(one: Slice, centre: float, strategy: DevelopableParameters, process: 
         process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error,
     )
     angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
-    curves: list[PlaneCurve] = []
-    for region in one.regions:
-        if strategy.fill == "contours":
-            curves += contours(region, beads)
-        elif strategy.fill == "spiral":
-            curves += spiral(region, beads)
-        elif strategy.fill == "lines":
-            curves += lines(region, beads, angle, strategy.contour)
-        else:
-            curves += zigzag(region, beads, angle, strategy.contour)
-    return curves
+    return [
+        curve for region in one.regions for curve in fill(region, beads, strategy.fill, angle, strategy.contour)
+    ]
