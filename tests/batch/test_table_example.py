@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A dome on a five-axis table, from its job to the controller's texts; these driven by the trunnion's own formulas."""
+
+import csv
+import json
+import math
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+RADIUS, PLATFORM, SPEED = 45.0, 60.0, 5.0
+Y_OFFSET, Z_OFFSET = 20.0, 10.0
+WORDS = re.compile(r"([A-Z])(-?\d+\.?\d*)")
+
+
+@pytest.fixture
+def planned(workshop, root):
+    """Plans the example, its job changed: report, rows of waypoints.csv, texts by name, the folder."""
+
+    def run(change=lambda text: text):
+        folder = root / "resources" / "examples"
+        shutil.copy(folder / "hemisphere.step", workshop.folder)
+        text = change((folder / "hemisphere-on-table.yaml").read_text(encoding="utf-8"))
+        (workshop.folder / "dome.yaml").write_text(text, encoding="utf-8")
+        done = workshop.run("plan", "dome.yaml", "-o", "out")
+        assert done.status == 0, done.err
+        out = workshop.folder / "out"
+        with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+        return json.loads((out / "report.json").read_text(encoding="utf-8")), rows, texts, out
+
+    return run
+
+
+def column(rows, *names):
+    return np.array([[float(row[name]) for name in names] for row in rows])
+
+
+def moves_of(texts):
+    """X Y Z A C, the time (s) of the move and whether the deposit is on, of each G1 in inverse time, in order of name."""
+    last, found, on, inverse = {}, [], False, False
+    for name in sorted(texts):
+        for line in texts[name].splitlines():
+            if line.startswith("("):
+                continue
+            inverse = (inverse or "G93" in line) and "G94" not in line
+            if re.search(r"M6[24] P0", line):
+                on = True
+            if re.search(r"M6[35] P0", line):
+                on = False
+            if "G1 " in line:
+                assert inverse
+                last |= {letter: float(value) for letter, value in WORDS.findall(line)}
+                found.append([*(last[letter] for letter in "XYZAC"), 60.0 / last["F"], on])
+    return np.array(found)
+
+
+def in_part(moves):
+    """Tip and torch direction in the part's coordinates: the trunnion's formulas, solved for them."""
+    x, y, z = moves[:, :3].T
+    a, c = np.radians(moves[:, 3:5].T)
+    v, w = y - Y_OFFSET, z - Z_OFFSET
+    yr, zt = np.cos(a) * v + np.sin(a) * w + Y_OFFSET, -np.sin(a) * v + np.cos(a) * w + Z_OFFSET
+    tip = np.stack([np.cos(c) * x + np.sin(c) * yr, -np.sin(c) * x + np.cos(c) * yr, zt - PLATFORM], axis=1)
+    return tip, np.stack([np.sin(c) * np.sin(a), np.cos(c) * np.sin(a), np.cos(a)], axis=1)
+
+
+def test_the_text_lays_the_dome(planned):
+    report, rows, texts, _ = planned()
+    moves = moves_of(texts)
+    on = moves[:, 6] > 0.0
+    tip, tool = in_part(moves)
+    np.testing.assert_allclose(np.linalg.norm(tip[on], axis=1), RADIUS, atol=1e-3)
+    wanted = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
+    np.testing.assert_allclose(tip[on], column(wanted, "x_mm", "y_mm", "z_mm"), atol=2e-4)
+    np.testing.assert_allclose(tool[on], column(wanted, "tx", "ty", "tz"), atol=1e-6)
+    # as fast along the bead as asked for, at every point; where the wall closes slower, and said so
+    ends = np.flatnonzero(on)
+    way = np.linalg.norm(tip[ends] - tip[ends - 1], axis=1)
+    asked = column(wanted, "speed_mm_s")[:, 0]
+    np.testing.assert_allclose(way / moves[ends, 5], asked, rtol=2e-3)
+    slowed = asked < SPEED - 1e-9
+    assert slowed.any() == any(issue["code"] == "SLOWED" for issue in report["issues"]) and slowed.mean() < 0.02
+    assert np.abs(moves[on, 3]).max() > 60.0  # the table tilts
+    # no axis faster than it can
+    rate = np.abs(np.diff(moves[:, :5], axis=0)) / moves[1:, 5:6]
+    assert (rate.max(axis=0) <= np.array([200, 200, 200, 90, 180]) * 1.001).all()
+
+
+def test_what_is_told_of_axes_is_in_their_units(planned):
+    report, rows, _, out = planned(lambda text: text.replace("layer_height: 2 mm", "layer_height: 5 mm"))
+    assert report["machine"]["axes"] == ["mx", "my", "mz", "a", "c"]
+    assert report["machine"]["units"] == ["mm", "mm", "mm", "deg", "deg"]
+    assert list(rows[0])[-5:] == ["mx_mm", "my_mm", "mz_mm", "a_deg", "c_deg"]
+    axes = column([row for row in rows if row["kind"] == "deposit"], *list(rows[0])[-5:])
+    joints = report["joints"]
+    np.testing.assert_allclose(joints["min_deg"], axes.min(axis=0), atol=1e-6)
+    np.testing.assert_allclose(joints["max_deg"], axes.max(axis=0), atol=1e-6)
+    assert joints["limit_margin_deg"][0] == pytest.approx(500.0 - np.abs(axes[:, 0]).max(), abs=1e-6)
+    assert joints["limit_margin_deg"][4] is None and joints["condition_min"] is None and joints["branch"] == []
+    assert all(0.0 <= share <= 1.0 for share in joints["speed_ratio_max"])
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "mx, mm" in page and "largest speed, deg/s or mm/s" not in page  # one method: no table of methods
+    assert ">mm</text>" in page and "above the limit of 500 mm" in page and "c (endless)" in page
+    assert "smallest condition" not in page and "Condition of the Jacobian" not in page
+
+
+@pytest.mark.parametrize("machine, motion", [
+    ("table-xyzac", "joint"), ("table-xyzbc", "joint"), ("head-table-xyzbc", "joint"), ("table-xyzac", "cartesian"),
+])
+def test_sinumerik_texts_of_tables_and_heads(planned, machine, motion):
+    def change(text):
+        return (text.replace("linuxcnc", "siemens").replace("motion: joint", f"motion: {motion}")
+                .replace("table-xyzac", machine).replace("layer_height: 2 mm", "layer_height: 8 mm"))
+
+    report, rows, texts, _ = planned(change)
+    assert report["status"] == "ok" and all(name.upper() == name for name in texts)
+    deposit = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
+    lines = [line for name in sorted(texts) for line in texts[name].splitlines() if " G1 " in line]
+    if motion == "cartesian":
+        told = [dict(re.findall(r"\b([XYZ]|[ABC]3)=?(-?\d+\.\d+)", line)) for line in lines if "A3=" in line]
+        np.testing.assert_allclose(column(told, "X", "Y", "Z"), column(deposit, "x_mm", "y_mm", "z_mm"), atol=6e-6)
+        np.testing.assert_allclose(column(told, "A3", "B3", "C3"), column(deposit, "tx", "ty", "tz"), atol=6e-7)
+        return
+    names = [name for name in rows[0] if name[:2] in ("mx", "my", "mz", "a_", "b_", "c_")]
+    moved = column([row for row in rows if row["kind"] == "rapid" or row["point"] != "0"], *names)
+    letters = [name.split("_")[0][-1].upper() for name in names]
+    told = [dict(re.findall(r"\b([XYZABC])(?:=DC\()?(-?\d+\.\d+)", line)) for line in lines]
+    apart = column(told, *letters) - moved
+    turn = letters.index("C")  # DC takes the shorter way to an angle of one turn
+    apart[:, turn] -= 360.0 * np.round(apart[:, turn] / 360.0)
+    assert np.abs(apart).max() < 6e-6 and np.abs(np.diff(moved[:, turn])).max() < 180.0
+
+
+def test_four_axes_are_told_with_what_they_miss(planned):
+    report, rows, _, _ = planned(lambda text: text + "joints:\n  lock: first\n  lock_at: -40 deg\n  max_residual: 50 deg\n")
+    note = next(issue for issue in report["issues"] if issue["code"] == "FOUR_AXES")
+    assert note["level"] == "note" and "axis a stands at -40 deg" in note["message"]
+    assert set(column(rows, "a_deg")[:, 0].round(6)) == {-40.0}
+    tool = column([row for row in rows if row["kind"] == "deposit"], "tx", "ty", "tz")
+    np.testing.assert_allclose(tool[:, 2], math.cos(math.radians(40.0)), atol=1e-9)
