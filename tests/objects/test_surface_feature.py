@@ -112,7 +112,7 @@ def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
 def test_needs_a_solid_substrate(doc, tube):
     with pytest.raises(InputError) as caught:
         api.make_surface_feature(doc, tube[0], ["Face1"])
-    assert caught.value.code == "NO_INPUT"
+    assert caught.value.code == "NO_SUBSTRATE" and "edges to start from" in caught.value.message
     plane = doc.addObject("Part::Plane", "Plane")
     doc.recompute()
     with pytest.raises(InputError) as caught:
