@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is written for SINUMERIK and LinuxCNC: files to the byte, feeds, parts, names, and what is refused."""
+
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
+from freecad_am.posts import catalogue, linuxcnc, nc_numbers, siemens
+from tests.posts.nc_programs import moves, program, random_program, with_options
+
+POSTS = (siemens, linuxcnc)
+
+
+def text(files):
+    (content,) = files.values()
+    return content.decode("ascii")
+
+
+def refusal(post, of, *, code, where=None):
+    with pytest.raises(InputError) as raised:
+        post.write(of)
+    assert raised.value.code == code and where in (None, raised.value.where)
+    return raised.value.message
+
+
+# a ring on a cone: only C turns; then a line along it: C stands still
+RING = [[10.0, 0.00001 * (n % 2), 5.0, -20.0, 15.0 * n] for n in range(4)]
+LINE = [[12.0 + n, 0.25 * n, 5.0, -20.0, 60.0] for n in range(3)]
+JOINT = program(
+    LayerStart(0),
+    moves("rapid", [[10.0, 0.0, 55.0, -20.0, 0.0], [10.0, 0.0, 5.0, -20.0, 0.0]], [10.0, 0.8]),
+    DepositOn(0.5), moves("deposit", RING[1:], [0.5, 0.5, 0.4]), DepositOff(0.25),
+    Wait(12.5), WaitInput(3), Call("clean"),
+    LayerStart(1),
+    moves("rapid", LINE[:1], 1.0, layer=1), DepositOn(), moves("deposit", LINE[1:], [0.2, 0.25], layer=1), DepositOff(),
+    moves("rapid", [[14.0, 0.5, 55.0, -20.0, 60.0]], 1.0, layer=1),
+    name="Joint", remarks=('A remark (in brackets) with "marks": Größe',), deposit_output=3,
+)  # fmt: skip
+
+
+def tip_bead(layer):
+    tilt = np.radians([10.0, 11.0, 12.0])
+    directions = np.stack([np.sin(tilt), np.zeros(3), np.cos(tilt)], axis=1)
+    axes = [[10.0, 0.25, 5.0, 10.0, 90.0], [11.0, 0.25, 5.0, 11.0, 90.0], [12.0, 0.5, 5.0, 12.0, 91.0]]
+    return [
+        LayerStart(layer), moves("rapid", axes[:1], layer=layer), DepositOn(0.5),
+        moves("deposit", axes, layer=layer, speed=5.0, direction=directions,
+              position=[[10.0, 0.0, 1.0], [11.0, 0.25, 1.0 + layer], [-12.5, 0.0, 1.0]]),
+        DepositOff(),
+    ]  # fmt: skip
+
+
+def as_arrays(block):
+    return dataclasses.replace(block, position=np.array(block.position)) if isinstance(block, Moves) and block.position else block
+
+
+TIP = program(*map(as_arrays, [*tip_bead(0), *tip_bead(1)]), name="tip", motion="cartesian", max_points=5, user_frame=2,
+              endless=(False,) * 4 + (True,))  # fmt: skip
+GOLDENS = {"joint": JOINT, "path": with_options(JOINT, path_feed=True), "tip": TIP}
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+@pytest.mark.parametrize("name", GOLDENS)
+def test_golden_programs_to_the_byte(root, name, post):
+    folder = root / "tests/golden" / post.__name__.rpartition(".")[2] / name
+    assert post.write(GOLDENS[name]) == {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+def test_random_programs_come_back(post, seed, motion, feed):
+    of = with_options(random_program(seed, motion, seed % 2 == 1), path_feed=feed)
+    files = post.write(of)
+    assert files == post.write(of)  # the same bytes
+    read = post.read(files)
+    joints, duration, speed = (np.concatenate([getattr(run, key) for run in of.moves]) for key in ("joints", "duration", "speed"))
+    deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
+    tip = deposit & (motion == "cartesian")
+    assert read.deposit.tolist() == deposit.tolist()
+    assert (read.linear_digits, read.digits) == pytest.approx((5e-6, math.radians(5e-6)))
+    apart = read.joints - joints
+    if post is siemens:  # an endless axis tells no turns
+        assert read.shorter_way.tolist() == list(of.endless)
+        apart[:, 4] -= 2.0 * np.pi * np.rint(apart[:, 4] / (2.0 * np.pi)) * of.endless[4]
+    told = np.isfinite(apart)
+    assert (told[~tip].all(), told[tip, :3].any(), told[tip, 3:].all()) == (True, False, post is linuxcnc or not tip.any())
+    assert np.abs(apart[:, :3][told[:, :3]]).max() <= 5e-6 + 1e-9 and np.abs(apart[:, 3:][told[:, 3:]]).max() < 8.8e-8
+    timed = np.isfinite(read.duration)
+    assert (timed == ~tip).all()
+    moving = timed & (np.abs(np.diff(np.round(joints, 9), axis=0, prepend=0.0)).max(axis=1) > 0.0)
+    assert (np.abs(read.duration - duration) <= read.duration_digits + 1e-9 * duration)[moving].all()
+    assert (read.duration_digits / duration)[moving].max() <= 5.1e-7  # seven digits
+    if motion == "cartesian":
+        position, direction = (np.concatenate([getattr(run, key) for run in of.moves]) for key in ("position", "direction"))
+        assert np.abs(read.position - position)[tip].max() <= 5e-6 + 1e-9 and np.isnan(read.position[~tip]).all()
+        assert (np.abs(read.speed - speed) / speed)[tip].max() < 1e-6 and np.isnan(read.speed[~tip]).all()
+        if post is siemens:
+            assert np.abs(read.direction - direction)[tip].max() < 1.5e-6 and read.direction_digits == pytest.approx(5e-7)
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+def test_the_parts_of_a_program_are_the_program(post):
+    for seed, motion in ((0, "joint"), (1, "cartesian"), (2, "joint")):
+        files = [post.write(random_program(seed, motion, max_points=most)) for most in (10**5, 45)]
+        assert len(files[0]) == 1 and len(files[1]) > 2
+        whole, parts = map(post.read, files)
+        for field in dataclasses.fields(whole):
+            np.testing.assert_array_equal(getattr(parts, field.name), getattr(whole, field.name), field.name)
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+@pytest.mark.parametrize("motion", ["joint", "cartesian"])
+def test_a_dry_run_moves_the_same_and_switches_nothing(post, motion):
+    of = random_program(5, motion, max_points=10**4, deposit_output=7)
+    wet, dry = text(post.write(of)), text(post.write(dataclasses.replace(of, dry_run=True)))
+    assert "dry run: no deposit" in dry and not re.search(r"H7=|M6[2-5]|G4 [FP](?:0\.[2-9]|1\.250)", dry)
+    assert [line.partition("G1 ")[2] for line in wet.split("\n") if "G1 " in line] == [
+        line.partition("G1 ")[2] for line in dry.split("\n") if "G1 " in line
+    ]
+    assert not post.read(post.write(dataclasses.replace(of, dry_run=True))).deposit.any()
+
+
+def test_only_speeds_are_compressed():
+    """Compressed blocks have the F of the last one: right for a speed, wrong for a time."""
+    for motion, feed, compress in (("joint", False, True), ("cartesian", False, True), ("cartesian", False, False)):
+        of = with_options(random_program(3, motion, max_points=10**4), path_feed=feed, compress=compress)
+        written = text(siemens.write(of))
+        assert ("COMPCAD" in written) == (compress and (motion == "cartesian"))
+        for inside in re.findall(r"COMPCAD\n(.*?)COMPOF", written, re.DOTALL):
+            assert re.fullmatch(r"(?:N\d+ (?:G9 )?G1 X\S+ Y\S+ Z\S+ A3=\S+ B3=\S+ C3=\S+ F\S+\n)+N\d+ $", inside)
+    line = with_options(JOINT, path_feed=True)
+    assert text(siemens.write(line)).count("COMPCAD") == 1  # the ring tells times, the line speeds
+    assert "COMPCAD" not in text(siemens.write(dataclasses.replace(line, nc=dataclasses.replace(line.nc, compress=False))))
+
+
+def test_path_feeds_are_speeds_of_the_linear_axes():
+    """Dai 2020, section 3: V_s; by hand from the line of the golden program."""
+    step = math.hypot(1.0, 0.25)
+    for post in POSTS:
+        feeds = re.findall(r"G1 X1[34].* F([\d.]+)\n", text(post.write(with_options(JOINT, path_feed=True))))
+        # two moves of the bead, then a rapid of one second
+        assert [float(feed) for feed in feeds] == pytest.approx([60.0 * step / 0.2, 60.0 * step / 0.25, 60.0], rel=1e-6)
+
+
+def test_linuxcnc_is_told_the_speed_of_slow_moves():
+    """Its interpreter takes 0.1 mm/min where the time asks for less: on a ring the linear axes go 0.00001 mm."""
+    written = text(linuxcnc.write(JOINT))
+    ring = re.findall(r"\n((?:G9[34] )?)G1 X10.00000 \S+ Z5.00000 \S+ C(?:15|30|45)\.\S+ F(\S+)", written)
+    assert [float(feed) for _, feed in ring] == pytest.approx([60.0 * 0.00001 / 0.5] * 2 + [60.0 * 0.00001 / 0.4], rel=1e-6)
+    assert "G94\nG1 X10.00000 Y0.00001" in written
+    assert linuxcnc.read(linuxcnc.write(JOINT)).duration[2:5] == pytest.approx([0.5, 0.5, 0.4], rel=1e-6)
+    assert "G94" not in text(siemens.write(JOINT))
+
+
+@pytest.mark.parametrize("value", [1e-9, 0.001, 0.99999999, 1.0, 123.4567891, 999999.0])
+def test_feeds_have_seven_digits_and_no_exponent(value):
+    word = nc_numbers.feed(value)
+    assert re.fullmatch(r"F\d+(?:\.\d+)?", word) and float(word[1:]) == pytest.approx(value, rel=5.1e-7)
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+def test_times_and_speeds_that_cannot_be_written(post):
+    def ring(duration):
+        return program(moves("rapid", RING[0]), DepositOn(), moves("deposit", RING[1], duration, layer=2, bead=1), DepositOff())
+
+    for duration in (0.0, 5e-5, 6.1e4, math.nan):
+        assert "cannot be written" in refusal(post, ring(duration), code="MOVE_TIME", where="layer 2 bead 1")
+    post.write(ring(7e-5))
+    for speed in (0.0, 1e-6, 2e4, math.nan):
+        blocks = [dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b for b in TIP.blocks]
+        refusal(post, dataclasses.replace(TIP, blocks=tuple(blocks)), code="MOVE_SPEED", where="layer 0 bead 0")
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+def test_words_that_switch_the_deposit(post):
+    of = with_options(random_program(2, max_points=10**4), deposit_on="M7", deposit_off="M9")
+    written = text(post.write(of))
+    assert "M7\n" in written and "M9\n" in written and not re.search(r"H\d+=|M6[45]", written)
+    assert post.read(post.write(of)).deposit.tolist() == post.read(post.write(random_program(2, max_points=10**4))).deposit.tolist()
+    for word in ("M30", "M02", "M6"):
+        refusal(post, with_options(of, deposit_on=word, deposit_off="M9"), code="DEPOSIT_WORD", where="program.nc.deposit_on")
+    other = with_options(of, deposit_on="H2=1", deposit_off="H2=0")
+    if post is linuxcnc:
+        refusal(post, other, code="DEPOSIT_WORD")
+    else:
+        assert "H2=1\n" in text(post.write(other))
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+def test_what_cannot_be_said_is_refused(post):
+    still = program(moves("rapid", RING))
+    refusal(post, dataclasses.replace(still, setup="part-on-robot"), code="UNSUPPORTED_SETUP", where="cell.setup")
+    refusal(post, dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", "D")), code="UNSUPPORTED_AXES", where="cell.machine")
+    refusal(post, dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", "A")), code="UNSUPPORTED_AXES", where="cell.machine")
+    refusal(post, dataclasses.replace(still, axis_names=()), code="UNSUPPORTED_AXES", where="program.post")
+    refusal(post, program(LayerStart(0)), code="NOTHING_TO_WRITE")
+    refusal(post, program(moves("rapid", [0, 0, math.nan, 0, 0])), code="UNREACHABLE")
+    refusal(post, dataclasses.replace(JOINT, motion="cartesian"), code="NO_POSITIONS", where="program.motion")
+    refusal(post, dataclasses.replace(JOINT, deposit_output=100), code="DEPOSIT_OUTPUT", where="program.deposit_output")
+    where = "process.between_layers.input"
+    refusal(post, program(moves("rapid", RING), WaitInput(65)), code="DEPOSIT_INPUT", where=where)
+    assert "has 4 points" in refusal(
+        post, program(*(b for n in range(3) for b in (moves("rapid", RING, bead=n), DepositOn(), DepositOff())), max_points=3),
+        code="BEAD_TOO_LONG", where="program.max_points",
+    )
+
+
+def test_what_one_controller_alone_cannot_say():
+    assert "two" not in refusal(linuxcnc, dataclasses.replace(TIP, user_frame=9), code="UNSUPPORTED_FRAME", where="program.user_frame")
+    tilted = dataclasses.replace(TIP, carried=(0.0, 0.0, 0.0, 0.1, 0.0, 0.0))
+    refusal(linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin")
+    siemens.write(tilted)
+    fixed = with_options(TIP, switch_kinematics=False)
+    refusal(linuxcnc, fixed, code="NO_TIP_KINEMATICS", where="program.nc.switch_kinematics")
+    assert "M42" not in text(linuxcnc.write(with_options(JOINT, switch_kinematics=False)))
+    turns = [[0.0, 0.0, 0.0, 0.0, angle] for angle in (0.0, 179.0, 359.5)]
+    endless = program(moves("rapid", turns), endless=(False,) * 4 + (True,))
+    assert "C turns 180.5 deg" in refusal(siemens, endless, code="ENDLESS_STEP", where="layer 0 bead 0")
+    linuxcnc.write(endless)
+
+
+@pytest.mark.parametrize(("user_frame", "word"), [(0, "G500"), (1, "G54"), (4, "G57"), (5, "G505"), (61, "G561")])
+def test_work_offsets_of_sinumerik(user_frame, word):
+    of = dataclasses.replace(TIP, user_frame=user_frame, max_points=100)
+    written = text(siemens.write(of))
+    assert f" {word}\nN" in written and siemens.read(siemens.write(of)).position is not None
+
+
+def test_the_angles_of_a_work_offset_are_the_controllers():
+    """Z, then the new Y, then the new X, against rotations multiplied here."""
+    from scipy.spatial.transform import Rotation
+
+    rng = np.random.default_rng(3)
+    for bryant in [*rng.uniform(-3.0, 3.0, (20, 3)), np.array([0.3, math.pi / 2.0, 0.2]), np.zeros(3)]:
+        of = dataclasses.replace(TIP, carried=(1.0, 2.0, 3.0, *bryant))
+        found = re.search(r"then Z (\S+) Y (\S+) X (\S+) deg", siemens.write(of)["TIP.MPF"].decode())
+        told = Rotation.from_euler("ZYX", [float(angle) for angle in found.groups()], degrees=True)
+        assert (told.inv() * Rotation.from_euler("XYZ", bryant)).magnitude() < 3e-6
+
+
+@pytest.mark.parametrize(("post", "name", "why", "proposal"), [
+    (siemens, "", "empty", "AM"), (siemens, "my part", "letters", "MY_PART"), (siemens, "Größe", "letters", "GROSSE"),
+    (siemens, "x10", "two letters", "AM_X10"), (siemens, "_1", "two letters", "AM_1"), (siemens, "x" * 25, "24 characters", "X" * 21),
+    (siemens, "traori", "reserved", "AM_TRAORI"), (siemens, "con", "reserved", "AM_CON"),
+    (linuxcnc, "", "empty", "am"), (linuxcnc, "my part", "letters", "my_part"), (linuxcnc, "Größe", "letters", "grosse"),
+    (linuxcnc, "2nd", "start with a letter", "am_2nd"), (linuxcnc, "x" * 31, "30 characters", "x" * 27), (linuxcnc, "Con", "reserved", "am_con"),
+])  # fmt: skip
+def test_names_the_controllers_refuse(post, name, why, proposal):
+    message = refusal(post, dataclasses.replace(JOINT, name=name), code="PROGRAM_NAME", where="name")
+    assert why in message and message.endswith(f"use {proposal!r}")
+    post.write(dataclasses.replace(JOINT, name=proposal))
+
+
+def test_names_of_parts_and_calls_of_own_programs():
+    for post, longest in ((siemens, 24), (linuxcnc, 30)):
+        post.write(dataclasses.replace(TIP, name="x" * (longest - 2)))
+        assert "2 digits" in refusal(post, dataclasses.replace(TIP, name="x" * (longest - 1)), code="PROGRAM_NAME", where="name")
+        for called in ("Tip", "tip02", "two words"):
+            of = dataclasses.replace(TIP, blocks=(*TIP.blocks, Call(called)))
+            refusal(post, of, code="PROGRAM_NAME", where="process.between_layers.call")
+        post.write(dataclasses.replace(TIP, blocks=(*TIP.blocks, Call("tip03"))))
+
+
+def test_remarks_are_plain_and_carry_nothing_out():
+    of = dataclasses.replace(JOINT, remarks=("msg, (debug, x) Größe\n; M30", "py,import os"))
+    for post in POSTS:
+        written = text(post.write(of))
+        assert all(len(line) < 120 for line in written.split("\n")) and "Grosse" in written
+        assert post.read(post.write(of)).deposit.any()
+    assert "(remark: msg, [debug, x] Grosse ; M30)" in text(linuxcnc.write(of))
+
+
+def test_the_catalogue():
+    assert catalogue.load("siemens") is siemens and catalogue.load("linuxcnc") is linuxcnc

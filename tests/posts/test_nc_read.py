@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Five-axis programs by hand read back, and what is not understood is refused at its place."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.posts import linuxcnc, siemens
+
+# as others write them: short numbers, words in another order, lower case, remarks behind blocks
+MAIN = """; by hand
+N10 G17 G40 G710 G90 G54 D2
+N20 PART_1 ; the path
+N30 CLEANING
+N40 M30
+"""
+PART = """N5 G500
+N10 G642
+N15 FGROUP(X,Y,Z)
+N20 G93 G1 x10 Y0.25 Z5 a-12.5 C=45 F6 ; first
+N30 G94
+N40 G1 X13 Y4.25 Z5 A-12.5 C=DC(50.0) F60
+N50 G54
+N55 TRAORI
+N60 ORIWKS ORIVECT
+N70 $A_OUT[2]=1
+N75 G4 F.5
+N80 COMPCAD
+N90 G1 X1.5 Y2 Z-3.125 A3=0 B3=0.6 C3=0.8 F300
+N95 COMPOF
+N100 $A_OUT[2]=0
+N110 TRAFOOF
+N120 G500
+N130 G93
+N140 G9 G1 X14 Y5 Z5 A-10 C=DC(51.25) F120
+N145 WHILE $A_IN[4]==0
+N146 G4 F0.1
+N147 ENDWHILE
+N150 M17
+"""
+NGC = """(by hand)
+g21 G90 G17 G40
+G64 P0.01
+G43 H2
+G10 L2 P9 X0 Y0 Z0 A0 C0 R0
+M429 (axes)
+G59.3
+G93 G1 X10 Y0.25 Z5 A-12.5 C45 F6
+G94 G1 X13 Y4.25 Z5 A-12.5 C405.5 F60
+G1 X13 Y4.25 Z5 A-12.5 C400.5 F10
+M428
+G54
+M62 P3
+G1 X1.5 Y2 Z-3.125 A-10 C400 F300
+M63 P3
+M429
+G59.3
+o<cleaning> call
+G21 G90
+G10 L2 P9 X0 Y0 Z0 A0 C0 R0
+M66 P2 L3 Q100
+G4 P1
+G59.3 G93 G1 X14 Y5 Z5 A-10 C401.25 F120
+M2
+"""
+
+
+def mpf(old="", new=""):
+    files = {"HAND.MPF": MAIN, "PART_1.SPF": PART}
+    assert not old or sum(old in text for text in files.values()) == 1
+    return {name: text.replace(old, new, 1).encode() for name, text in files.items()}
+
+
+def ngc(old="", new=""):
+    assert old in NGC
+    return {"hand.ngc": NGC.replace(old, new, 1).encode()}
+
+
+def test_a_sinumerik_program_by_hand():
+    read = siemens.read(mpf())
+    shown = read.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
+    np.testing.assert_allclose(
+        shown[[0, 1, 3]], [[10, 0.25, 5, -12.5, 45], [13, 4.25, 5, -12.5, 50], [14, 5, 5, -10, 51.25]], atol=1e-12
+    )
+    assert np.isnan(shown[2]).all() and np.isnan(read.position[[0, 1, 3]]).all() and np.isnan(read.direction[[0, 1, 3]]).all()
+    np.testing.assert_allclose(read.position[2], [1.5, 2.0, -3.125])
+    np.testing.assert_allclose(read.direction[2], [0.0, 0.6, 0.8])
+    np.testing.assert_allclose(read.duration, [10.0, 5.0, np.nan, 0.5])  # 5 mm at 60 mm/min
+    np.testing.assert_allclose(read.speed, [np.nan, np.nan, 5.0, np.nan])
+    assert read.deposit.tolist() == [False, False, True, False] and read.shorter_way.tolist() == [False] * 4 + [True]
+    assert (read.linear_digits, np.degrees(read.digits), read.direction_digits) == pytest.approx((0.5, 0.5, 0.5))
+
+
+def test_a_linuxcnc_program_by_hand():
+    read = linuxcnc.read(ngc())
+    shown = read.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
+    np.testing.assert_allclose(shown[:3, 4], [45, 405.5, 400.5])
+    np.testing.assert_allclose(shown[3], [np.nan, np.nan, np.nan, -10, 400])
+    np.testing.assert_allclose(shown[4], [14, 5, 5, -10, 401.25])
+    np.testing.assert_allclose(read.position[3], [1.5, 2.0, -3.125])
+    # 5 mm at 60 mm/min; 5 deg at 10 deg/min where the linear axes stand still
+    np.testing.assert_allclose(read.duration, [10.0, 5.0, 30.0, np.nan, 0.5])
+    np.testing.assert_allclose(read.speed, [np.nan] * 3 + [5.0, np.nan])
+    assert read.deposit.tolist() == [False] * 3 + [True, False] and read.direction is None
+
+
+@pytest.mark.parametrize(("old", "new", "where", "why"), [
+    ("N30 CLEANING", "N30 G0 X0", "HAND.MPF line 4", "'G0'"),
+    ("N30 CLEANING", "N20 CLEANING", "HAND.MPF line 4", "do not rise"),
+    ("N30 CLEANING", "N30 R1=5", "HAND.MPF line 4", "'R1=5'"),
+    ("N30 CLEANING", "N30 X5", "HAND.MPF line 4", "without a feed"),
+    ("N40 M30", "N40 M17", "HAND", "M30"),
+    ("N150 M17\n", "", "PART_1", "M17"),
+    ("N5 G500", "N5 HAND", "HAND", "calls itself"),
+    ("G710", "G700", "HAND.MPF line 2", "G700"),
+    ("G710", "", "PART_1.SPF line 4", "G710"),
+    ("N5 G500\n", "", "PART_1.SPF line 3", "another frame"),
+    ("N15 FGROUP(X,Y,Z)\n", "", "PART_1.SPF line 5", "which axes"),
+    ("FGROUP(X,Y,Z)", "FGROUP(X,C)", "PART_1.SPF line 3", "FGROUP"),
+    ("G1 x10", "x10", "PART_1.SPF line 4", "before G1"),
+    ("G1 x10", "G91 G1 x10", "PART_1.SPF line 4", "'G91'"),
+    ("G1 x10", "G1 x10 X11", "PART_1.SPF line 4", "twice"),
+    ("x10", "x1E1", "PART_1.SPF line 4", "'X1E1'"),
+    ("x10", "x=AC(10)", "PART_1.SPF line 4", "'X=AC(10)'"),
+    ("F6 ;", "F0 ;", "PART_1.SPF line 4", "without a feed"),
+    ("F60\n", "\n", "PART_1.SPF line 6", "without a feed"),
+    ("A-12.5 C=DC(50.0)", "C=DC(50.0)", "PART_1.SPF line 6", "axes of the first"),
+    ("N55 TRAORI\n", "", "PART_1.SPF line 12", "another frame"),
+    ("N60 ORIWKS ORIVECT\n", "", "PART_1.SPF line 12", "ORIWKS"),
+    ("B3=0.6", "", "PART_1.SPF line 13", "A3 B3 C3"),
+    ("B3=0.6", "B=0.6", "PART_1.SPF line 13", "A3 B3 C3"),
+    ("N80 COMPCAD", "N80 G93", "PART_1.SPF line 13", "G94"),
+    ("N95 COMPOF\n", "", "PART_1.SPF line 18", "compressed"),
+    ("N95 COMPOF", "N95 CLEANING", "PART_1.SPF line 14", "not understood"),
+    ("N100 $A_OUT[2]=0", "N100 $A_OUT[3]=0", "PART_1.SPF line 15", "second output"),
+    ("N100 $A_OUT[2]=0", "N100 M5", "PART_1.SPF line 15", "second output"),
+    ("N100 $A_OUT[2]=0\n", "", "PART_1.SPF line 15", "while the deposit is on"),
+    ("N110 TRAFOOF\n", "", "PART_1.SPF line 18", "TRAORI"),
+    ("N120 G500\n", "", "PART_1.SPF line 18", "another frame"),
+    ("N146 G4 F0.1", "N146 G1 X0", "PART_1.SPF line 21", "loop"),
+    ("N147 ENDWHILE\n", "", "PART_1", "within a loop"),
+    ("N145 WHILE $A_IN[4]==0", "N145 WHILE R1<5", "PART_1.SPF line 20", "'WHILE R1<5' is not"),
+    ("N5 G500", "N5 GOTOF END", "PART_1.SPF line 1", "not understood"),
+])  # fmt: skip
+def test_what_is_not_understood_of_sinumerik(old, new, where, why):
+    with pytest.raises(InputError) as raised:
+        siemens.read(mpf(old, new))
+    assert (raised.value.code, raised.value.where) == ("UNREADABLE_PROGRAM", where)
+    assert why in raised.value.message
+
+
+@pytest.mark.parametrize(("old", "new", "where", "why"), [
+    ("(by hand)", "(msg, by hand)", "hand.ngc line 1", "carried out"),
+    ("(by hand)", "; by hand", "hand.ngc line 1", "carried out"),
+    ("(by hand)", "(by hand", "hand.ngc line 1", "carried out"),
+    ("g21 ", "", "hand.ngc line 8", "G21"),
+    ("g21", "G20", "hand.ngc line 2", "'G20'"),
+    ("G90", "G91", "hand.ngc line 2", "'G91'"),
+    ("G64 P0.01", "G0 X5", "hand.ngc line 3", "'G0'"),
+    ("G64 P0.01", "#1=5", "hand.ngc line 3", "'#1=5'"),
+    ("G64 P0.01", "o<a> if [1]", "hand.ngc line 3", "'O<A>'"),
+    ("G64 P0.01", "o<a> sub", "hand.ngc line 3", "not understood here"),
+    ("G64 P0.01", "o<hand> call", "HAND", "calls itself"),
+    ("C0 R0\nM429", "R0\nM429", "hand.ngc line 8", "another frame"),
+    ("C0 R0\nM429", "C5 R0\nM429", "hand.ngc line 5", "'G10'"),
+    ("G59.3\nG93", "G54\nG93", "hand.ngc line 8", "another frame"),
+    ("F6\n", "F0\n", "hand.ngc line 8", "without a feed"),
+    ("C405.5", "", "hand.ngc line 9", "axes of the first"),
+    ("C405.5", "C[400+5]", "hand.ngc line 9", "'C[400+5]'"),
+    ("G54\nM62", "M62", "hand.ngc line 13", "work offset of its own"),
+    ("M62 P3", "G93", "hand.ngc line 14", "G94"),
+    ("-3.125 A-10", "-3.125", "hand.ngc line 14", "all rotary axes"),
+    ("M63 P3", "M63 P4", "hand.ngc line 15", "second output"),
+    ("M63 P3\n", "", "hand.ngc line 15", "while the deposit is on"),
+    ("M429\nG59.3\no", "o", "hand.ngc line 16", "within a bead"),
+    ("G21 G90\nG10", "G10", "hand.ngc line 22", "G21"),
+    ("M66 P2 L3 Q100", "M66 P2 L0 Q100", "hand.ngc line 21", "M66"),
+    ("M2\n", "", "hand.ngc", "M2"),
+])  # fmt: skip
+def test_what_is_not_understood_of_linuxcnc(old, new, where, why):
+    with pytest.raises(InputError) as raised:
+        linuxcnc.read(ngc(old, new))
+    assert (raised.value.code, raised.value.where) == ("UNREADABLE_PROGRAM", where)
+    assert why in raised.value.message
+
+
+def test_files_that_hide_something_are_refused():
+    for files in ({**mpf(), "OTHER.MPF": b"N10 M30\n"}, {**mpf(), "data.txt": b""}, {"HAND.MPF": b"N10 M30\n"}):
+        with pytest.raises(InputError, match="main programs|no moves"):
+            siemens.read(files)
+    for files in ({**ngc(), "other.ngc": b"M2\n"}, {**ngc(), "data.txt": b""}, {"hand.ngc": b"M2\n"}):
+        with pytest.raises(InputError):
+            linuxcnc.read(files)
