@@ -93,7 +93,7 @@ def along_motion(planned: JointPath, motion: Motion) -> tuple[Array, Array]:
 
 def _standing(toolpath: Toolpath, process: ProcessParameters) -> float:
     """Time the machine stands still on purpose, s; waits for inputs have no length."""
-    between = process.between_layers.wait * (len(toolpath.layers) - 1)
+    between = sum(max(process.between_layers.wait, layer.wait) for layer in toolpath.layers[1:])
     return between + (process.lead_on + process.lead_off) * toolpath.bead_count
 
 

@@ -62,7 +62,8 @@ class Program(Stage):
         if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
             beads = [path.bead for path in planned.joint_path.beads]
             motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
-        program = programs.build(motion, cell, process, parameters, obj.ProgramName)
+        waits = [layer.wait for layer in toolpath.layers]
+        program = programs.build(motion, cell, process, parameters, obj.ProgramName, waits)
         files = post.write(program)
         checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)
         if has_errors(checked.issues):

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,8 +40,14 @@ Array = NDArray[np.float64]
 FIRST_APPROACH = 10.0
 
 
-def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str) -> Program:
+def build(
+    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str,
+    waits: Sequence[float] = (),
+) -> Program:
     """The program of a motion.
+
+    waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
+    towards them. Before the first layer that is run there is nothing to wait for.
 
     Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read.
     """
@@ -47,7 +55,7 @@ def build(motion: Motion, cell: Cell, process: ProcessParameters, parameters: Pr
     return Program(
         name=name,
         machine=cell.machine.title,
-        blocks=_blocks(motion, cell, process, parameters),
+        blocks=_blocks(motion, cell, process, parameters, waits),
         endless=tuple(bool(e) for e in cell.limits.endless),
         motion=parameters.motion,
         setup=cell.setup,
@@ -106,7 +114,9 @@ def _has_retract(motion: Motion, first: int) -> bool:
     return rapids >= 3
 
 
-def _blocks(motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters) -> tuple[Block, ...]:
+def _blocks(
+    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, waits: Sequence[float]
+) -> tuple[Block, ...]:
     run = rows_from(motion, parameters.start_at)
     groups = _groups(motion, np.flatnonzero(run))
     blocks: list[Block] = []
@@ -131,7 +141,7 @@ def _blocks(motion: Motion, cell: Cell, process: ProcessParameters, parameters: 
             withdrawal, onward = (rows[:1], rows[1:]) if len(rows) >= 3 else (rows[:0], rows)
             if len(withdrawal):
                 blocks.append(_moves(motion, cell, withdrawal, RAPID, parameters))
-            blocks += _between(process.between_layers)
+            blocks += _between(process.between_layers, waits[here] if len(waits) else 0.0)
             blocks.append(LayerStart(here))
             blocks.append(_moves(motion, cell, onward, RAPID, parameters))
         layer = here
@@ -148,10 +158,11 @@ def _groups(motion: Motion, rows: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     return np.split(rows, np.flatnonzero(new) + 1)
 
 
-def _between(between: BetweenLayersParameters) -> list[Block]:
+def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
     blocks: list[Block] = []
-    if between.wait > 0.0:
-        blocks.append(Wait(between.wait))
+    wait = max(between.wait, cooling)
+    if wait > 0.0:
+        blocks.append(Wait(wait))
     if between.input is not None:
         blocks.append(WaitInput(between.input))
     if between.call is not None:

@@ -11,12 +11,12 @@ from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters, StartParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build
-from freecad_am.core.program import slide_feeds
+from freecad_am.core.program import LayerStart, Wait, slide_feeds
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 PLATFORM = (10.0, -4.0, 30.0, 0.0, 0.0, 0.4)
@@ -33,8 +33,8 @@ def spiral(distance, turn=1.2, n=120, start=0.0):
     return Bead(points, build_, build_, 2.0 * math.pi * length / length[-1], np.full(n, 8.0), False)
 
 
-def planned(machine):
-    beads = spiral(0.0), spiral(3.0, start=0.5)
+def planned(machine, layers=2):
+    beads = [spiral(3.0 * k, start=0.5 * k) for k in range(layers)]
     parameters = CellParameters(machine=machine, setup="rotary-table", platform=PLATFORM, mount="part")
     cell = cells.resolve(parameters, np.eye(4), "developable")
     toolpath = Toolpath(tuple(Layer((one,)) for one in beads), np.eye(4), 3.0, 0.02, family="developable")
@@ -110,3 +110,17 @@ def test_where_only_the_table_turns_the_linear_axes_have_no_feed():
     joints = np.array([[1.0, 2.0, 3.0, 0.0, 0.1], [1.0, 2.0, 3.0, 0.0, 0.2], [4.0, 6.0, 3.0, 0.0, 0.2]])
     feeds = slide_feeds(joints[0], joints[1:], np.array([0.5, 0.5]), kinds)
     np.testing.assert_allclose(feeds, [0.0, 10.0])
+
+
+@pytest.mark.parametrize(("between", "written"), [(0.0, [30.0, 7.5]), (10.0, [30.0, 10.0, 10.0])])
+def test_waits_of_layers_are_written(between, written):
+    cell, motion = planned("table-xyzac", 4)
+    process = ProcessParameters(between_layers=BetweenLayersParameters(wait=between))
+    for start, kept in ((StartParameters(), slice(None)), (StartParameters(layer=1), slice(1, None))):
+        parameters = ProgramParameters(post="linuxcnc", start_at=start)
+        made = build(motion, cell, process, parameters, "cone", (0.0, 30.0, 0.0, 7.5))
+        assert [block.seconds for block in made.blocks if isinstance(block, Wait)] == written[kept]
+        # withdrawn from the bead before, then the wait, then the next layer
+        for number, block in enumerate(made.blocks):
+            if isinstance(block, Wait):
+                assert made.blocks[number - 1].kind == "rapid" and isinstance(made.blocks[number + 1], LayerStart)
