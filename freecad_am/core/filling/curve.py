@@ -68,8 +68,11 @@ class Beads:
 
 
 def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
-    """The curves without those below a length, mm."""
-    return [curve for curve in curves if length(curve.points, curve.closed) >= shortest and len(curve.points) > 1]
+    """The curves without those below a length, mm; those round the hub, which may have a single point, are long enough."""
+    return [
+        curve for curve in curves
+        if curve.turns or (length(curve.points, curve.closed) >= shortest and len(curve.points) > 1)
+    ]
 
 
 def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:

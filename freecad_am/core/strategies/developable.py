@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from ..filling.curve import PlaneCurve
 from ..geometry.developable import Array
 from ..geometry.on_hub import Base, SolidsOnHub, downwards, middle_azimuth, upright
+from ..geometry.plane_curve import doubled_area
 from ..geometry.region import Region
 from ..geometry.strip import Strip
 from ..geometry.surroundings import Body
@@ -52,7 +52,7 @@ def plan(
             for layer in slices(one.base, body, strategy):
                 mended += layer.issues
                 for curve in _filled(layer, centre, body, strategy, process):
-                    deflection = _deflection(curve, layer.regions, strategy)
+                    deflection = _deflection(curve, layer, strategy)
                     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
                         curve, deflection = reversed_curve(curve), -deflection
                     bead = rolled(curve, layer.surface, layer.middle, one.base, strategy, build, process, model, deflection)
@@ -84,17 +84,22 @@ def _filled(
         ) from None
 
 
-def _deflection(curve: PlaneCurve, regions: Sequence[Region | Strip], strategy: DevelopableParameters) -> float:
+def _deflection(curve: PlaneCurve, layer: Slice, strategy: DevelopableParameters) -> float:
     """The deflection of the torch to the right of a bead: outwards on outer contours, none on others."""
     if strategy.deflection == 0.0 or curve.kind != "contour" or curve.ring > 0:
         return 0.0
-    if curve.turns:
-        return strategy.deflection  # borders round the hub have the material to their left
+    strip = next((one for one in layer.regions if isinstance(one, Strip)), None)
+    regions = [one for one in layer.regions if isinstance(one, Region)]
+    if strip is not None and curve.turns:
+        height = float(strip.period.unrolled(curve.points)[:, 1].mean())
+        return strategy.deflection if (height < 0.5 * sum(strip.levels)) == (curve.turns > 0) else -strategy.deflection
+    if not regions:  # a hole in a strip
+        return -strategy.deflection if doubled_area(curve.points) > 0.0 else strategy.deflection
     edge = np.roll(curve.points, -1, axis=0) - curve.points
     longest = np.argsort(np.hypot(*edge.T))[-9:]
     right = np.stack([edge[longest, 1], -edge[longest, 0]], axis=1) / np.hypot(*edge[longest].T)[:, None]
     probes = curve.points[longest] + 0.5 * edge[longest] + BESIDE * strategy.bead_spacing * right
-    inside = np.any([region.contains(probes) for region in regions if isinstance(region, Region)], axis=0)
+    inside = np.any([region.contains(probes) for region in regions], axis=0)
     return -strategy.deflection if inside.mean() > 0.5 else strategy.deflection
 
 
