@@ -76,13 +76,13 @@ def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ..
     return FirstCurve(points, into, out, line.closed), 0.0
 
 
-def _settled(wall: PatchWall, ground: Ground, points: Array) -> tuple[Array, Index]:
-    """Points moved within the wall onto the ground, and the piece of it that each lies on."""
+def _settled(wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0) -> tuple[Array, Index]:
+    """Points moved within the wall onto the ground, or `level` (k,) mm above it, and the piece of it that each lies on."""
     points, normal = wall.project(points)
     piece = ground.located(points)[2]
     for step in range(STEPS):
         foot, up = ground.on(piece, points)
-        gap = dot(points - foot, up)
+        gap = dot(points - foot, up) - level
         slope = up - dot(up, normal)[:, None] * normal
         move = (gap / np.maximum(dot(slope, slope), 0.01))[:, None] * slope
         points, normal = wall.project(points - move)
@@ -182,7 +182,7 @@ def _rounded(
 
     The points at which the wall crosses the facets' edges are kept; between two of them that are less than four edges of the
     wall's mesh apart the curve does not follow the facet but runs smoothly on the wall, off the facet by about its sagitta;
-    where it would be farther off, points on the facet are kept too.
+    where it would be farther off, points no more than that above the facet are kept too.
     """
     points, into, out, edge = _apart(points, into, out, edge, closed)
     turn = np.arccos(np.clip(dot(into, out), -1.0, 1.0))
@@ -208,11 +208,13 @@ def _rounded(
         middle = curve.at(curve.w[:-1] + 0.5 * curve.span)[0]
         on_wall = wall.project(middle)[0]
         foot, up, piece = ground.located(on_wall)
-        far = np.abs(dot(on_wall - foot, up)) > SAGITTAS * ground.sagitta(piece) + WITHIN
+        above, sagitta = dot(on_wall - foot, up), ground.sagitta(piece)
+        far = np.abs(above) > SAGITTAS * sagitta + WITHIN
         bad = np.flatnonzero((np.linalg.norm(on_wall - middle, axis=1) > WITHIN) | far)
         if not len(bad):
             break
-        on_wall[far] = _settled(wall, ground, on_wall[far])[0]
+        # no farther than needed: what is round lies between the facet and its sagitta above
+        on_wall[far] = _settled(wall, ground, on_wall[far], np.clip(above, 0.0, sagitta)[far])[0]
         order = np.argsort(np.r_[np.arange(len(points)), bad + 0.5], kind="stable")
         points = np.vstack([points, on_wall[bad]])[order]
         sharp = np.r_[sharp, np.zeros(len(bad), dtype=bool)][order]
