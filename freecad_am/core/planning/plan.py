@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..issues import ERROR, WARNING, Issue, has_errors
+from ..issues import ERROR, WARNING, InputError, Issue, has_errors
 from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..parameters.joints import JointParameters
@@ -43,12 +43,16 @@ def plan_joints(
     """The joint path of a toolpath.
 
     Findings (unreachable, over a limit, singular, too fast) are issues of the result with layer, bead and point; the
-    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel.
+    path is there all the same, to be looked at. progress(fraction, text) may raise to cancel. Raises InputError
+    NOT_FOR_SETUP for what only rotary axes can do.
     """
     places = [(layer, index) for layer, index, _ in toolpath]
     beads = [bead for _, _, bead in toolpath]
     if cell.machine.is_table:
-        return _on_table(toolpath, beads, places, cell, parameters, progress)
+        return _on_table(toolpath, cell, parameters, progress)
+    if parameters.lock != "none":
+        raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
+                         "with four; use none")
     joined = toolpath.family != REVOLUTION
     branches = [cell.branch] if cell.branch is not None else best_branches(beads, cell, parameters, joined)
     chosen = None
@@ -70,13 +74,9 @@ def plan_joints(
     )
 
 
-def _on_table(
-    toolpath: Toolpath, beads: Sequence[Bead], places: Sequence[tuple[int, int]], cell: Cell, parameters: JointParameters,
-    progress: Progress,
-) -> JointPath:
+def _on_table(toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress) -> JointPath:
     """The same on a machine with rotary axes, which leaves nothing to optimise."""
-    longer = [bead.run_on(toolpath.overlap) for bead in beads]
-    paths, issues = table.plan(cell, longer, places, parameters, toolpath.chord_error, progress)
+    paths, issues = table.plan(cell, toolpath, parameters, progress)
     if not has_errors(issues):
         paths, slowed = rings_slowed(cell, paths, toolpath.layer_height)
         issues += slowed + too_fast(cell, paths)
@@ -98,7 +98,8 @@ def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters
         margin, objective = found.margin[best, each], found.objective[best, each]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
-        ranks.append((-int(feasible.sum()), worth, -float(margin.min()), branch))
+        # rounded, so that of branches that are mirror images the same comes first everywhere
+        ranks.append((-int(feasible.sum()), float(f"{worth:.8e}"), round(-float(margin.min()), 9), branch))
     ranks.sort()
     return [rank[-1] for rank in ranks if rank[0] == ranks[0][0]][:TRIED]
 

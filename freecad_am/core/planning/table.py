@@ -15,12 +15,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..issues import ERROR, NOTE, Issue
+from ..issues import ERROR, NOTE, Issue, has_errors
 from ..kinematics.cell import Cell
 from ..kinematics.five_axis import FiveAxis
 from ..parameters.joints import JointParameters
-from ..toolpath import Bead
+from ..toolpath import Bead, Toolpath
+from . import table_room
 from .joint_path import BeadPath
+from .turns import seam_note, split_note
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -36,28 +38,76 @@ STRAY = math.radians(0.5)  # between two points the tool may lean this far from 
 
 
 def plan(
-    cell: Cell, beads: Sequence[Bead], places: Sequence[tuple[int, int]], parameters: JointParameters, chord_error: float,
-    progress: Progress,
+    cell: Cell, toolpath: Toolpath, parameters: JointParameters, progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The axis values of all beads, with points added where axes running straight would leave them, and findings."""
+    """The axis values of all beads, with points added where axes running straight would leave them, and findings.
+
+    Closed beads run on by the toolpath's overlap. Where a limited turning axis has no room for a bead, its seam is moved
+    or it is split; beads are then numbered anew.
+    """
     arm = FiveAxis(cell.machine.chain)
-    lock = _lock(arm, cell, parameters, [cell.on_flange(bead.points, bead.tool)[1] for bead in beads])
+    beads = [(layer, bead) for layer, _, bead in toolpath]
+    lock = _lock(arm, cell, parameters, [cell.on_flange(bead.points, bead.tool)[1] for _, bead in beads])
     paths: list[BeadPath] = []
     strays: list[Stray] = []
     issues: list[Issue] = []
+    helped: tuple[list[int], list[int]] = [], []
     before: Array | None = None
-    for number, (bead, place) in enumerate(zip(beads, places, strict=True)):
+    index = 0
+    for number, (layer, bead) in enumerate(beads):
         progress(number / len(beads), f"bead {number + 1} of {len(beads)}")
-        bead, axes, found = _bead(arm, cell, bead, lock, before, chord_error, place)
-        issues += found
-        if np.isfinite(axes).all():
-            before = axes[-1]
-            bead, stray = _as_held(cell, bead, axes, place)
-            strays.append(stray)
-        paths.append(_path(cell, bead, axes, place))
+        index = index if paths and paths[-1].layer == layer else 0
+        runs = _laid(_Task(arm, cell, lock, toolpath.chord_error), bead, toolpath.overlap, before, (layer, index))
+        if len(runs) > 1 or runs[0].bead.points[0].tolist() != bead.points[0].tolist():
+            helped[len(runs) > 1].append(layer)
+        for run in runs:
+            place, held = (layer, index), run.bead
+            issues += run.issues
+            if np.isfinite(run.axes).all():
+                before = run.axes[-1]
+                held, stray = _as_held(cell, held, run.axes, place)
+                strays.append(stray)
+            paths.append(_path(cell, held, run.axes, place))
+            index += 1
     if lock is not None and strays:
         issues.append(_residual_issue(arm, cell, lock, max(strays), parameters.max_residual))
+    for layers, note in zip(helped, (seam_note, split_note)):
+        issues += [note(layers)] if layers else []
     return paths, issues
+
+
+class _Task(NamedTuple):
+    arm: FiveAxis
+    cell: Cell
+    lock: Lock | None
+    chord_error: float
+
+
+class _Run(NamedTuple):
+    """A bead or a piece of one, with its axis values (n, 5) and what is wrong with it."""
+
+    bead: Bead
+    axes: Array
+    issues: list[Issue]
+
+
+def _laid(task: _Task, bead: Bead, overlap: float, before: Array | None, place: tuple[int, int]) -> list[_Run]:
+    """The bead as it is, or where a turning axis has no room for it, from another seam or in pieces."""
+    whole = _bead(task, bead.run_on(overlap), before, place)
+    limits, turning = task.cell.limits, task.arm.turning
+    if not has_errors(whole.issues) or not table_room.short_of(limits, turning, whole.axes, RESERVE):
+        return [whole]
+    for parts in table_room.ways(limits, turning, _courses(task, bead), bead, overlap):
+        runs: list[_Run] = []
+        last = before
+        for number, part in enumerate(parts):
+            runs.append(_bead(task, part, last, (place[0], place[1] + number)))
+            last = runs[-1].axes[-1]
+            if has_errors(runs[-1].issues):
+                break
+        else:
+            return runs
+    return [whole]
 
 
 class Stray(NamedTuple):
@@ -91,34 +141,33 @@ def _lock(arm: FiveAxis, cell: Cell, parameters: JointParameters, tools: Sequenc
     return Lock(axis, arm.best_lock(axis, directions, cell.station[:3, 2], low, high))
 
 
-def _bead(
-    arm: FiveAxis, cell: Cell, bead: Bead, lock: Lock | None, before: Array | None, chord_error: float,
-    place: tuple[int, int],
-) -> tuple[Bead, Array, list[Issue]]:
+def _bead(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int]) -> _Run:
     """The bead, finer where it must be, its axes (n, 5) in the turns and the branch that suit best, and what is wrong."""
+    cell = task.cell
     for _ in range(ROUNDS):
-        axes = _chosen(arm, cell, _courses(arm, cell, bead, lock), before)
+        axes = _chosen(task.arm, cell, _courses(task, bead), before)
         if not np.isfinite(axes).all():
             lost = np.flatnonzero(~np.isfinite(axes).all(axis=1))
-            return bead, axes, [Issue(
+            return _Run(bead, axes, [Issue(
                 ERROR, "UNREACHABLE", f"{len(lost)} of {len(axes)} directions cannot be turned to the torch by this "
                 "machine; tilt less, or mount the part otherwise", *place, int(lost[0]),
-            )]
+            )])
         away, leaning = _between(cell, bead, axes)
         # with an axis locked the tool leans anyhow; that is told once for all
-        off = (away > chord_error + ROUNDING) | ((leaning > STRAY) & (lock is None))
+        off = (away > task.chord_error + ROUNDING) | ((leaning > STRAY) & (task.lock is None))
         if not off.any():
-            return bead, axes, _limit_findings(cell, axes, place)
+            return _Run(bead, axes, _limit_findings(cell, axes, place))
         bead = bead.halved(np.flatnonzero(off))
-    return bead, axes, [Issue(
+    return _Run(bead, axes, [Issue(
         ERROR, "NOT_STRAIGHT", f"the axes leave the bead by {away.max():.3g} mm, its direction by "
         f"{math.degrees(leaning.max()):.3g} deg between two points however many are added: near a pole; tilt away from it",
         *place, int(np.argmax(off)) + 1,
-    )]
+    )])
 
 
-def _courses(arm: FiveAxis, cell: Cell, bead: Bead, lock: Lock | None) -> list[Array]:
+def _courses(task: _Task, bead: Bead) -> list[Array]:
     """All ways (n, 5) to run the bead, up to whole turns."""
+    arm, cell, lock = task.arm, task.cell, task.lock
     points, tools = cell.on_flange(bead.points, bead.tool)
     if lock is not None:
         turned = np.full((len(points), 2), lock.angle)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
@@ -138,6 +139,53 @@ def test_a_limited_axis_unwinds_between_beads():
     check(cell, path)
 
 
+def with_limits(cell, axis, low, high):
+    lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
+    lower[axis], upper[axis] = math.radians(low), math.radians(high)
+    return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+
+
+@pytest.mark.parametrize("overlap", [0.0, 8.0])
+def test_seams_are_moved_where_a_limited_axis_has_room(overlap):
+    # 400 deg of stroke: a whole turn fits from 40 deg of starts alone, and the seams are all round
+    cell = with_limits(resolved(), 4, -200.0, 200.0)
+    beads = [around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=1.1 * k) for k in range(6)]
+    planned = dataclasses.replace(toolpath(*beads), overlap=overlap)
+    path = plan_joints(planned, cell, JointParameters())
+    assert path.feasible, [issue.message for issue in path.issues]
+    assert "SEAM_MOVED" in {issue.code for issue in path.issues} and len(path.beads) == len(beads)
+    for one, asked in zip(path.beads, beads):
+        assert np.degrees(np.ptp(one.joints[:, 4])) == pytest.approx(360.0 + math.degrees(overlap / 57.0), abs=3.0 + overlap)
+        # the same ring, begun elsewhere
+        assert one.bead.length == pytest.approx(asked.length + overlap, abs=0.03)
+        np.testing.assert_allclose(one.bead.points[:, 2], 40.0, atol=1e-9)
+        assert np.degrees(one.joints[:, 4].min()) >= -200.0 and np.degrees(one.joints[:, 4].max()) <= 200.0
+    check(cell, path)
+
+
+def test_beads_are_split_where_no_seam_helps():
+    cell = with_limits(resolved(), 4, -150.0, 150.0)
+    beads = [around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=0.4 * k) for k in range(3)]
+    path = plan_joints(toolpath(*beads), cell, JointParameters())
+    assert path.feasible, [issue.message for issue in path.issues]
+    assert "BEAD_SPLIT" in {issue.code for issue in path.issues}
+    assert [(one.layer, one.index) for one in path.beads] == [(k, piece) for k in range(3) for piece in range(2)]
+    for k, asked in enumerate(beads):
+        first, second = path.beads[2 * k : 2 * k + 2]
+        np.testing.assert_allclose(first.bead.points[-1], second.bead.points[0], atol=1e-12)
+        assert first.bead.length + second.bead.length == pytest.approx(asked.length, abs=0.02)
+    check(cell, path)
+    motion, issues = assemble(path, cell, ProcessParameters())
+    assert not issues and motion.reachable.all()
+
+
+def test_robots_lock_no_axis():
+    cell = cells.resolve(CellParameters(), np.eye(4))
+    with pytest.raises(InputError) as caught:
+        plan_joints(toolpath(around(Developable(60.0), 0.0, 40.0)), cell, JointParameters(lock="second"))
+    assert caught.value.code == "NOT_FOR_SETUP" and caught.value.where == "joints.lock"
+
+
 def test_a_limit_that_cannot_be_kept_is_told_with_axis_and_place():
     base = Developable(60.0, 200.0)
     cell = resolved(platform=(450.0, 0.0, 30.0, 0.0, 0.0, 0.0))  # far off the table's axis: it swings out of the stroke
@@ -194,9 +242,7 @@ def test_a_cone_and_a_cylinder_on_one_spindle_share_what_is_missed():
 
 def test_the_locked_axis_stands_within_its_limits():
     cell = resolved()
-    lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
-    lower[3], upper[3] = math.radians(-40.0), math.radians(50.0)
-    cell = dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+    cell = with_limits(cell, 3, -40.0, 50.0)
     path = plan_joints(toolpath(around(Developable(60.0, 200.0), 0.0, 40.0)), cell, JointParameters(lock="first"))
     assert path.feasible and math.degrees(path.beads[0].joints[0, 3]) == pytest.approx(49.95, abs=0.01)
 
