@@ -72,6 +72,10 @@ def register() -> list[str]:
             "wall_on_part", "Wall on Part…",
             "Takes the selected faces as a wall to be deposited on the other object that is selected", _wall,
         ),
+        "SolidsOnHub": Tool(
+            "solids_on_hub", "Solids on Hub…",
+            "Takes the selected solids to be deposited on the cylinder or cone that is selected last", _hub,
+        ),
         "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath),
         "JointPath": Tool("joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path),
         "Program": Tool("program", "Program…", "Writes the controller's program of a joint path", _program),
@@ -95,9 +99,9 @@ def _open(proxy: Any, title: str, *more: Any) -> None:
 
 
 def _cell() -> None:
-    from ..objects.cell import Cell
+    from . import cell_panel, stage_panel
 
-    _open(Cell, "Cell")
+    stage_panel.show(cell_panel.CellPanel())
 
 
 def _feature() -> None:
@@ -112,10 +116,16 @@ def _wall() -> None:
     stage_panel.show(wall_panel.WallPanel())
 
 
-def _toolpath() -> None:
-    from ..objects.toolpath import Toolpath
+def _hub() -> None:
+    from . import hub_panel, stage_panel
 
-    _open(Toolpath, "Toolpath")
+    stage_panel.show(hub_panel.HubPanel())
+
+
+def _toolpath() -> None:
+    from . import stage_panel, toolpath_panel
+
+    stage_panel.show(toolpath_panel.ToolpathPanel())
 
 
 def _joint_path() -> None:

@@ -33,6 +33,7 @@ class Fold:
         self.form.setContentsMargins(4, 0, 0, 4)
         self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
         self.form.setRowWrapPolicy(QtGui.QFormLayout.DontWrapRows)
+        self.rows: dict[str, tuple[Any, Any]] = {}  # label, and what holds the field and its note, by the field's name
         column.addWidget(self.heading)
         column.addWidget(self.body)
         self.heading.toggled.connect(self._show)
@@ -63,7 +64,19 @@ class Fold:
                 name.setWordWrap(True)
                 name.setFixedWidth(WIDEST_LABEL)
             self.form.addRow(name, both)
+        self.rows[widget.objectName()] = (name, both)
         return note
+
+    def enable(self, widget: Any, on: bool) -> None:
+        """Make a field and its label work, or grey them."""
+        widget.setEnabled(on)
+        self.rows[widget.objectName()][0].setEnabled(on)
+
+    def add_below(self, widget: Any, more: Any) -> None:
+        """A row of the whole width right below that of a field."""
+        both = self.rows[widget.objectName()][1]
+        items = ((row, self.form.itemAt(row, QtGui.QFormLayout.FieldRole)) for row in range(self.form.rowCount()))
+        self.form.insertRow(next(row for row, item in items if item is not None and item.widget() is both) + 1, more)
 
     def _show(self, unfolded: bool) -> None:
         self.body.setVisible(unfolded)

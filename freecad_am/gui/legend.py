@@ -76,12 +76,14 @@ class Overlay(QtGui.QWidget):
         return int(self.fontMetrics().boundingRect(text).width()) + 6
 
     def _width(self, name: str, scale: Scale) -> int:
-        numbers = [f"< {text}" for _, text in scale.ticks] + [scale.without]
+        numbers = [f"< {text}" for _, text in scale.ticks] + [scale.without] + [text for text, _ in scale.classes]
         beside = _BAR_WIDTH + 10 + max(map(self._wide, numbers))
         return 2 * _PAD + max(beside, *map(self._wide, [*self._lines(name, scale), self._foot(scale)]))
 
     def _height(self, entry: tuple[str, Scale]) -> int:
         name, scale = entry
+        if scale.classes:
+            return 2 * _PAD + (len(self._lines(name, scale)) + len(scale.classes)) * (self._line() + 3)
         rows = len(self._lines(name, scale)) + scale.below + scale.above + bool(scale.without) + bool(self._foot(scale))
         return 2 * _PAD + rows * (self._line() + 3) + _BAR_HEIGHT + self._line()
 
@@ -90,6 +92,11 @@ class Overlay(QtGui.QWidget):
         for text in self._lines(name, scale):
             self._text(painter, left, top, text)
             top += line + 3
+        for text, colour in scale.classes:
+            self._swatch(painter, left, top, colour, text)
+            top += line + 3
+        if scale.classes:
+            return
         if scale.above:
             self._swatch(painter, left, top, TOO_FAR, f"> {scale.ticks[-1][1]}")
             top += line + 3

@@ -14,19 +14,23 @@ from .inputs import Input
 from .picking import EDGE, FACE, Pick, is_mesh
 
 _LIST = "App::PropertyLinkList"
-_SUB = "App::PropertyLinkSub"
 
 
 class PickField(Input):
     """What a link of a stage holds: faces or edges of one object, a whole object, or several objects."""
 
-    def __init__(self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None]) -> None:
-        self.link, self.label = link, label
+    def __init__(
+        self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None], element: str = "",
+        meshes: bool = False,
+    ) -> None:
+        """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same."""
+        self.link, self.label, self.element = link, label, element
         self.several = link.type_name == _LIST
-        self.element = "" if link.type_name != _SUB else FACE if link.name == "Source" else EDGE
+        self.meshes = meshes or not element
         self.picks = self._present(present)
         self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()
+        self.widget.setObjectName(f"Input{link.name}")
         self.widget.setToolTip(link.help)
         self.text = QtGui.QLineEdit()
         self.text.setObjectName(link.name)
@@ -57,7 +61,7 @@ class PickField(Input):
     def take(self, pick: Pick) -> bool:
         """Take what was clicked, or leave it out where it was in already; False for what cannot be taken."""
         names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
-        if (self.element == EDGE and not names) or (self.element and is_mesh(pick.obj)):
+        if (self.element == EDGE and not names) or (is_mesh(pick.obj) and not self.meshes):
             return False
         mine = self.picks[0] if self.picks else None
         if self.several:

@@ -13,7 +13,6 @@ from PySide import QtCore, QtGui
 from ..core.issues import AmError, InputError
 from ..objects.rows import rows
 from ..objects.stage import Stage, issues_of
-from ..objects.surface_feature import SurfaceFeature
 from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
@@ -176,12 +175,19 @@ def show(panel: Any) -> None:
 
 def edit(obj: Any) -> None:
     """Open the panel of an existing stage."""
-    if isinstance(obj.Proxy, SurfaceFeature):
-        from .wall_panel import WallPanel
-
-        show(WallPanel(obj))
+    own = _own_panel(type(obj.Proxy))
+    if own is not None:
+        show(own(obj))
         return
     choices = inputs.of(type(obj.Proxy), obj)
     if obj.Proxy.kind == "program":
         choices.append(inputs.NameChoice(obj.ProgramName))
     show(StagePanel(type(obj.Proxy), obj.Label, choices, obj))
+
+
+def _own_panel(proxy: type[Stage]) -> Any:
+    """The panel of a stage that has one of its own, else None."""
+    from . import cell_panel, hub_panel, toolpath_panel, wall_panel
+
+    own = (hub_panel.HubPanel, wall_panel.WallPanel, cell_panel.CellPanel, toolpath_panel.ToolpathPanel)
+    return next((panel for panel in own if panel.stage is proxy), None)

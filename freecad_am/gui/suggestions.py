@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..core.kinematics import machine
+from ..core.process import bead_table
 from ..objects import user_machines
 from ..posts import catalogue
 
@@ -17,7 +18,7 @@ def of(section: str, key: str) -> Callable[[], list[str]] | None:
         ("cell", "limits"): lambda: ["maker", "paper"],
         ("cell", "branch"): _branches,
         ("program", "post"): lambda: [*catalogue.NAMES, "none"],
-        ("process", "bead_model"): lambda: ["none"],
+        ("process", "bead_model"): lambda: ["none", *bead_table.BUILT_IN],
     }.get((section, key))
 
 

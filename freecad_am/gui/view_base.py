@@ -29,12 +29,16 @@ class StageView:
         self.complete(vobj)
 
     def complete(self, vobj: Any) -> None:
-        """Add the view properties the object lacks."""
+        """Add the view properties and choices the object lacks."""
         have = set(vobj.PropertiesList)
         for name, (type_name, default, help) in self.options.items():
             if name not in have:
                 vobj.addProperty(type_name, name, "Drawing", help)
                 setattr(vobj, name, list(default) if isinstance(default, tuple) else default)
+            elif isinstance(default, tuple) and tuple(vobj.getEnumerationsOfProperty(name)) != default:
+                chosen = getattr(vobj, name)  # of a document of an earlier version
+                setattr(vobj, name, list(default))
+                setattr(vobj, name, chosen if chosen in default else default[0])
 
     # ---- what a view defines
 

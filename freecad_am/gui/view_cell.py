@@ -38,7 +38,8 @@ class CellView(StageView):
         if toolpath is not None:
             last = toolpath.layers[-1].beads[-1]
             tip, axis = last.points[-1], last.tool[-1]
-            mount = np.eye(4) if value.mount == "part" else toolpath.frame
+            by_part = value.mount == "part" or (value.mount == "auto" and toolpath.family != "revolution")
+            mount = np.eye(4) if by_part else toolpath.frame
         self.platform.removeAllChildren()
         if value.platform_diameter > 0.0:
             radius = 0.5 * value.platform_diameter

@@ -51,7 +51,8 @@ class ToolpathView(StageView):
         self.told = None
         if not self.source_hidden:  # a new path lies in the surface of its shape, and its start in that of a wall
             self.source_hidden = True
-            obj.Feature.Source[0].ViewObject.Visibility = False
+            for source in (obj.Feature.Source[0], *getattr(obj.Feature, "Further", ())):
+                source.ViewObject.Visibility = False
             if hasattr(obj.Feature, "Substrate"):
                 obj.Feature.ViewObject.Visibility = False
         if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):

@@ -9,9 +9,12 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore
 
+from ..objects.developable_feature import DevelopableFeature
+from ..objects.stage import Stage
 from .view_base import MODE, StageView
 from .view_cell import CellView
 from .view_feature import FeatureView
+from .view_hub import HubView
 from .view_joint_path import JointPathView
 from .view_program import ProgramView
 from .view_toolpath import ToolpathView
@@ -24,6 +27,11 @@ VIEWS: dict[str, type[StageView]] = {
 _to_be_seen: set[str] = set()
 
 
+def view_of(stage: Stage) -> type[StageView]:
+    """The view provider of a stage."""
+    return HubView if isinstance(stage, DevelopableFeature) else VIEWS[stage.kind]
+
+
 def attach(obj: Any) -> None:
     """Show an object: with a new view provider when it has none (new, or made without a window), else redrawn."""
     vobj = obj.ViewObject
@@ -31,7 +39,7 @@ def attach(obj: Any) -> None:
         if obj.Document.Restoring and obj.Document.Name not in _to_be_seen:
             _to_be_seen.add(obj.Document.Name)
             QtCore.QTimer.singleShot(0, lambda name=obj.Document.Name: _show_all(name))
-        VIEWS[obj.Proxy.kind](vobj)
+        view_of(obj.Proxy)(vobj)
         vobj.DisplayMode = MODE
         vobj.Visibility = True
     else:

@@ -22,9 +22,11 @@ _NOTHING = np.zeros((0, 3))
 class WallNodes:
     """Draws a wall. Clicks go through the faces, and, where nothing of it is `pickable`, through the lines too."""
 
+    tint, transparency = TINT, 0.72
+
     def __init__(self, pickable: bool) -> None:
         self.root = coin.SoSeparator()
-        self.faces = Faces(TINT, 0.72)
+        self.faces = Faces(self.tint, self.transparency)
         self.first = Lines(4.0, COLOUR)
         self.hidden = Lines(1.5, COLOUR, DASHED)
         behind = coin.SoSeparator()

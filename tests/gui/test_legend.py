@@ -30,7 +30,7 @@ def shown(person):
 def test_each_colouring_has_its_legend(person, toolpath):
     vobj = toolpath.ViewObject
     assert vobj.getEnumerationsOfProperty("Colouring") == list(colouring.KINDS)
-    for kind, unit in zip(colouring.KINDS, ("", "mm", "deg", "mm/s"), strict=True):
+    for kind, unit in zip(colouring.KINDS, ("", "mm", "deg", "mm/s", "", ""), strict=True):
         vobj.Colouring = kind
         person.idle()
         assert shown(person) == [(kind, unit)]
@@ -44,7 +44,7 @@ def test_each_colouring_has_its_legend(person, toolpath):
     assert shown(person) == []
     vobj.Visibility = True
     person.idle()
-    assert shown(person) == [("speed", "mm/s")]
+    assert shown(person) == [("kind of bead", "")]
 
 
 def test_the_legend_is_on_the_screen_and_stays_where_it_is(person, toolpath):

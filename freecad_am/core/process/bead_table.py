@@ -9,21 +9,38 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ..issues import InputError
-from .bead_model import MINUTE, BeadModel, fit
+from .bead_model import MINUTE, Array, BeadModel, fit
 
 BUILT_IN = {"csw": "dai-2020.csv"}
 FOLDER = Path(__file__).resolve().parents[2] / "beads"
 COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
 
 
-def load(name: str, folder: Path | None = None) -> BeadModel:
-    """The bead model of a built-in table ('csw': table 1 of Dai 2020) or of the table at a path, relative to `folder`.
+class Measured(NamedTuple):
+    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, mm/s. label: the file's name."""
 
-    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column) and those of `bead_model.fit`.
+    radius: Array
+    speed: Array
+    width: Array
+    height: Array
+    wire_feed: float
+    label: str
+
+
+def load(name: str, folder: Path | None = None) -> BeadModel:
+    """The bead model of a table, named as `measured` takes it. InputError: those of `measured` and `bead_model.fit`."""
+    return fit(*measured(name, folder))
+
+
+def measured(name: str, folder: Path | None = None) -> Measured:
+    """The beads of a built-in table ('csw': table 1 of Dai 2020) or of the table at a path, relative to `folder`.
+
+    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column).
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
@@ -48,7 +65,8 @@ def load(name: str, folder: Path | None = None) -> BeadModel:
             "BAD_TABLE", path.name, f"its beads were laid at wire feeds from {feed.min():g} to {feed.max():g} m/min; the "
             "model is of one: keep the rows of one",
         )
-    return fit(radius, speed / MINUTE, width, height, float(feed[0]) * 1000.0 / MINUTE if len(feed) else 0.0, path.name)
+    wire_feed = float(feed[0]) * 1000.0 / MINUTE if len(feed) else 0.0
+    return Measured(radius, speed / MINUTE, width, height, wire_feed, path.name)
 
 
 def _number(row: dict[str, str | None], column: str, name: str, number: int) -> float:

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids on a hub in the 3D view: the cylinders and cones they grow on, and the contours of their first layers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..core.geometry.on_hub import Base, Group, SolidsOnHub
+from ..core.slicing.equidistant import Facets
+from ..core.slicing.laid_flat import cut
+from .lines import Array, Lines
+from .wall_nodes import WallNodes, unpickable
+
+OUTLINE, TINT = (0.0, 0.45, 0.45), (0.1, 0.62, 0.6)
+SIDES = 96
+BEYOND = 0.15  # of the way along the axis from contour to contour, by which a base is drawn longer on either side
+OUTSIDE = 0.003  # of its radius; the base is drawn that far out, to be seen before the hub's own face
+NEARLY = 0.98  # of the way to the apex
+
+
+class HubNodes(WallNodes):
+    """Draws bases and first layers. Clicks go through the bases, and, where nothing is `pickable`, through all."""
+
+    tint, transparency = TINT, 0.65
+
+    def __init__(self, pickable: bool) -> None:
+        super().__init__(pickable)
+        self.outline = Lines(2.0, OUTLINE)
+        self.root.addChild(unpickable())
+        self.root.addChild(self.outline.node)
+
+    def set_solids(self, solids: SolidsOnHub | None) -> list[list[list[Array]]]:
+        """Draw solids, none for None; the contours of each solid of each group, (k, 3), the first point repeated.
+
+        InputError OPEN_MESH.
+        """
+        groups = () if solids is None else solids.groups
+        contours = [first_contours(group, solids.chord_error) for group in groups] if solids is not None else []
+        self.set_first([contour for group in contours for solid in group for contour in solid])
+        bases = [_base(group, [contour for solid in some for contour in solid]) for group, some in zip(groups, contours)]
+        lines = [line for _, _, some in bases for line in some]
+        self.outline.set(np.concatenate([np.zeros((0, 3)), *lines]), [len(line) for line in lines])
+        counts = np.cumsum([0, *(len(points) for points, _, _ in bases)])
+        self.faces.set(
+            np.concatenate([np.zeros((0, 3)), *(points for points, _, _ in bases)]),
+            np.concatenate([np.zeros((0, 3), int), *(corners + k for (_, corners, _), k in zip(bases, counts))]),
+        )
+        return contours
+
+
+def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
+    """Where each solid of a group leaves the base: closed curves (k, 3) in part coordinates, the first point repeated."""
+    found = []
+    for body in group.bodies:
+        facets = Facets(group.base.surface, group.base.inside(body.vertices), body.triangles, body.name)
+        loops = [group.base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)]
+        found.append([np.concatenate([loop, loop[:1]]) for loop in loops])
+    return found
+
+
+def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array]]:
+    """Points and triangles of the base about contours, and lines along its ends and up it."""
+    base = group.base
+    low, high = _reach(base, contours or [body.vertices for body in group.bodies])
+    outside = base.surface.offset(OUTSIDE * base.surface.radius)
+    turn = np.linspace(0.0, 2.0 * np.pi, SIDES + 1)
+    rings = [base.placed(_ring(outside, turn, z)) for z in (low, high)]
+    k = np.arange(SIDES)
+    corners = np.concatenate([
+        np.stack([k, k + 1, k + SIDES + 1], axis=1), np.stack([k + 1, k + SIDES + 2, k + SIDES + 1], axis=1)
+    ])
+    up = [np.stack([rings[0][number], rings[1][number]]) for number in range(0, SIDES, SIDES // 8)]
+    return np.concatenate(rings), corners, [*rings, *up]
+
+
+def _reach(base: Base, curves: list[Array]) -> tuple[float, float]:
+    along = base.inside(np.concatenate(curves))[:, 2]
+    low, high = float(along.min()), float(along.max())
+    more = BEYOND * max(high - low, 0.1 * base.surface.radius)
+    return low - more, high + more if base.surface.is_cylinder else min(high + more, NEARLY * base.surface.height)
+
+
+def _ring(surface: Any, turn: Array, z: float) -> Array:
+    radius = surface.radius - z * np.tan(surface.taper)
+    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.full(len(turn), z)])

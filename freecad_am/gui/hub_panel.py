@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of solids on a hub: solids and hub are picked, and base and first layer are seen while it is open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..core.issues import InputError, Issue
+from ..objects.developable_feature import DevelopableFeature
+from ..objects.shapes import FIXTURES
+from ..objects.stage import Link, Outcome
+from . import picking, recorded
+from .hub_nodes import HubNodes
+from .lines import Array
+from .pick_field import PickField
+from .pick_panel import PickPanel
+
+SOLIDS = Link(
+    "Solids", "", "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.",
+    type_name="App::PropertyLinkList",
+)
+HUB = Link(
+    "Hub", "", "The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.",
+    required=False, type_name="App::PropertyLinkSub",
+)
+_PLACES = {"Source": "Solids", "Further": "Solids", "Substrate": "Hub", "BaseFaces": "Hub", "Fixtures": "Fixtures"}
+_NO_BASE = ("NO_HUB", "NO_BASE")
+
+
+class HubPanel(PickPanel):
+    """Makes a feature of solids on a hub of what is selected, or changes one.
+
+    Where a face of the only solid is picked as hub, both are one.
+    """
+
+    stage, icon, function, draft = DevelopableFeature, "solids_on_hub", "make_developable_feature", "Solids"
+    nodes: HubNodes
+
+    def __init__(self, obj: Any = None) -> None:
+        solids, hub, fixtures = ((), None, ()) if obj is None else _present(obj)
+        self.solids = PickField(SOLIDS, "Solids", solids, self._arm)
+        self.hub = PickField(HUB, "Hub", hub, self._arm, picking.FACE, meshes=True)
+        self.fixtures = PickField(FIXTURES, "Fixtures", fixtures, self._arm)
+        picks = [self.solids, self.hub, self.fixtures]
+        title = "Solids on hub" if obj is None else obj.Label
+        super().__init__(title, picks, obj, HubNodes(pickable=False))
+
+    # ---- what is picked
+
+    def _propose(self, picks: list[picking.Pick]) -> str:
+        """The last one is the hub, or the only one with faces picked; one alone is to be deposited."""
+        faced = [pick for pick in picks if any(name.startswith(picking.FACE) for name in pick.names)]
+        hub = None if len(picks) < 2 else faced[0] if len(faced) == 1 else picks[-1]
+        for pick in picks:
+            (self.hub if pick is hub else self.solids).take(pick)
+        return ""
+
+    def _lacking(self) -> PickField | None:
+        return None if self.solids.picks else self.solids
+
+    def _taken(self, field: PickField) -> None:
+        """What is picked as hub is no solid beside others."""
+        hub = self.hub.picks[0].obj if self.hub.picks else None
+        others = [pick for pick in self.solids.picks if pick.obj != hub]
+        if others and len(others) < len(self.solids.picks):
+            self.solids.picks = others
+            self.solids.show()
+
+    def _refusal(self, field: PickField, pick: picking.Pick) -> str:
+        return f"{pick.obj.Label} is another object; faces of a hub are of one object. Clear it first to start again."
+
+    def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
+        """The objects to deposit, faces of the first one that are the base, the hub, and faces of it."""
+        solids = [pick.obj for pick in self.solids.picks]
+        hub = self.hub.picks[0] if self.hub.picks else picking.Pick(None)
+        if solids == [hub.obj]:
+            return solids, hub.names, None, ()
+        return solids, (), hub.obj, hub.names
+
+    def _links(self) -> dict[str, Any]:
+        solids, faces, hub, base_faces = self._roles()
+        return {
+            "Source": (solids[0], list(faces)), "Further": solids[1:], "Substrate": hub,
+            "BaseFaces": (hub, list(base_faces)) if base_faces else None, "Fixtures": self.fixtures.value(),
+        }
+
+    def _inputs(self) -> dict[str, str]:
+        solids, faces, hub, base_faces = self._roles()
+        further = ", ".join(recorded.reference(obj) for obj in solids[1:])
+        found = {
+            "source": recorded.reference(solids[0]) if solids else "None", "faces": repr(list(faces)),
+            "further": f"[{further}]", "substrate": "None" if hub is None else recorded.reference(hub),
+            "base_faces": repr(list(base_faces)), **self.fixtures.arguments(),
+        }
+        return found if self.obj is not None else {
+            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
+        }
+
+    # ---- preview
+
+    def _link_places(self) -> dict[str, str]:
+        return _PLACES
+
+    def _place(self, error: InputError) -> None:
+        super()._place(error)
+        if error.code in _NO_BASE:
+            for place in self.notes:
+                self._tell(place, "")
+            self._say("No preview: see the field marked.", False)
+            self._tell(self.hub.label, error.message[:1].upper() + error.message[1:])
+
+    def _draw(self, made: Outcome | None) -> str:
+        contours = self.nodes.set_solids(None if made is None else made.value)
+        return "" if made is None else _told(made, contours)
+
+
+def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
+    """Solids, hub and fixtures of a feature."""
+    source, faces = obj.Source or (None, [])
+    faces = [name for name in faces if name]
+    hub = (source, faces) if faces else obj.BaseFaces or (None if obj.Substrate is None else (obj.Substrate, []))
+    return [*([] if source is None else [source]), *obj.Further], hub, obj.Fixtures
+
+
+def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]]) -> str:
+    lines = []
+    for group, solids in zip(made.value.groups, contours, strict=True):
+        surface, count = group.base.surface, len(group.bodies)
+        shape = f"R {surface.radius:.4g} mm"
+        if not surface.is_cylinder:
+            shape += f", half angle {np.degrees(surface.taper):.4g}°"
+        length = sum(
+            float(np.linalg.norm(np.diff(one, axis=0), axis=1).sum()) for solid in solids for one in solid
+        )
+        kind = "cylinder" if surface.is_cylinder else "cone"
+        lines.append(
+            f"{count} {'solid' if count == 1 else 'solids'} on {group.base.name} ({kind}, {shape}); "
+            f"first layer: {sum(map(len, solids))} contours, {length:.1f} mm"
+        )
+    findings: tuple[Issue, ...] = made.issues
+    return "\n".join([*lines, *(issue.message[:1].upper() + issue.message[1:] for issue in findings)])

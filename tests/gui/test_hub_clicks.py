@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Two blades on a cone by the mouse and the keys: picked, previewed, made, filled, turned on a table, for a SINUMERIK."""
+
+import dataclasses
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.process import bead_table
+from freecad_am.gui import colouring, legend
+from freecad_am.gui.view_hub import HubView
+
+ORANGE = (245, 120, 0)  # of first layers
+PANEL = "RoboticAM_DevelopableFeature"
+FOOT, TIP, TALL = 40.0, 25.0, 60.0  # of the cone, mm
+
+
+@pytest.fixture
+def blades(person):
+    """A document with a truncated cone and two blades, in sight."""
+    document = App.newDocument("Rotor")
+    hub = document.addObject("Part::Cone", "Hub")
+    hub.Radius1, hub.Radius2, hub.Height = FOOT, TIP, TALL
+    parts = []
+    for number, turn in enumerate((-45, 75), start=1):
+        blade = document.addObject("Part::Box", f"Blade{number}")
+        blade.Label = f"Blade {number}"
+        blade.Length, blade.Width, blade.Height = 30, 12, 24
+        spin = App.Placement(App.Vector(), App.Rotation(App.Vector(0, 0, 1), turn))
+        blade.Placement = spin.multiply(App.Placement(App.Vector(25, -6, 14), App.Rotation()))
+        parts.append(blade)
+    document.recompute()
+    for dock in person.window.findChildren(person.widgets.QDockWidget):
+        if dock.objectName() in ("Combo View", "Model", "Tree view"):
+            dock.show()
+    person.idle(0.4)
+    person.look()
+    person.gui.Selection.clearSelection()
+    return [hub, *parts]
+
+
+def cone(hub):
+    """The face of the cone."""
+    faces = [f"Face{number}" for number, face in enumerate(hub.Shape.Faces, start=1) if face.Surface.TypeId.endswith("Cone")]
+    return faces[0]
+
+
+def previewed(person, panel):
+    def text():
+        note = person.field(panel, "preview")
+        return note.text() if note.isVisible() and "first layer: " in note.text() else ""
+
+    return person.until(text, "the preview", 30)
+
+
+def ok(person, hand, name="Ok"):
+    wanted = getattr(person.widgets.QDialogButtonBox, name)
+    boxes = [box for box in person.window.findChildren(person.widgets.QDialogButtonBox) if box.isVisible()]
+    button = next(box.button(wanted) for box in boxes if box.button(wanted) is not None)
+    for area in person.window.findChildren(person.widgets.QScrollArea):
+        if area.isVisible() and area.isAncestorOf(button):
+            area.ensureWidgetVisible(button)  # a long panel may be scrolled down
+    hand.click(button)
+    person.panel_closed()
+
+
+def texts(person, panel):
+    return [person.field(panel, name).text() for name in ("Solids", "Hub")]
+
+
+def made(person, hand, command, name, **entries):
+    """Open a tool by the mouse, type into its fields, and press OK."""
+    hand.click(person.button(command))
+    panel = person.panel(name)
+    for field, text in entries.items():
+        person.type(panel, field, text)
+    ok(person, hand)
+
+
+def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, tmp_path):
+    hub, first, second = blades
+    document, steps = hub.Document, hub.Document.UndoCount
+    hand.click_face(first, "Face2")
+    hand.click_tree("Blade 2", "ctrl")
+    hand.click_face(hub, cone(hub), "ctrl")
+    hand.click(person.button("RoboticAM_SolidsOnHub"))
+    panel = person.panel(PANEL)
+    assert texts(person, panel) == ["Blade 1, Blade 2", f"Hub {cone(hub)}"]
+    told = previewed(person, panel)
+    half = np.degrees(np.arctan((FOOT - TIP) / TALL))
+    assert "2 solids on Hub" in told and f"half angle {half:.4g}°" in told and "2 contours" in told
+    assert person.screen_pixels(ORANGE) > 150
+    assert (set(document.Objects), document.UndoCount) == (set(blades), steps)  # nothing is made yet
+    hand.enter(panel, "LayerHeight", "5 mm")
+    hand.enter(panel, "BeadSpacing", "4 mm")
+    previewed(person, panel)
+    person.screenshot("panel_solids_on_hub")
+    ok(person, hand)
+    feature = document.getObject("Feature")
+    assert (feature.Status, feature.Solids, document.UndoCount) == ("up to date", 2, steps + 1)
+    assert (feature.Source, feature.Further, feature.Substrate) == ((first, []), [second], hub)
+    assert feature.BaseFaces == (hub, [cone(hub)]) and isinstance(feature.ViewObject.Proxy, HubView)
+    key = feature.Key
+
+    hand.do("key", "ctrl+z")
+    assert set(document.Objects) == set(blades) and person.screen_pixels(ORANGE) == 0
+    hand.do("key", "ctrl+shift+z")
+    assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
+    console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
+    call = console[console.index("am.make_developable_feature("):].split("\n>>>")[0].replace("\n", " ")
+    again = eval(call, {"App": App, "am": api})
+    assert again.Key == key  # the recorded call makes the same
+    document.removeObject(again.Name)
+
+    made(person, hand, "RoboticAM_Cell", "RoboticAM_Cell", Machine="table-xyzac")
+    assert (document.Cell.Setup, document.Cell.Status) == ("rotary-table", "up to date")
+    hand.click(person.button("RoboticAM_Toolpath"))
+    panel = person.panel("RoboticAM_Toolpath")
+    person.choose(panel, "BeadModel", "csw")
+    person.until(person.field(panel, "BeadModelPlot").isVisible, "the plot", 5)
+    person.until(lambda: not person.field(panel, "BeadModelFit").visibleRegion().isEmpty(), "the fit to be scrolled to", 5)
+    person.screenshot("panel_bead_model")
+    ok(person, hand)
+    toolpath = document.Toolpath
+    assert toolpath.Status == "up to date" and not (first.ViewObject.Visibility or second.ViewObject.Visibility)
+    toolpath.ViewObject.Colouring = "width"
+    person.idle()
+    widths = np.concatenate([bead.width for _, _, bead in api.result(toolpath)])
+    scale = toolpath.ViewObject.Proxy.scale
+    assert (scale.title, scale.least, scale.most) == ("width", widths.min(), widths.max())
+    person.look()
+    person.screenshot("hub_width")
+
+    made(person, hand, "RoboticAM_JointPath", "RoboticAM_JointPath")
+    assert document.JointPath.Status == "up to date", document.JointPath.Message
+    made(person, hand, "RoboticAM_Program", "RoboticAM_Program", Post="siemens", ProgramName="ROTOR")
+    assert document.Program.Status == "up to date", document.Program.Message
+    assert any("TRAORI" in file or "G1" in file for file in (
+        content.decode("latin-1") for content in api.result(document.Program).files.values()))
+
+    keys = [stage.Key for stage in api.stages_of(document)]
+    document.saveAs(str(tmp_path / "rotor.FCStd"))
+    App.closeDocument(document.Name)
+    opened = App.openDocument(str(tmp_path / "rotor.FCStd"))
+    person.idle(0.4)
+    stages = api.stages_of(opened)
+    assert [stage.Key for stage in stages] == keys and {stage.Status for stage in stages} == {"up to date"}
+    assert opened.Toolpath.ViewObject.Colouring == "width"
+    assert [scale.title for _, scale in person.window.findChild(person.widgets.QWidget, legend.NAME).scales] == [
+        "width"]
+
+
+def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades):
+    hub, first, second = blades
+    document, steps = hub.Document, hub.Document.UndoCount
+    hand.click(person.button("RoboticAM_SolidsOnHub"))
+    panel = person.panel(PANEL)
+    person.until(lambda: "Solids are missing" in person.field(panel, "preview").text(), "what is missing", 5)
+    hand.click_face(first, "Face2")
+    hand.click_face(second, "Face6")  # its upper side
+    assert texts(person, panel) == ["Blade 1, Blade 2", ""]
+    note = person.field(panel, "InputHubNote")
+    person.until(lambda: note.isVisible() and "The hub is not known" in note.text(), "that the hub is not known", 10)
+    hand.click(person.field(panel, "PickHub"))
+    hand.click_face(hub, cone(hub))
+    assert texts(person, panel) == ["Blade 1, Blade 2", f"Hub {cone(hub)}"]
+    hand.click_face(hub, cone(hub))  # a second click takes it back
+    person.gui.Selection.addSelection(hub)
+    person.idle()
+    assert texts(person, panel) == ["Blade 1, Blade 2", "Hub"]
+    assert f"2 solids on Hub {cone(hub)}" in previewed(person, panel)
+    person.type(panel, "LayerHeight", "-3 mm")
+    wrong = person.field(panel, "LayerHeightNote")
+    person.until(lambda: wrong.isVisible() and "more than 0 mm" in wrong.text(), "the note", 5)
+    assert person.screen_pixels(ORANGE) == 0
+    ok(person, hand, "Cancel")
+    assert (set(document.Objects), document.UndoCount) == (set(blades), steps)
+    person.gui.Selection.addSelection(first)  # nobody listens any more
+    person.idle()
+
+
+def test_a_feature_is_changed_and_its_hub_may_be_a_face_of_its_only_solid(person, blades):
+    hub, first, second = blades
+    document = hub.Document
+    fused = document.addObject("Part::MultiFuse", "Rotor")
+    fused.Shapes = blades
+    document.recompute()
+    feature = api.make_developable_feature(document, first, hub, further=[second], layer_height=5)
+    key, steps = feature.Key, document.UndoCount
+    person.double_click(feature)
+    panel = person.panel(PANEL)
+    assert texts(person, panel) == ["Blade 1, Blade 2", "Hub"]
+    previewed(person, panel)
+    person.press("Cancel")
+    person.panel_closed()
+    assert (feature.Key, document.UndoCount) == (key, steps)
+    person.double_click(feature)
+    panel = person.panel(PANEL)
+    for name in ("Solids", "Hub"):
+        person.field(panel, f"Clear{name}").click()
+    person.field(panel, "PickSolids").click()
+    person.gui.Selection.addSelection(fused)
+    person.idle()
+    person.field(panel, "PickHub").click()
+    person.gui.Selection.addSelection(document.Name, fused.Name, cone(fused))
+    person.idle()
+    assert texts(person, panel) == ["Rotor", f"Rotor {cone(fused)}"]
+    previewed(person, panel)
+    person.press("Ok")
+    person.panel_closed()
+    assert (feature.Status, document.UndoCount) == ("up to date", steps + 1)
+    assert (feature.Source, feature.Further, feature.Substrate) == ((fused, [cone(fused)]), [], None)
+
+
+def test_beads_are_told_by_kind_and_layers_by_solid(person, blades):
+    hub, first, second = blades
+    feature = api.make_developable_feature(
+        hub.Document, first, hub, further=[second], layer_height=5, bead_spacing=4, fill="lines", order="feature"
+    )
+    toolpath = api.make_toolpath(hub.Document, feature)
+    path = api.result(toolpath)
+    numbers = colouring.numbered(path)
+    assert numbers == [*range(len(numbers) // 2)] * 2  # both blades alike, each from the hub up
+    colours, scale = colouring.coloured(path, "kind of bead", 0.2)
+    closed = np.concatenate([np.full(len(bead), bead.closed) for _, _, bead in path])
+    assert closed.any() and not closed.all() and [one for one, _ in scale.classes] == [
+        colouring.CLOSED[0], colouring.OPEN[0]]
+    assert (colours[closed] == colouring.CLOSED[1]).all() and (colours[~closed] == colouring.OPEN[1]).all()
+    toolpath.ViewObject.Colouring = "kind of bead"
+    person.idle()
+    person.look()
+    person.screenshot("hub_kinds")
+    assert person.screen_pixels(tuple(round(255 * part) for part in colouring.OPEN[1]), 6) > 100
+    _, scale = colouring.coloured(path, "width", 0.2)
+    assert scale.classes == (colouring.NO_WIDTH,)
+
+
+def test_a_bead_model_is_seen_by_its_fit(person, blades, tmp_path):
+    hub, first, _ = blades
+    feature = api.make_developable_feature(hub.Document, first, hub, layer_height=5)
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    plot, fit = person.field(panel, "BeadModelPlot"), person.field(panel, "BeadModelFit")
+    assert not plot.isVisible()
+    person.choose(panel, "BeadModel", "csw")
+    person.until(plot.isVisible, "the plot", 5)
+    model = bead_table.load("csw")
+    for number in (f"{model.width.m:.4g}", f"{model.width.r_squared:.4f}", f"{model.height.rmse:.3f}"):
+        assert number in fit.text()
+    assert "12 beads, 300 to 900 mm/min" in fit.text()
+    before = pixels(person, plot)
+    assert len(before) > 50  # more than an empty frame
+    person.type(panel, "BeadModel", str(tmp_path / "none.csv"))
+    person.until(lambda: not plot.isVisible(), "the plot to go", 5)
+    assert "cannot be read" in person.field(panel, "BeadModelNote").text()
+    rows = ["radius_mm,wire_feed_m_min,travel_speed_mm_min,width_mm,height_mm"]
+    rows += [f"{r},5,{v},{40 / v ** (1 / 3) + 20 / r + 1},2.5" for r in (20, 40) for v in (200, 400, 800)]
+    (tmp_path / "own.csv").write_text("\n".join(rows))
+    person.type(panel, "BeadModel", str(tmp_path / "own.csv"))
+    person.until(plot.isVisible, "the plot", 5)
+    assert "Width = 40 v^(-1/3) + 20/r + 1 mm" in fit.text() and "R² 1.0000" in fit.text()
+    assert not person.field(panel, "BeadModelNote").isVisible()
+    person.press("Cancel")
+    person.panel_closed()
+    assert feature.Status == "up to date"
+
+
+def pixels(person, widget):
+    """The colours of a widget as it is drawn."""
+    image = widget.grab().toImage().convertToFormat(person.widgets.QImage.Format_RGB32)
+    return np.unique(np.frombuffer(bytes(image.constBits()), dtype=np.uint32))
+
+
+def test_a_cell_follows_its_machine(person, blades):
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    fields = {name: person.field(panel, name) for name in ("Setup", "Branch", "DepositionPoint", "Machine", "MachineNote")}
+    assert fields["Branch"].isEnabled() and fields["Setup"].currentText() == "part-on-robot"
+    person.type(panel, "Machine", "table-xyzbc")
+    person.until(lambda: fields["Setup"].currentText() == "rotary-table", "the set-up to follow", 5)
+    assert not any(fields[name].isEnabled() for name in ("Setup", "Branch", "DepositionPoint"))
+    person.screenshot("panel_cell_table")
+    person.type(panel, "Machine", "table-xyz")
+    person.until(fields["MachineNote"].isVisible, "what is wrong with the machine", 5)
+    assert "did you mean table-xyz" in fields["MachineNote"].text()
+    person.type(panel, "Machine", "kuka-kr16-2")
+    person.until(fields["Branch"].isEnabled, "the branch to be open again", 5)
+    assert fields["Setup"].currentText() == "part-on-robot" and not fields["MachineNote"].isVisible()
+    person.type(panel, "Machine", "table-xyzac")
+    person.press("Ok")  # before the panel has followed by itself
+    person.panel_closed()
+    cell = person.gui.activeDocument().Document.Cell
+    assert (cell.Machine, cell.Setup, cell.Status) == ("table-xyzac", "rotary-table", "up to date")
+
+
+def test_many_points_are_coloured_at_once(person, blades):
+    """Hundred thousand points are one node, and another colouring gives as many colours."""
+    hub, first, _ = blades
+    feature = api.make_developable_feature(hub.Document, first, hub, layer_height=5)
+    toolpath = api.make_toolpath(hub.Document, feature)
+    path = api.result(toolpath)
+    count = -(-100_000 // path.point_count)
+    many = dataclasses.replace(path, layers=path.layers * count)
+    view = toolpath.ViewObject.Proxy
+    view.draw(toolpath, many)
+    assert len(view.points) >= 100_000 and view.beads.coordinates.point.getNum() == len(view.points)
+    for kind in colouring.KINDS:
+        if kind != "local distance":
+            assert len(colouring.coloured(many, kind, 0.2)[0]) == len(view.points)
