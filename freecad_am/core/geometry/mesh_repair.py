@@ -121,6 +121,9 @@ def _patched(corners: Index, notes: list[str]) -> Index:
             return corners
         if a < b and a < c:
             missing.append((a, b, c))
+    known = {tuple(sorted(corner)) for corner in corners[np.isin(corners, start).all(axis=1)].tolist()}
+    if any(tuple(sorted(corner)) in known for corner in missing):
+        return corners  # the border of a loose triangle
     notes.append(f"{len(missing)} missing triangles were put in")
     return np.vstack([corners, np.array(missing, dtype=np.intp)])
 

@@ -76,8 +76,8 @@ def middle_azimuth(base: Base, points: Array) -> float:
     angle = np.sort(np.remainder(np.arctan2(local[:, 1], local[:, 0]), TURN))
     gaps = np.diff(angle, append=angle[0] + TURN)
     k = int(np.argmax(gaps))
-    middle = angle[k] + 0.5 * gaps[k] + 0.5 * TURN
-    return float(np.remainder(np.round(middle, 9), TURN))
+    middle = float(np.remainder(angle[k] + 0.5 * gaps[k] + 0.5 * TURN, TURN))
+    return 0.0 if TURN - middle < 1e-9 else round(middle, 9)
 
 
 def downwards(z: Array) -> bool:

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Meshes as users have them: mended where that is safe, and refused with the place where it is not."""
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from freecad_am.core.geometry.mesh_repair import repaired
+from freecad_am.core.issues import InputError
+
+
+def ball(radius=10.0, at=(0.0, 0.0, 0.0), count=150, seed=3):
+    """Points and outward triangles of a random polyhedron with its corners on a sphere."""
+    points = np.random.default_rng(seed).normal(size=(count, 3))
+    points *= radius / np.linalg.norm(points, axis=1)[:, None]
+    faces = ConvexHull(points).simplices.copy()
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * (a + b + c)).sum(axis=1) < 0.0
+    faces[inward] = faces[inward][:, ::-1]
+    return points + np.array(at), faces.astype(np.intp)
+
+
+def told(result):
+    return " ".join(issue.message for issue in result.issues)
+
+
+def test_a_sound_mesh_stays_as_it_is():
+    points, faces = ball()
+    found = repaired(points, faces, "ball")
+    assert len(found.solids) == 1 and not found.issues
+    assert len(found.solids[0].triangles) == len(faces)
+    assert found.solids[0].volume > 0.0
+
+
+@pytest.mark.parametrize("noise", [0.0, 2e-6, 4e-3])
+def test_loose_triangles_are_put_together(noise):
+    points, faces = ball()
+    loose = points[faces].reshape(-1, 3)
+    loose = loose + np.random.default_rng(1).uniform(-0.5, 0.5, loose.shape) * noise
+    found = repaired(loose, np.arange(len(loose)).reshape(-1, 3), "ball")
+    assert len(found.solids) == 1 and len(found.solids[0].vertices) == len(points)
+    assert ("were made one" in told(found)) == (noise > 1e-5)
+
+
+def test_what_is_there_twice_flat_or_turned_is_mended():
+    points, faces = ball()
+    volume = repaired(points, faces, "ball").solids[0].volume
+    wrong = faces.copy()
+    wrong[::7] = wrong[::7, ::-1]
+    wrong = np.vstack([wrong, faces[5:8], [[3, 3, 4]]])
+    found = repaired(points, wrong, "ball")
+    assert found.solids[0].volume == pytest.approx(volume)
+    assert len(found.solids[0].triangles) == len(faces)
+    for words in ("without an area", "there twice", "to agree with their neighbours"):
+        assert words in told(found)
+
+
+def test_a_missing_triangle_is_put_in():
+    points, faces = ball()
+    found = repaired(points, np.delete(faces, 11, axis=0), "ball")
+    assert found.solids[0].volume == pytest.approx(repaired(points, faces, "ball").solids[0].volume)
+    assert "1 missing triangles" in told(found)
+
+
+def test_inside_out_solids_are_turned_and_pieces_told_apart():
+    points, faces = ball()
+    other, more = ball(6.0, (40.0, 0.0, 0.0), seed=5)
+    hollow, inner = ball(3.0, (40.0, 0.0, 0.0), seed=6)
+    vertices = np.vstack([points, other, hollow])
+    triangles = np.vstack([faces[:, ::-1], more + len(points), inner[:, ::-1] + len(points) + len(other)])
+    found = repaired(vertices, triangles, "balls")
+    volumes = sorted(solid.volume for solid in found.solids)
+    whole = [repaired(*ball(*args), "one").solids[0].volume for args in (
+        (10.0,), (6.0, (40.0, 0.0, 0.0), 150, 5), (3.0, (40.0, 0.0, 0.0), 150, 6))]
+    np.testing.assert_allclose(volumes, [whole[1] - whole[2], whole[0]])
+    assert "1 solids were inside out" in told(found)
+
+
+def test_what_is_not_safe_is_refused_with_its_place():
+    points, faces = ball()
+    around = np.flatnonzero((faces == 20).any(axis=1))
+    with pytest.raises(InputError) as caught:
+        repaired(points, np.delete(faces, around, axis=0), "ball.stl")
+    assert (caught.value.code, caught.value.where) == ("OPEN_MESH", "ball.stl")
+    assert f"{len(around)} edges" in caught.value.message and "close" in caught.value.message.lower()
+    fin = np.vstack([points, points[0] * 2.0])
+    apex = len(points)
+    with pytest.raises(InputError) as caught:
+        repaired(fin, np.vstack([faces, [[faces[0, 0], faces[0, 1], apex]]]), "fin.stl")
+    assert caught.value.code in ("OPEN_MESH", "NON_MANIFOLD")
+    shared = np.vstack([points, points[faces[0]].mean(axis=0) * 3.0])
+    a, b, c = faces[0]
+    tent = [[a, b, apex], [b, c, apex], [c, a, apex]]
+    with pytest.raises(InputError) as caught:
+        repaired(shared, np.vstack([faces, tent]), "tent.stl")
+    assert caught.value.code == "NON_MANIFOLD" and "(" in caught.value.message
+    with pytest.raises(InputError) as caught:
+        repaired(np.full((3, 3), np.nan), np.array([[0, 1, 2]]), "nothing.stl")
+    assert caught.value.code == "BAD_FILE"
+
+
+def test_a_surface_without_inside_is_refused():
+    """A Klein bottle: closed, two triangles at every edge, and no side that is the inside."""
+    n = 12
+    number = np.arange(n * n).reshape(n, n)
+    u, v = (grid.ravel() for grid in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+    angle, other = 2.0 * np.pi * u / n, 2.0 * np.pi * (v + 0.5) / n
+    across = 3.0 + np.cos(angle / 2.0) * np.sin(other) - np.sin(angle / 2.0) * np.sin(2.0 * other)
+    points = np.stack([across * np.cos(angle), across * np.sin(angle),
+                       np.sin(angle / 2.0) * np.sin(other) + np.cos(angle / 2.0) * np.sin(2.0 * other)], axis=1)
+    faces = []
+    for i in range(n):
+        for j in range(n):
+            a, b = number[i, j], number[i, (j + 1) % n]
+            row = number[(i + 1) % n]
+            c, d = (row[j], row[(j + 1) % n]) if i < n - 1 else (row[n - 1 - j], row[(n - 2 - j) % n])
+            faces += [(a, c, b), (b, c, d)]
+    with pytest.raises(InputError) as caught:
+        repaired(points, np.array(faces, dtype=np.intp), "bottle")
+    assert caught.value.code == "NOT_ORIENTABLE"
