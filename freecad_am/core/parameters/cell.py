@@ -39,16 +39,16 @@ class CellParameters:
     machine: str = f.parameter("fanuc-arcmate120ic", f.TEXT, "A machine of the list, or the path of a machine file.")
     limits: str = f.parameter("maker", f.TEXT, "Which set of joint limits of the machine file holds.")
     setup: str = f.parameter(
-        "part-on-robot", f.CHOICE, "Which of part and tool the robot carries.",
+        "part-on-robot", f.CHOICE, "Which of part and tool the robot carries, or a machine with rotary axes.",
         choices=("part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"),
     )
     deposition_point: Pose = f.parameter(
         (1045.747, -630.155, 653.167, 0.0, 0.0, 0.0), f.POSE,
-        "Where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. "
+        "Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. "
         "In the maker's base frame.",
     )
     platform: float | Pose = f.parameter(
-        5.0, f.LENGTH, "From the flange to the mounting plane along the flange's Z, or a pose on the flange."
+        5.0, f.LENGTH, "From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it."
     )
     platform_diameter: float = f.parameter(113.0, f.LENGTH, "Diameter of the platform; counts in clearance.", low=0.0)
     mount: str = f.parameter(
@@ -56,7 +56,7 @@ class CellParameters:
         choices=("auto", "feature", "part"),
     )
     branch: str | tuple[str, str, str] = f.parameter(
-        ("front", "up", "flip"), f.TEXT, "Shoulder, elbow and wrist of the robot, or auto to search all eight."
+        ("front", "up", "flip"), f.TEXT, "Robots: shoulder, elbow and wrist, or auto to search all eight."
     )
     nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
 
