@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs of solids on hubs: their keys, their refusals, and the thruster to a program for an 840D."""
+
+import csv
+import json
+import math
+import shutil
+
+import numpy as np
+import pytest
+
+from freecad_am.batch import job as jobs
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.strategy import DevelopableParameters
+
+START = """\
+part: {file: blades.step}
+substrate: {file: hub.step, faces: [Face2]}
+strategy:
+  kind: developable
+"""
+
+
+@pytest.fixture
+def read(tmp_path):
+    for name in ("blades.step", "hub.step", "blades.stl"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "beads.csv").write_text("radius_mm,wire_feed_m_min,travel_speed_mm_min,width_mm,height_mm\n"
+                                        "30,6.5,300,12.5,3.4\n30,6.5,600,9.9,2.7\n50,6.5,300,12.4,3.3\n50,6.5,900,8.3,2.4\n")
+
+    def read_text(text):
+        path = tmp_path / "job.yaml"
+        path.write_text(text, encoding="utf-8")
+        return jobs.read_job(str(path))
+
+    return read_text
+
+
+def test_the_base_in_its_forms(read):
+    assert read(START).strategy == DevelopableParameters() == read(START + "  base: auto\n").strategy
+    job = read(START + "  base: {radius: 6 cm, height: 200 mm, axis: [[0, 1 cm, 280], [0, 0, 1]]}\n")
+    assert (job.strategy.base.radius, job.strategy.base.height) == (60.0, 200.0)
+    assert job.strategy.base.line() == ((0.0, 10.0, 280.0), (0.0, 0.0, 1.0))
+    assert read(START + "  base: {radius: 60 mm, height: inf}\n").strategy.base.height == "inf"
+    assert job.substrate.faces == ("Face2",)
+    assert read(START.replace("substrate: {file: hub.step, faces: [Face2]}\n", "")).substrate is None
+
+
+@pytest.mark.parametrize(("more", "code", "where"), [
+    ("  base: {radius: 0 mm}\n", "BAD_VALUE", "strategy.base.radius"),
+    ("  base: {radius: -60 mm}\n", "BAD_VALUE", "strategy.base.radius"),
+    ("  base: {radius: 60 mm, height: 0}\n", "BAD_VALUE", "strategy.base.height"),
+    ("  base: {height: 200 mm}\n", "BAD_VALUE", "strategy.base.radius"),
+    ("  base: {radius: 60 mm, axis: [[0, 0, 0], [0, 0, 0]]}\n", "BAD_VALUE", "strategy.base.axis"),
+    ("  base: {radius: 60 mm, axis: [[0, 0, 0], [0, 0]]}\n", "BAD_VALUE", "strategy.base.axis"),
+    ("  base: {radius: 60 mm, axis: [[0, 0, 1 deg], [0, 0, 1]]}\n", "BAD_UNIT", "strategy.base.axis"),
+    ("  base: cone\n", "BAD_VALUE", "strategy.base"),
+    ("  bead_spacing: 0 mm\n", "BAD_VALUE", "strategy.bead_spacing"),
+    ("  fill: hatch\n", "BAD_VALUE", "strategy.fill"),
+    ("  margin: -1 mm\n", "BAD_VALUE", "strategy.margin"),
+    ("  order: random\n", "BAD_VALUE", "strategy.order"),
+    ("build_direction: {mode: fixed}\n", "NOT_FOR_FAMILY", "build_direction.mode"),
+    ("process: {bead_model: mine.csv}\n", "NO_FILE", "mine.csv"),
+    ("process: {bead_model: hub.step}\n", "BAD_TABLE", "hub.step"),
+    ("process: {acceleration: 0}\n", "BAD_VALUE", "process.acceleration"),
+])
+def test_what_is_refused(read, more, code, where):
+    with pytest.raises(InputError) as caught:
+        read(START + more)
+    assert caught.value.code == code and where in caught.value.where, caught.value.line()
+
+
+def test_the_calibration_table_is_beside_the_job(read, tmp_path):
+    assert read(START + "process: {bead_model: beads.csv}\n").process.bead_model == str(tmp_path / "beads.csv")
+    assert read(START + "process: {bead_model: csw}\n").process.bead_model == "csw"
+
+
+def thruster(workshop, root, height):
+    """Report and deposit rows of the thruster at another layer height, and the text of its programs."""
+    for file in (root / "resources" / "examples" / "thruster").iterdir():
+        shutil.copy(file, workshop.folder)
+    text = (workshop.folder / "thruster.yaml").read_text(encoding="utf-8")
+    changed = text.replace("layer_height: 2.5 mm", f"layer_height: {height} mm").replace("0.05 mm", "0.1 mm")
+    assert changed.count(f"{height} mm") == 1 and "0.1 mm" in changed
+    (workshop.folder / "thruster.yaml").write_text(changed, encoding="utf-8")
+    done = workshop.run("plan", "thruster.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    out = workshop.folder / "out"
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    return report, rows, {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+
+
+def test_the_thruster_goes_to_an_840d_around_the_axis(workshop, root):
+    height = 40.0
+    report, rows, programs = thruster(workshop, root, height)
+    assert report["joints"]["feasible"] is True and "THRUSTER.MPF" in programs
+    assert any("TRAORI" in text for text in programs.values())
+    x, y, z, speed, width = (np.array([float(row[name]) for row in rows])
+                             for name in ("x_mm", "y_mm", "z_mm", "speed_mm_s", "width_mm"))
+    layer, bead, point = (np.array([int(row[name]) for row in rows]) for name in ("layer", "bead", "point"))
+    rho = np.hypot(x, y)
+    cone = (rho - 60.0) * 200.0 / math.hypot(60.0, 200.0) + (z - 280.0) * 60.0 / math.hypot(60.0, 200.0)
+    groups = np.split(np.arange(len(rows)), np.flatnonzero(np.diff(z * 0.0 + layer) > 0) + 1)
+    tips = []
+    for base, diameter in ((rho - 75.0, 466.5), (rho - 60.0, 399.9), (cone, 384.3)):
+        mine = [group for group in groups if np.abs(np.round(base[group] / height) * height - base[group]).max() < 1e-5]
+        levels = [int(np.round(base[group].mean() / height)) for group in mine]
+        assert levels == list(range(len(levels))) and len(levels) >= 3  # on the hub, then further out by the layer height
+        tips.append(max(rho[group].max() for group in mine) <= 0.5 * diameter)
+        for group in mine[:2]:  # the outermost contours of six blades come last, and in turn
+            last = bead[group].max()
+            turn = [math.atan2(y[one].mean(), x[one].mean()) for one in (group[bead[group] == last - k] for k in range(6))]
+            np.testing.assert_allclose(np.remainder(-np.diff(turn), 2.0 * math.pi), math.pi / 3.0, atol=0.1)
+    assert all(tips)
+    moving = point > 0
+    assert speed[moving].min() * 60.0 > 410.0 and speed[moving].max() * 60.0 < 830.0
+    assert width.min() > 9.5 - 1e-6
+    assert {"BEAD_MODEL", "BEAD_HEIGHT"} <= {issue["code"] for issue in report["issues"]}
+    assert report["counts"]["beads"] == len(set(zip(layer.tolist(), bead.tolist())))

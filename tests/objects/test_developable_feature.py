@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids on hubs in documents: hub found, chosen, given, or part of the solid; meshes; what is refused."""
+
+import math
+
+import FreeCAD as App
+import Mesh
+import numpy as np
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+
+UP = App.Vector(0, 0, 1)
+HUB, HEIGHT = 30.0, 120.0
+CONE = math.atan2(HUB, HEIGHT)
+FAST = {"layer_height": 6, "chord_error": 0.1, "bead_spacing": 5}
+
+
+def hub_shape(way=1.0):
+    """A cylinder of 50 mm and, on it, the lower part of a cone, along Z or against it."""
+    low, cone = Part.makeCylinder(HUB, 50.0), Part.makeCone(HUB, HUB * 0.5, 0.5 * HEIGHT, App.Vector(0, 0, 50))
+    shape = low.fuse(cone).removeSplitter()
+    shape.Placement = App.Placement(App.Vector(), App.Rotation(App.Vector(1, 0, 0), 0 if way > 0 else 180))
+    return shape
+
+
+def blade_shapes(hub, heights=(8.0, 60.0), around=3):
+    """Bars through the hub, cut off by it: their feet lie on the cylinder and on the cone."""
+    found = []
+    for z in heights:
+        for k in range(around):
+            bar = Part.makeBox(60.0, 14.0, 30.0, App.Vector(0, -7, z))
+            bar.rotate(App.Vector(), UP, 360.0 * k / around)
+            bar.Placement = hub.Placement.multiply(bar.Placement)
+            found += [max(bar.cut(hub).Solids, key=lambda solid: solid.Volume)]
+    return found
+
+
+def add(doc, shape, label):
+    obj = doc.addObject("Part::Feature", label)
+    obj.Shape = shape
+    return obj
+
+
+@pytest.fixture
+def thruster(doc):
+    hub = hub_shape()
+    return doc, add(doc, hub, "Hub"), add(doc, Part.Compound(blade_shapes(hub)), "Blades")
+
+
+def faces_of(hub, kind):
+    return [f"Face{k + 1}" for k, face in enumerate(hub.Shape.Faces) if face.Surface.TypeId == f"Part::Geom{kind}"]
+
+
+def off(points, layer, height=6.0):
+    """How far points are from the layer of the cylinder or of the cone, the nearer."""
+    rho, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+    cone = (rho - HUB) * math.cos(CONE) + (z - 50.0) * math.sin(CONE)
+    return np.minimum(np.abs(rho - HUB - height * layer), np.abs(cone - height * layer))
+
+
+def test_the_hub_is_found_and_each_blade_lies_on_its_surface(thruster):
+    doc, hub, blades = thruster
+    feature = api.make_developable_feature(doc, blades, hub, **FAST)
+    solids = api.result(feature)
+    assert [len(group.bodies) for group in solids.groups] == [3, 3] and feature.Solids == 6
+    assert [group.base.surface.is_cylinder for group in solids.groups] == [True, False]
+    cone = solids.groups[1].base.surface
+    assert (cone.radius, cone.height) == pytest.approx((HUB, HEIGHT), rel=1e-9)
+    assert [body.name for body in solids.surroundings] == ["Hub"]
+    toolpath = api.make_toolpath(doc, feature)
+    path = api.result(toolpath)
+    starts = [index for index, layer in enumerate(path.layers) if layer.first]
+    assert len(starts) == 2
+    for index, layer in enumerate(path.layers):
+        level = index - starts[int(index >= starts[1])]
+        assert all(off(bead.points, level).max() < 1e-6 for bead in layer.beads)
+
+
+def test_contours_follow_the_exact_solid_not_its_mesh(doc):
+    """A round boss on a cylinder: its beads are half a spacing inside of the bore's cylinder, on every layer."""
+    hub = Part.makeCylinder(40.0, 100.0)
+    boss = Part.makeCylinder(18.0, 70.0, App.Vector(0, 0, 50), App.Vector(1, 0, 0)).cut(hub)
+    feature = api.make_developable_feature(
+        doc, add(doc, boss, "Boss"), add(doc, hub, "Hub"), layer_height=5, bead_spacing=4, chord_error=0.02
+    )
+    path = api.result(api.make_toolpath(doc, feature))
+    for index, layer in enumerate(path.layers[:6]):  # the next one runs along the boss' end
+        outer = max((bead for bead in layer.beads if bead.closed), key=lambda bead: bead.length)
+        x, y, z = outer.points.T
+        # geodesic distance to the boss' rim is hard to write down; across the hub's axis it is a height
+        top = outer.points[np.argmax(z)]
+        assert top[2] == pytest.approx(50.0 + 18.0 - 2.0, abs=0.03)
+        assert np.hypot(x, y) == pytest.approx(np.full(len(x), 40.0 + 5.0 * index), abs=1e-9)
+        side = outer.points[np.argmax(y)]
+        radius = 40.0 + 5.0 * index
+        rim = math.asin(18.0 / radius)
+        assert radius * math.atan2(side[1], side[0]) == pytest.approx(radius * rim - 2.0, abs=0.03)
+
+
+def test_faces_chosen_or_base_given_are_taken(thruster):
+    doc, hub, _ = thruster
+    upper = add(doc, Part.Compound(blade_shapes(hub.Shape, (60.0,))), "Upper")
+    chosen = api.make_developable_feature(doc, upper, hub, faces_of(hub, "Cone"), **FAST)
+    given = api.make_developable_feature(
+        doc, upper, base_radius=HUB, base_height=HEIGHT, base_axis="0 0 50 0 0 1", **FAST
+    )
+    for feature in (chosen, given):
+        (group,) = api.result(feature).groups
+        assert (group.base.surface.radius, group.base.surface.height) == pytest.approx((HUB, HEIGHT))
+    one, other = (api.result(api.make_toolpath(doc, feature)) for feature in (chosen, given))
+    assert one.bead_count == other.bead_count and one.length == pytest.approx(other.length, rel=1e-6)
+
+
+def test_a_cone_that_points_down_is_as_good(doc):
+    hub = hub_shape(-1.0)
+    feature = api.make_developable_feature(
+        doc, add(doc, Part.Compound(blade_shapes(hub, (60.0,))), "Blades"), add(doc, hub, "Hub"), **FAST
+    )
+    (group,) = api.result(feature).groups
+    np.testing.assert_allclose(group.base.frame[:3, 2], [0, 0, -1], atol=1e-12)
+    path = api.result(api.make_toolpath(doc, feature))
+    for index, _, bead in path:
+        assert off(bead.points * [1.0, 1.0, -1.0], index).max() < 1e-6
+
+
+def test_the_hub_may_be_one_of_the_solids_or_fused_with_them(thruster):
+    doc, hub, blades = thruster
+    upper = blade_shapes(hub.Shape, (60.0,))
+    separate = api.make_developable_feature(doc, blades, hub, faces_of(hub, "Cone") + faces_of(hub, "Cylinder"), **FAST)
+    among = api.make_developable_feature(doc, add(doc, Part.Compound([hub.Shape, *blades.Shape.Solids]), "All"), **FAST)
+    paths = [api.result(api.make_toolpath(doc, feature)) for feature in (separate, among)]
+    assert paths[0].length == pytest.approx(paths[1].length, rel=1e-6)
+    fused = add(doc, hub.Shape.multiFuse(upper), "Fused")
+    cones = faces_of(fused, "Cone")
+    whole = api.make_developable_feature(doc, fused, faces=cones, **FAST)
+    path = api.result(api.make_toolpath(doc, whole))
+    for index, _, bead in path:
+        assert off(bead.points, index).max() < 1e-6
+    only = api.result(api.make_toolpath(doc, api.make_developable_feature(
+        doc, add(doc, Part.Compound(upper), "Upper"), hub, **FAST)))
+    assert path.layers[2].beads[0].length == pytest.approx(only.layers[2].beads[0].length, rel=1e-3)
+
+
+def test_meshes_are_solids_too_and_repairs_are_told(thruster):
+    doc, hub, blades = thruster
+    mesh = doc.addObject("Mesh::Feature", "Scan")
+    mesh.Mesh = Mesh.Mesh([tuple(map(tuple, triangle)) for solid in blades.Shape.Solids for triangle in loose(solid)])
+    exact = api.make_developable_feature(doc, blades, hub, **FAST)
+    scanned = api.make_developable_feature(doc, mesh, hub, **FAST)
+    assert scanned.Solids == 6
+    one, other = (api.result(api.make_toolpath(doc, feature)) for feature in (exact, scanned))
+    assert one.length == pytest.approx(other.length, rel=1e-3)
+    flipped = [triangle[::-1] if k % 5 == 0 else triangle for k, triangle in enumerate(loose(blades.Shape.Solids[0]))]
+    mesh.Mesh = Mesh.Mesh([tuple(map(tuple, triangle)) for triangle in flipped])
+    api.change(scanned, layer_height=7)
+    assert [issue.code for issue in api.issues(scanned)] == ["MESH_REPAIRED"]
+    mesh.Mesh = Mesh.Mesh([tuple(map(tuple, triangle)) for triangle in loose(blades.Shape.Solids[0])[4:]])
+    with pytest.raises(InputError) as caught:
+        api.change(scanned, layer_height=6)
+    assert caught.value.code == "OPEN_MESH" and "Scan" in caught.value.where
+
+
+def loose(solid):
+    points, facets = solid.tessellate(0.02)
+    return [[points[k] for k in facet] for facet in facets]
+
+
+def test_what_cannot_be_is_refused_where_it_stands(thruster):
+    doc, hub, blades = thruster
+    away = add(doc, Part.makeBox(10, 10, 10, App.Vector(80, 0, 10)), "Away")
+    bore = add(doc, Part.makeCylinder(60.0, 50.0).cut(Part.makeCylinder(HUB, 50.0)), "Bore")
+    sheet = add(doc, blades.Shape.Faces[0], "Sheet")
+    inner = [f"Face{k + 1}" for k, face in enumerate(bore.Shape.Faces)
+             if face.Surface.TypeId == "Part::GeomCylinder" and face.Surface.Radius == HUB]
+    flat = faces_of(hub, "Plane")
+    for arguments, code, where in (
+        ((away, hub), "NOT_ON_HUB", "Away"), ((blades, bore, inner), "INNER_FACE", f"Bore {inner[0]}"),
+        ((blades, hub, flat[:1]), "NOT_DEVELOPABLE", f"Hub {flat[0]}"), ((blades, hub, ["Face99"]), "BAD_FACES", ""),
+        ((sheet, hub), "NO_SOLID", "Sheet"), ((away,), "NO_HUB", ""), ((blades, away), "NO_BASE", "Blades"),
+    ):
+        with pytest.raises(InputError) as caught:
+            api.make_developable_feature(doc, *arguments, **FAST)
+        assert caught.value.code == code and where in caught.value.where, caught.value.line()
+    for values in ({"base_radius": 0}, {"base_radius": -5}, {"base_height": 100}, {"base_axis": "0 0 0 0 0 0"},
+                   {"base_axis": "here"}, {"base_radius": "wide"}, {"bead_spacing": 0}, {"layer_height": 0}):
+        with pytest.raises(InputError) as caught:
+            api.make_developable_feature(doc, blades, hub, **{**FAST, **values})
+        assert caught.value.code in ("BAD_VALUE", "BAD_UNIT")
+
+
+def test_a_document_keeps_the_solids_and_knows_when_they_change(thruster, tmp_path):
+    doc, hub, blades = thruster
+    feature = api.make_developable_feature(doc, blades, hub, **FAST)
+    toolpath = api.make_toolpath(doc, feature, bead_model="csw", bead_width=9.5, wire_feed="6.5 m/min")
+    length = api.result(toolpath).length
+    doc.saveAs(str(tmp_path / "thruster.FCStd"))
+    App.closeDocument(doc.Name)
+    again = App.openDocument(str(tmp_path / "thruster.FCStd"))
+    try:
+        stage = again.getObject(toolpath_name(again))
+        assert api.result(stage).length == length and stage.Status == "up to date"
+        api.change(again.Feature, bead_spacing=7)
+        assert api.result(stage).length < length
+        assert stage.Status == "up to date"
+        again.Hub.Placement.Base = App.Vector(0, 0, 40)
+        assert again.Feature.Status == "stale"
+    finally:
+        App.closeDocument(again.Name)
+
+
+def toolpath_name(document):
+    return next(obj.Name for obj in document.Objects if obj.Name.startswith("Toolpath"))
