@@ -23,7 +23,7 @@ START = 12.0  # from the axis, inside of the hub
 
 
 class Blades(NamedTuple):
-    """A group: height of its middle, radius of the hub there, diameter of the circumcircle, chord, stagger and twist (deg)."""
+    """A group: height of its middle, radius of the hub there, diameter of the circumcircle; chord, stagger, twist (deg)."""
 
     at: float
     hub: float
