@@ -18,8 +18,10 @@ from freecad_am.core.issues import InputError
 WAYPOINTS, REPORT, PAGE, PROGRAMS = "waypoints.csv", "report.json", "report.html", "program"
 DOCUMENT_ENDING = ".FCStd"
 PROGRAM_ENDINGS = (".ls",)  # of the controllers' texts that are ours wherever they stand in program/
-# what tells a folder of program/ as an application of ours: remarks that every program of ours begins with
-OUR_REMARKS = ("// Limits: ", "// Travel speed ")
+# endings of main programs, and those of their parts
+PART_ENDINGS = {".mpf": ".spf", ".ngc": ".ngc"}
+# what tells a program or application of ours: remarks that every one begins with
+OUR_REMARKS = ("Limits: ", "Travel speed ")
 
 
 class Outputs:
@@ -129,9 +131,14 @@ class Outputs:
 
 
 def earlier_programs(folder: str) -> set[str]:
-    """Names of the controllers' texts in program/: listings, and the files of applications with their parts."""
+    """Names of the controllers' texts in program/: listings, and programs and applications of ours with their parts."""
     here = os.path.join(folder, PROGRAMS)
     names = {file for file in _listed(here) if file.lower().endswith(PROGRAM_ENDINGS)}
+    for main in _listed(here):
+        stem, ending = os.path.splitext(main)
+        if ending.lower() in PART_ENDINGS and _is_ours(os.path.join(here, main)):
+            part = re.compile(re.escape(stem) + r"\d+" + re.escape(PART_ENDINGS[ending.lower()]), re.IGNORECASE)
+            names |= {main, *(file for file in _listed(here) if part.fullmatch(file))}
     for application in _listed(here):
         if _is_ours(os.path.join(here, application, "start.pgx")):
             inside = _listed(os.path.join(here, application))
