@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from freecad_am.core.geometry.on_hub import SolidsOnHub
 from freecad_am.core.kinematics.limits import Limits
 from freecad_am.core.motion import Motion
 from freecad_am.core.process.spacing import local_distances
 from freecad_am.core.strategies.wall_comparison import Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath
 
-from . import figures, view, wall_figures
+from . import figures, hub_figures, view, wall_figures
 
 _MOST_ISSUES = 200
 _WHOLE = (
@@ -91,6 +92,7 @@ class Content:
     condition: Array | None = None
     threshold: Array | None = None
     compared: tuple[Compared | Refused, ...] = ()
+    solids: SolidsOnHub | None = None
 
 
 def render(content: Content) -> str:
@@ -104,6 +106,7 @@ def render(content: Content) -> str:
         "short strokes show the build direction.</figcaption></figure>",
         *_joints(content),
         _process(content),
+        _on_hub(content),
         _spacings(content),
         _comparison(report),
         _criteria(report),
@@ -188,6 +191,14 @@ def _process(content: Content) -> str:
     if content.spacing:
         plots.insert(0, figures.spacing_plot(content.spacing, content.toolpath.layer_height))
     return f'<h2>Layers and path</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
+
+
+def _on_hub(content: Content) -> str:
+    """Layers of solids on a hub laid flat, and what the bead model makes of them."""
+    if content.solids is None:
+        return ""
+    plots = hub_figures.layer_plots(content.solids, content.toolpath) + hub_figures.spread_plots(content.toolpath)
+    return f'<h2>Layers laid flat</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
 
 
 def _spacings(content: Content) -> str:

@@ -206,7 +206,9 @@ def _write(
     files.write(outputs.REPORT, [report.text(content)])
     if page:
         with stages.timed("page", session):
-            files.write(outputs.PAGE, [_page(job, content, toolpath, motion, distances, planned, cell, compared)])
+            solids = api.result(stages.feature) if isinstance(job.strategy, DevelopableParameters) else None
+            page_text = _page(job, content, toolpath, motion, distances, planned, cell, compared, solids)
+            files.write(outputs.PAGE, [page_text])
     written = files.publish(outputs.earlier_outputs(files.folder))
     return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
 
@@ -233,17 +235,18 @@ def _compare_spacings(
 
 
 def _page(
-    job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any, compared: Any
+    job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any, compared: Any,
+    solids: Any,
 ) -> str:
     from . import page, report
 
     if planned is None:
-        return page.render(page.Content(content, toolpath, motion, distances, compared=compared))
+        return page.render(page.Content(content, toolpath, motion, distances, compared=compared, solids=solids))
     judged = bool(planned.joint_path.branch)  # machines with rotary axes have no condition
     condition, threshold = report.along_motion(planned.joint_path, motion) if judged else (None, None)
     return page.render(page.Content(
         content, toolpath, motion, distances, job.cell.platform_diameter if job.cell else None, cell.limits,
-        report.speed_ratio(motion, cell), condition, threshold, compared,
+        report.speed_ratio(motion, cell), condition, threshold, compared, solids,
     ))
 
 

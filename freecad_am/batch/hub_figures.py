@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pictures of solids on a hub: layers laid flat, and how speeds and widths are spread over the length."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
+from freecad_am.core.process.bead_model import MINUTE
+from freecad_am.core.toolpath import Array, Bead, Layer, Toolpath
+
+from . import svg
+
+BINS = 40
+WIDE, EDGES = 388.0, 68.0  # of a picture, between and beside its frame
+PIECES = 6  # colours along a bead
+
+
+def layer_plots(solids: SolidsOnHub, toolpath: Toolpath) -> list[str]:
+    """First and middle layer of each group laid flat, coloured by speed where a bead model sets it, else by order."""
+    found = []
+    runs = _runs(toolpath.layers)
+    by_group = np.array_split(np.arange(len(runs)), len(solids.groups))
+    if len(runs) != len(solids.groups):  # solid by solid: the first of each group
+        counts = np.cumsum([0, *(len(group.bodies) for group in solids.groups)])
+        by_group = [np.array([first]) for first in counts[:-1] if first < len(runs)]
+    for group, mine in zip(solids.groups, by_group):
+        run = runs[int(mine[0])]
+        places = dict.fromkeys((0, len(run) // 2))
+        found += [_flat(group, toolpath.layers[run[place]], place, toolpath.layer_height) for place in places]
+    return found
+
+
+def _runs(layers: Sequence[Layer]) -> list[range]:
+    """The layers that lie one on the other, from hub to tip."""
+    starts = [index for index, layer in enumerate(layers) if layer.first]
+    return [range(start, end) for start, end in zip(starts, [*starts[1:], len(layers)])]
+
+
+def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
+    surface = group.base.surface.offset(place * height)
+    middle = middle_azimuth(group.base, np.vstack([bead.points for bead in layer.beads]))
+    lines = [surface.flat(group.base.inside(bead.points), middle) for bead in layer.beads]
+    low, high = np.vstack(lines).min(axis=0), np.vstack(lines).max(axis=0)
+    pad = 0.03 * float((high - low).max())
+    ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
+    plot = svg.Plot(
+        f"{group.base.name}, layer {place}, laid flat", (low[0] - pad, high[0] + pad), (low[1] - pad, high[1] + pad),
+        "around the hub, mm", "along it, mm", height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
+    )
+    speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
+    slow, fast = float(speeds.min()), float(speeds.max())
+    for number, (bead, line) in enumerate(zip(layer.beads, lines)):
+        if fast - slow > 1e-6 * fast:
+            _coloured(plot, bead, line, slow, fast)
+        else:
+            plot.curve(line[:, 0], line[:, 1], svg.colour(number / max(len(lines) - 1, 1)), f"bead {number}", 1.2)
+    if fast - slow > 1e-6 * fast:
+        plot.legend([(f"{MINUTE * slow:.0f} mm/min", svg.colour(0.0)), (f"{MINUTE * fast:.0f} mm/min", svg.colour(1.0))])
+    return plot.text()
+
+
+def _coloured(plot: svg.Plot, bead: Bead, line: Array, slow: float, fast: float) -> None:
+    """A bead in runs of like speed."""
+    level = np.round(PIECES * (bead.speed[1:] - slow) / (fast - slow)).astype(int)
+    cuts = [0, *(np.flatnonzero(np.diff(level)) + 1).tolist(), len(level)]
+    for first, last in zip(cuts, cuts[1:]):
+        part = line[first : last + 1]
+        plot.curve(part[:, 0], part[:, 1], svg.colour(level[first] / PIECES), "", 1.4)
+
+
+def spread_plots(toolpath: Toolpath) -> list[str]:
+    """How travel speeds and bead widths are spread over the length; nothing without a bead model."""
+    beads = [bead for _, _, bead in toolpath if bead.width is not None]
+    if not beads:
+        return []
+    length = np.concatenate([np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead in beads])
+    speed = MINUTE * np.concatenate([bead.speed[1:] for bead in beads])
+    width = np.concatenate([0.5 * (bead.width[1:] + bead.width[:-1]) for bead in beads if bead.width is not None])
+    return [
+        _histogram("Travel speed", speed, length, "mm/min"), _histogram("Predicted width of the bead", width, length, "mm"),
+    ]
+
+
+def _histogram(title: str, values: Array, length: Array, unit: str) -> str:
+    low, high = float(values.min()), float(values.max())
+    pad = max(0.05 * (high - low), 0.002 * high)
+    edges = np.linspace(low - pad, high + pad, BINS + 1)
+    share = np.histogram(values, edges, weights=length)[0] * (100.0 / length.sum())
+    plot = svg.Plot(title, (float(edges[0]), float(edges[-1])), (0.0, 1.05 * float(share.max())), unit, "% of the length")
+    plot.bars(edges, share)
+    return plot.text()
