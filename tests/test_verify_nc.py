@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Five-axis programs on a cone, planned, written for SINUMERIK and LinuxCNC, read back and verified; what is off is caught."""
+"""Five-axis programs on a cone, written for SINUMERIK and LinuxCNC, read back and verified; what is off is caught."""
 
 import dataclasses
 import functools

@@ -69,6 +69,8 @@ def within_half_turn(degrees: Array) -> Array:
 
 def poses(position: Array, rotation: Array) -> Array:
     """X Y Z in mm and W P R in degrees, 3 decimals, (n, 6). The rotation (n, 3, 3) is Rz(R) Ry(P) Rx(W)."""
+    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    rotation = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
     across = np.hypot(rotation[:, 0, 0], rotation[:, 1, 0])
     upright = across > 1e-9  # else only the sum or difference of W and R counts, and W is 0
     w = np.where(upright, np.arctan2(rotation[:, 2, 1], rotation[:, 2, 2]), 0.0)

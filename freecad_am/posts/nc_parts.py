@@ -46,13 +46,18 @@ def refuse_table(program: Program, post: str) -> None:
 
 
 def refuse_words(program: Program, taken: frozenset[str]) -> None:
-    """Raises InputError DEPOSIT_WORD for words that switch the deposit and have another meaning."""
-    for key in ("deposit_on", "deposit_off"):
-        word = getattr(program.nc, key)
+    """Raises InputError DEPOSIT_WORD for what cannot switch the deposit: no M or H words, the same one twice, or words with
+    another meaning (`taken`; H for all of these)."""
+    words = {"program.nc.deposit_on": program.nc.deposit_on, "program.nc.deposit_off": program.nc.deposit_off}
+    if not any(words.values()):
+        return
+    for key, word in words.items():
+        if not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
+            raise InputError("DEPOSIT_WORD", key, f"{word!r} is no word such as M7 or H2=1; give one for on and one for off")
         if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in taken or (word.startswith("H") and "H" in taken):
-            raise InputError(
-                "DEPOSIT_WORD", f"program.nc.{key}", f"{word} means something else to the controller; use another word"
-            )
+            raise InputError("DEPOSIT_WORD", key, f"{word} means something else to the controller; use another word")
+    if program.nc.deposit_on == program.nc.deposit_off:
+        raise InputError("DEPOSIT_WORD", key, f"{word} cannot switch both on and off; give two different words")
 
 
 def refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:

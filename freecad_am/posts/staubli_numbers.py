@@ -31,6 +31,8 @@ def degrees(joints: Array) -> Array:
 
 def frames(position: Array, rotation: Array) -> Array:
     """X Y Z in mm and RX RY RZ in degrees, (n, 6), of positions (n, 3) and rotations (n, 3, 3) = Rx Ry Rz."""
+    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    rotation = np.array(rotation.transpose(1, 2, 0), order="C").transpose(2, 0, 1)
     upright = np.hypot(rotation[:, 1, 2], rotation[:, 2, 2])
     rx = np.where(upright > 1e-12, np.arctan2(-rotation[:, 1, 2], rotation[:, 2, 2]), 0.0)
     sine, cosine = np.sin(rx), np.cos(rx)

@@ -2,7 +2,7 @@
 """Interpreters of five-axis programs that are not ours, and what they make of a text.
 
 LinuxCNC's own `rs274`, and nc-gcode-interpreter for SINUMERIK. `./freecad-am test` puts them into a folder of their own
-(.test-env): the package linuxcnc-uspace unpacked, not installed, and a Python environment. Tests skip where they are missing.
+(.test-env): the package linuxcnc-uspace unpacked, not installed, and a Python environment. Tests skip where they are not.
 """
 
 from __future__ import annotations
@@ -150,8 +150,8 @@ _KNOWN = {"TRAORI", "TRAFOOF", "FGROUP(X,Y,Z)", "STOPRE"}
 
 
 def run_nc(texts: list[str]) -> list[tuple[list[dict], list[str], str]]:
-    """What nc-gcode-interpreter makes of SINUMERIK programs, each by itself: its blocks as rows, the names it takes for calls,
-    and its complaint, or ''.
+    """What nc-gcode-interpreter makes of SINUMERIK programs, each by itself: its blocks as rows, the names it takes for
+    calls, and its complaint, or ''.
 
     Words it has no address for (A3=, H1=) become variables of other names, rows have them under the old ones; C=DC(..) is
     taken as the value; input 3 reads as on.

@@ -11,7 +11,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.posts import catalogue, linuxcnc, nc_numbers, siemens
-from tests.posts.nc_programs import moves, program, random_program, with_options
+from tests.posts.nc_programs import deposit_of, moves, program, random_program, with_options
 
 POSTS = (siemens, linuxcnc)
 
@@ -19,6 +19,10 @@ POSTS = (siemens, linuxcnc)
 def text(files):
     (content,) = files.values()
     return content.decode("ascii")
+
+
+def column(of, key):
+    return np.concatenate([getattr(run, key) for run in of.moves])
 
 
 def refusal(post, of, *, code, where=None):
@@ -56,7 +60,8 @@ def tip_bead(layer):
 
 
 def as_arrays(block):
-    return dataclasses.replace(block, position=np.array(block.position)) if isinstance(block, Moves) and block.position else block
+    told = isinstance(block, Moves) and block.position
+    return dataclasses.replace(block, position=np.array(block.position)) if told else block
 
 
 TIP = program(*map(as_arrays, [*tip_bead(0), *tip_bead(1)]), name="tip", motion="cartesian", max_points=5, user_frame=2,
@@ -79,7 +84,7 @@ def test_random_programs_come_back(post, seed, motion, feed):
     files = post.write(of)
     assert files == post.write(of)  # the same bytes
     read = post.read(files)
-    joints, duration, speed = (np.concatenate([getattr(run, key) for run in of.moves]) for key in ("joints", "duration", "speed"))
+    joints, duration, speed = (column(of, key) for key in ("joints", "duration", "speed"))
     deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
     tip = deposit & (motion == "cartesian")
     assert read.deposit.tolist() == deposit.tolist()
@@ -97,7 +102,7 @@ def test_random_programs_come_back(post, seed, motion, feed):
     assert (np.abs(read.duration - duration) <= read.duration_digits + 1e-9 * duration)[moving].all()
     assert (read.duration_digits / duration)[moving].max() <= 5.1e-7  # seven digits
     if motion == "cartesian":
-        position, direction = (np.concatenate([getattr(run, key) for run in of.moves]) for key in ("position", "direction"))
+        position, direction = column(of, "position"), column(of, "direction")
         assert np.abs(read.position - position)[tip].max() <= 5e-6 + 1e-9 and np.isnan(read.position[~tip]).all()
         assert (np.abs(read.speed - speed) / speed)[tip].max() < 1e-6 and np.isnan(read.speed[~tip]).all()
         if post is siemens:
@@ -167,7 +172,8 @@ def test_feeds_have_seven_digits_and_no_exponent(value):
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_times_and_speeds_that_cannot_be_written(post):
     def ring(duration):
-        return program(moves("rapid", RING[0]), DepositOn(), moves("deposit", RING[1], duration, layer=2, bead=1), DepositOff())
+        bead = moves("deposit", RING[1], duration, layer=2, bead=1)
+        return program(moves("rapid", RING[0]), DepositOn(), bead, DepositOff())
 
     for duration in (0.0, 5e-5, 6.1e4, math.nan):
         assert "cannot be written" in refusal(post, ring(duration), code="MOVE_TIME", where="layer 2 bead 1")
@@ -182,7 +188,9 @@ def test_words_that_switch_the_deposit(post):
     of = with_options(random_program(2, max_points=10**4), deposit_on="M7", deposit_off="M9")
     written = text(post.write(of))
     assert "M7\n" in written and "M9\n" in written and not re.search(r"H\d+=|M6[45]", written)
-    assert post.read(post.write(of)).deposit.tolist() == post.read(post.write(random_program(2, max_points=10**4))).deposit.tolist()
+    assert post.read(post.write(of)).deposit.tolist() == deposit_of(of)
+    for on, off in (("M7", ""), ("", "M9"), ("M7", "M7"), ("on", "off"), ("M7 M8", "M9")):
+        refusal(post, with_options(of, deposit_on=on, deposit_off=off), code="DEPOSIT_WORD")
     for word in ("M30", "M02", "M6"):
         refusal(post, with_options(of, deposit_on=word, deposit_off="M9"), code="DEPOSIT_WORD", where="program.nc.deposit_on")
     other = with_options(of, deposit_on="H2=1", deposit_off="H2=0")
@@ -196,8 +204,9 @@ def test_words_that_switch_the_deposit(post):
 def test_what_cannot_be_said_is_refused(post):
     still = program(moves("rapid", RING))
     refusal(post, dataclasses.replace(still, setup="part-on-robot"), code="UNSUPPORTED_SETUP", where="cell.setup")
-    refusal(post, dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", "D")), code="UNSUPPORTED_AXES", where="cell.machine")
-    refusal(post, dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", "A")), code="UNSUPPORTED_AXES", where="cell.machine")
+    for last in "DA":
+        other = dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", last))
+        refusal(post, other, code="UNSUPPORTED_AXES", where="cell.machine")
     refusal(post, dataclasses.replace(still, axis_names=()), code="UNSUPPORTED_AXES", where="program.post")
     refusal(post, program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(post, program(moves("rapid", [0, 0, math.nan, 0, 0])), code="UNREACHABLE")
@@ -212,7 +221,9 @@ def test_what_cannot_be_said_is_refused(post):
 
 
 def test_what_one_controller_alone_cannot_say():
-    assert "two" not in refusal(linuxcnc, dataclasses.replace(TIP, user_frame=9), code="UNSUPPORTED_FRAME", where="program.user_frame")
+    for number in (0, 9):
+        other = dataclasses.replace(TIP, user_frame=number)
+        refusal(linuxcnc, other, code="UNSUPPORTED_FRAME", where="program.user_frame")
     tilted = dataclasses.replace(TIP, carried=(0.0, 0.0, 0.0, 0.1, 0.0, 0.0))
     refusal(linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin")
     siemens.write(tilted)
@@ -246,10 +257,12 @@ def test_the_angles_of_a_work_offset_are_the_controllers():
 
 @pytest.mark.parametrize(("post", "name", "why", "proposal"), [
     (siemens, "", "empty", "AM"), (siemens, "my part", "letters", "MY_PART"), (siemens, "Größe", "letters", "GROSSE"),
-    (siemens, "x10", "two letters", "AM_X10"), (siemens, "_1", "two letters", "AM_1"), (siemens, "x" * 25, "24 characters", "X" * 21),
+    (siemens, "x10", "two letters", "AM_X10"), (siemens, "_1", "two letters", "AM_1"),
+    (siemens, "x" * 25, "24 characters", "X" * 21),
     (siemens, "traori", "reserved", "AM_TRAORI"), (siemens, "con", "reserved", "AM_CON"),
     (linuxcnc, "", "empty", "am"), (linuxcnc, "my part", "letters", "my_part"), (linuxcnc, "Größe", "letters", "grosse"),
-    (linuxcnc, "2nd", "start with a letter", "am_2nd"), (linuxcnc, "x" * 31, "30 characters", "x" * 27), (linuxcnc, "Con", "reserved", "am_con"),
+    (linuxcnc, "2nd", "start with a letter", "am_2nd"), (linuxcnc, "x" * 31, "30 characters", "x" * 27),
+    (linuxcnc, "Con", "reserved", "am_con"),
 ])  # fmt: skip
 def test_names_the_controllers_refuse(post, name, why, proposal):
     message = refusal(post, dataclasses.replace(JOINT, name=name), code="PROGRAM_NAME", where="name")
@@ -260,7 +273,8 @@ def test_names_the_controllers_refuse(post, name, why, proposal):
 def test_names_of_parts_and_calls_of_own_programs():
     for post, longest in ((siemens, 24), (linuxcnc, 30)):
         post.write(dataclasses.replace(TIP, name="x" * (longest - 2)))
-        assert "2 digits" in refusal(post, dataclasses.replace(TIP, name="x" * (longest - 1)), code="PROGRAM_NAME", where="name")
+        other = dataclasses.replace(TIP, name="x" * (longest - 1))
+        assert "2 digits" in refusal(post, other, code="PROGRAM_NAME", where="name")
         for called in ("Tip", "tip02", "two words"):
             of = dataclasses.replace(TIP, blocks=(*TIP.blocks, Call(called)))
             refusal(post, of, code="PROGRAM_NAME", where="process.between_layers.call")

@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
-from ..issues import InputError
 from . import field as f
 from .cell import Pose
 
@@ -46,16 +44,6 @@ class NcParameters:
 
     def __post_init__(self) -> None:
         f.check(self, "program.nc")
-        for key in ("deposit_on", "deposit_off"):
-            word = getattr(self, key)
-            if word and not re.fullmatch(r"M\d{1,3}|H\d{1,2}=\d{1,5}", word):
-                raise InputError("BAD_VALUE", f"program.nc.{key}", f"{word!r} is no word such as M7 or H2=1")
-        if bool(self.deposit_on) != bool(self.deposit_off) or (self.deposit_on and self.deposit_on == self.deposit_off):
-            raise InputError(
-                "BAD_VALUE", "program.nc.deposit_off",
-                f"{self.deposit_on!r} and {self.deposit_off!r} cannot switch the deposit on and off; give two different words,"
-                " or none",
-            )
 
 
 @dataclass(frozen=True)
