@@ -15,15 +15,16 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
-PEERS = ("eaik",)
-BENCHMARKS = ("filling", "kinematics", "planning", "surface", "whole")
+PEERS = ("eaik", "trimesh")
+BENCHMARKS = ("filling", "kinematics", "planning", "slicing", "surface", "whole")
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def environment_python() -> Path | None:
     """The Python of the benchmark's environment, made and filled when it is not there; None when that fails."""
     python = ENVIRONMENT / "bin" / "python"
-    if python.exists():
+    told = ENVIRONMENT / "peers.txt"
+    if python.exists() and told.exists() and told.read_text(encoding="utf-8").split() == list(PEERS):
         return python
     print(f"bench: making {ENVIRONMENT.name} with {', '.join(PEERS)}", file=sys.stderr)
     made = subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(ENVIRONMENT)], check=False)
@@ -31,6 +32,7 @@ def environment_python() -> Path | None:
         # the distribution's numpy and scipy stay as they are: FreeCAD is built against them
         filled = subprocess.run([str(python), "-m", "pip", "install", "-q", "--no-deps", *PEERS], check=False)
         if filled.returncode == 0:
+            told.write_text("\n".join(PEERS) + "\n", encoding="utf-8")
             return python
     print("bench: the peers could not be installed; their rows go without", file=sys.stderr)
     return None

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A mesh of 200,000 triangles cut by 50 equidistant cones, closed loops included, against trimesh with 50 planes."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.slicing.equidistant import Facets
+
+from rows import Row
+
+AROUND, UP, CUTS, ROUNDS = 400, 250, 50, 3
+CHORD_ERROR = 0.05
+
+
+def run() -> list[Row]:
+    """The only comparison of this file."""
+    vertices, faces = wavy_ball()
+    base = Developable(60.0, 200.0)
+    ours = []
+    for _ in range(ROUNDS):
+        start = perf_counter()
+        facets = Facets(base, vertices, faces)
+        distances = np.linspace(facets.away.min(), facets.away.max(), CUTS + 2)[1:-1]
+        loops = [facets.cut(float(distance), CHORD_ERROR) for distance in distances]
+        ours.append(perf_counter() - start)
+        assert all(loops)
+    name = f"{len(faces):,} triangles cut by {CUTS} cones, loops included, against trimesh and {CUTS} planes"
+    return [Row(name, float(np.median(ours)), _peer(vertices, faces), "s", 1.0)]
+
+
+def wavy_ball() -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and outward triangles of a body beside the cone's axis, with waves all over."""
+    turn = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    height = np.pi * (np.arange(UP) + 0.5) / UP
+    height, turn = (grid.ravel() for grid in np.meshgrid(height, turn, indexing="ij"))
+    radius = 60.0 + 4.0 * np.sin(7.0 * turn) * np.sin(9.0 * height)
+    ball = np.stack([np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)], axis=1)
+    vertices = np.vstack([radius[:, None] * ball, [[0.0, 0.0, 62.0], [0.0, 0.0, -62.0]]]) + [140.0, 0.0, 60.0]
+    number = np.arange(UP * AROUND).reshape(UP, AROUND)
+    a, b = number[:-1].ravel(), number[1:].ravel()
+    c, d = np.roll(number, -1, axis=1)[1:].ravel(), np.roll(number, -1, axis=1)[:-1].ravel()
+    top = np.stack([np.full(AROUND, UP * AROUND), number[0], np.roll(number[0], -1)], axis=1)
+    bottom = np.stack([np.full(AROUND, UP * AROUND + 1), np.roll(number[-1], -1), number[-1]], axis=1)
+    faces = np.vstack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1), top, bottom])
+    return vertices, faces.astype(np.intp)
+
+
+def _peer(vertices: np.ndarray, faces: np.ndarray) -> float | None:
+    """trimesh's own way to cut with many parallel planes, which leaves the segments as they come."""
+    try:
+        import trimesh
+    except ImportError:
+        return None
+    times = []
+    heights = np.linspace(vertices[:, 2].min(), vertices[:, 2].max(), CUTS + 2)[1:-1]
+    for _ in range(ROUNDS):
+        start = perf_counter()
+        mesh = trimesh.Trimesh(vertices, faces, process=False)
+        trimesh.intersections.mesh_multiplane(mesh, np.zeros(3), np.array([0.0, 0.0, 1.0]), heights)
+        times.append(perf_counter() - start)
+    return float(np.median(times))
