@@ -46,7 +46,8 @@ def test_a_robot_is_told_which_controllers_it_has(workshop):
 @pytest.mark.parametrize(("keys", "code", "key"), [
     ("nc: {deposit_on: M7}", "DEPOSIT_WORD", "nc.deposit_off"),
     ("nc: {deposit_on: M7, deposit_off: M7}", "DEPOSIT_WORD", "nc.deposit_off"),
-    ("nc: {deposit_on: start, deposit_off: M9}", "DEPOSIT_WORD", "nc.deposit_on"), ("nc: {feed: fast}", "BAD_VALUE", "nc.feed"),
+    ("nc: {deposit_on: start, deposit_off: M9}", "DEPOSIT_WORD", "nc.deposit_on"),
+    ("nc: {feed: fast}", "BAD_VALUE", "nc.feed"),
     ("nc: {tolerance: 0 mm}", "BAD_VALUE", "nc.tolerance"), ("deposit_output: 100", "DEPOSIT_OUTPUT", "deposit_output"),
     ("max_points: 20", "BEAD_TOO_LONG", "max_points"),
 ])  # fmt: skip

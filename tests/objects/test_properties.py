@@ -23,7 +23,7 @@ CLASSES = (
     (ProcessParameters, "process"), (JointParameters, "joints"), (ProgramParameters, "program"),
 )
 TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas": "argon 4.6", "bead_model": "csw",
-         "post": "siemens", "plane": "0.6 0 -0.8"}
+         "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0"}
 
 
 @pytest.fixture

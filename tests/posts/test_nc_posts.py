@@ -192,7 +192,8 @@ def test_words_that_switch_the_deposit(post):
     for on, off in (("M7", ""), ("", "M9"), ("M7", "M7"), ("on", "off"), ("M7 M8", "M9")):
         refusal(post, with_options(of, deposit_on=on, deposit_off=off), code="DEPOSIT_WORD")
     for word in ("M30", "M02", "M6"):
-        refusal(post, with_options(of, deposit_on=word, deposit_off="M9"), code="DEPOSIT_WORD", where="program.nc.deposit_on")
+        other = with_options(of, deposit_on=word, deposit_off="M9")
+        refusal(post, other, code="DEPOSIT_WORD", where="program.nc.deposit_on")
     other = with_options(of, deposit_on="H2=1", deposit_off="H2=0")
     if post is linuxcnc:
         refusal(post, other, code="DEPOSIT_WORD")
@@ -214,10 +215,9 @@ def test_what_cannot_be_said_is_refused(post):
     refusal(post, dataclasses.replace(JOINT, deposit_output=100), code="DEPOSIT_OUTPUT", where="program.deposit_output")
     where = "process.between_layers.input"
     refusal(post, program(moves("rapid", RING), WaitInput(65)), code="DEPOSIT_INPUT", where=where)
-    assert "has 4 points" in refusal(
-        post, program(*(b for n in range(3) for b in (moves("rapid", RING, bead=n), DepositOn(), DepositOff())), max_points=3),
-        code="BEAD_TOO_LONG", where="program.max_points",
-    )
+    blocks = [block for n in range(3) for block in (moves("rapid", RING, bead=n), DepositOn(), DepositOff())]
+    message = refusal(post, program(*blocks, max_points=3), code="BEAD_TOO_LONG", where="program.max_points")
+    assert "has 4 points" in message and message.endswith("use at least 4")
 
 
 def test_what_one_controller_alone_cannot_say():
