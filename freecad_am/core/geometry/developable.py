@@ -18,6 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .columns import columns
+
 Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi
@@ -80,7 +82,8 @@ class Developable:
 
     def around(self, points: Array) -> Array:
         """Azimuth (...,) rad of points (..., 3), in (-pi, pi]."""
-        azimuth: Array = np.arctan2(points[..., 1], points[..., 0])
+        x, y = columns(points[..., :2])
+        azimuth: Array = np.arctan2(y, x)
         return azimuth
 
     def flat(self, points: Array, middle: float = 0.0) -> Array:
@@ -98,7 +101,7 @@ class Developable:
 
     def unrolled(self, flat: Array) -> tuple[Array, Array]:
         """Azimuth past `middle` and height z, (...,), of points laid flat (..., 2)."""
-        x, y = flat[..., 0], flat[..., 1]
+        x, y = columns(flat)
         if self.is_cylinder:
             return x / self.radius, y.copy()
         a = self.taper

@@ -48,7 +48,7 @@ def about_z(angle: ArrayLike) -> Array:
 
 def rotation_about(axis: ArrayLike, angle: ArrayLike) -> Array:
     """The rotation (..., 3, 3) by `angle` (...) about the unit vectors `axis` (..., 3), right-handed."""
-    axis, angle = np.asarray(axis, float), np.asarray(angle, float)
+    axis, angle = np.asarray(axis, float), np.asarray(angle, float, order="C")
     sine, cosine = np.sin(angle), np.cos(angle)
     versine = 1.0 - cosine
     x, y, z = axis[..., 0], axis[..., 1], axis[..., 2]
@@ -80,7 +80,9 @@ def to_bryant(rotation: ArrayLike) -> Array:
     Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there, and near it RZ
     is taken with the RX found, so that the three always give the rotation back.
     """
-    rotation = np.asarray(rotation, float)
+    entries = np.moveaxis(np.asarray(rotation, float), (-2, -1), (0, 1))
+    # each entry in one piece, see `columns`
+    rotation = np.moveaxis(np.array(entries, order="C"), (0, 1), (-2, -1))
     first = np.arctan2(-rotation[..., 1, 2], rotation[..., 2, 2])
     locked = np.hypot(rotation[..., 1, 2], rotation[..., 2, 2]) < 1e-12
     first = np.where(locked, 0.0, first)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from . import nurbs
+from .columns import columns
 from .surface import dot
 
 Array = NDArray[np.float64]
@@ -46,7 +47,7 @@ class Patch:
     def inverse(self, points: Array, start: Array | None = None) -> Array:
         """(u, v) (n, 2) of the nearest points to points (n, 3): of all, or the one downhill from start (n, 2), where the
         search is not closed form."""
-        x, y, z = self._local(points).T
+        x, y, z = columns(self._local(points))
         if self.kind == PLANE:
             return np.stack([x, y], axis=1)
         if self.kind == SPLINE:
@@ -66,7 +67,7 @@ class Patch:
         if self.kind == SPLINE:
             point, along, around = self._derivatives(uv)
             return point, self.sign * self._spline_normal(uv, np.cross(along, around))
-        u, v = uv.T
+        u, v = columns(uv)
         zero = np.zeros_like(u)
         if self.kind == PLANE:
             return self._placed(np.stack([u, v, zero], axis=1), np.stack([zero, zero, zero + 1.0], axis=1))

@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .columns import columns
 from .plane_curve import Array, doubled_area, winding
 from .region import Region, regions
 
@@ -39,8 +40,9 @@ class Period:
         """(u, v) (n, 2) of points (n, 2) of the plane, u within half a turn of the plane about 0."""
         if math.isinf(self.apex):
             return flat.copy()
-        rest = self.apex - flat[:, 1]
-        return np.stack([np.arctan2(flat[:, 0], rest) * abs(self.apex), self.apex - np.hypot(flat[:, 0], rest)], axis=1)
+        x, y = columns(flat)
+        rest = self.apex - y
+        return np.stack([np.arctan2(x, rest) * abs(self.apex), self.apex - np.hypot(x, rest)], axis=1)
 
     def laid(self, cover: Array, about: float = 0.0) -> Array:
         """Points (n, 2) of the plane of (u, v), turned back by `about` mm of u."""

@@ -13,6 +13,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from .columns import columns
+
 Array = NDArray[np.float64]
 
 TURN = 2.0 * np.pi
@@ -58,6 +60,7 @@ class Torus:
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
         """Points and first derivatives."""
+        u, v = np.asarray(u, order="C"), np.asarray(v, order="C")
         cu, su, cv, sv = np.cos(u), np.sin(u), self.tube * np.cos(v), self.tube * np.sin(v)
         reach = self.bend + cv
         return (
@@ -68,8 +71,9 @@ class Torus:
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
         """(u, v) of the nearest points, both from -pi on."""
-        x = points[:, 0] + self.bend
-        return np.arctan2(points[:, 2], x), np.arctan2(points[:, 1], np.hypot(x, points[:, 2]) - self.bend)
+        x, y, z = columns(points)
+        x = x + self.bend
+        return np.arctan2(z, x), np.arctan2(y, np.hypot(x, z) - self.bend)
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ class Cone:
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
         """Points and first derivatives."""
-        out, up = np.sin(self.slope), np.cos(self.slope)
+        out, up, v = np.sin(self.slope), np.cos(self.slope), np.asarray(v, order="C")
         cv, sv, radius = np.cos(v), np.sin(v), self.radius + u * out
         return (
             _stacked(radius * cv, radius * sv, u * up),
@@ -105,8 +109,9 @@ class Cone:
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
         """(u, v) of the nearest points."""
-        out = np.hypot(points[:, 0], points[:, 1]) - self.radius
-        return out * np.sin(self.slope) + points[:, 2] * np.cos(self.slope), np.arctan2(points[:, 1], points[:, 0])
+        x, y, z = columns(points)
+        out = np.hypot(x, y) - self.radius
+        return out * np.sin(self.slope) + z * np.cos(self.slope), np.arctan2(y, x)
 
 
 def cylinder(radius: float) -> Cone:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
+from ..geometry.columns import columns
 from ..issues import InputError
 from ..parameters.cell import CellParameters, NozzleParameters
 from . import machine as machines
@@ -113,10 +114,11 @@ class Cell:
         sx = t[:, 1] * cos + t[:, 0] * sin
         sy = -(t[:, 0] * cos - t[:, 1] * sin)
         cx = np.sqrt(sy * sy + t[:, 2] ** 2)
-        ry = np.arctan2(sy, t[:, 2])
+        ry = np.arctan2(sy, columns(t)[2])
         rotation = frames.about_x(np.arctan2(sx, cx)) @ frames.about_y(ry) @ frames.about_z(rz)
         spun = rotation @ np.swapaxes(frames.smallest_rotation(t, UP), 1, 2)
-        return np.arctan2(spun[:, 1, 0], spun[:, 0, 0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
+        first = columns(spun[:, :, 0])
+        return np.arctan2(first[1], first[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
 
     def rz_of_phi(self, tool: Array, phi: Array) -> Array:
         """The paper's RZ (n,) rad of the rotations phi (n,) about the tool axes (n, 3) in part coordinates."""

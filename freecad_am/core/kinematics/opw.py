@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..geometry.columns import columns
 from ..geometry.frames import Array
 from .opw_inverse import solve
 
@@ -101,9 +102,9 @@ class OpwArm:
     def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
         """The branch index (...) that joint angles `q` (..., 6) are in."""
         angles = np.asarray(q, float)
-        turned = angles * np.array(self.signs, float) - np.array(self.offsets)
-        forearm = turned[..., 2] + math.atan2(self.a2, self.c3)
-        reach = self.a1 + self.c2 * np.sin(turned[..., 1]) + self.forearm * np.sin(turned[..., 1] + forearm)
+        turned = columns(angles * np.array(self.signs, float) - np.array(self.offsets))
+        forearm = turned[2] + math.atan2(self.a2, self.c3)
+        reach = self.a1 + self.c2 * np.sin(turned[1]) + self.forearm * np.sin(turned[1] + forearm)
         back = reach < 0.0
         down = (np.sin(forearm) < 0.0) != back
         result: NDArray[np.intp] = 4 * back + 2 * down + (angles[..., 4] < 0.0)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
+from ..geometry.columns import columns
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -69,8 +70,8 @@ class ByVertical(NamedTuple):
 def by_vertical(source: Array, target: Array) -> ByVertical:
     """Solution 2 of section 3.2, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z), and the same way back."""
     target = np.broadcast_to(target, source.shape)
-    there, back = (np.arctan2(v[:, 0], v[:, 1]) for v in (source, target))
-    up, down = (np.arctan2(np.hypot(v[:, 0], v[:, 1]), v[:, 2]) for v in (source, target))
+    there, back = (np.arctan2(v[0], v[1]) for v in (columns(source), columns(target)))
+    up, down = (np.arctan2(np.hypot(v[0], v[1]), v[2]) for v in (columns(source), columns(target)))
     return ByVertical(there, up, -down, -back)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.ties import first_most
 from ..issues import NOTE, Issue
 from ..toolpath import Bead
 from . import criteria, search
@@ -45,10 +46,10 @@ def plan(
 def best_rz(task: Task, points: Points, thresholds: Array) -> tuple[float, float]:
     """The RZ (rad) with the largest smallest margin over all points, and that margin (negative: none is feasible)."""
     rough = np.linspace(-np.pi, np.pi, TRIED, endpoint=False)
-    peak = rough[margins(task, points, thresholds, rough).argmax()]
+    peak = rough[int(first_most(margins(task, points, thresholds, rough)))]
     near: Array = peak + np.linspace(-1.0, 1.0, FINE) * (TURN / TRIED)
     fine = margins(task, points, thresholds, near)
-    return float(near[fine.argmax()]), float(fine.max())
+    return float(near[int(first_most(fine))]), float(fine.max())
 
 
 def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Array:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.ties import first_least, first_most
 from ..issues import Issue
 from ..toolpath import Bead
 from .constant import bead_paths
@@ -92,10 +93,10 @@ def _searched(task: Task, at: Points, threshold: Array, before: Array | None) ->
     margin = np.minimum(
         task.rows.margin(joints), condition_margin(task.condition(at, phi, joints), threshold)
     )
-    best = margin.argmax(axis=0)
+    best = first_most(margin, axis=0)
     if before is not None:
         away = joints - before
         motion = np.where(margin >= 0.0, (away * away) @ task.weights, np.inf)
-        best = np.where((margin >= 0.0).any(axis=0), motion.argmin(axis=0), best)
+        best = np.where((margin >= 0.0).any(axis=0), first_least(motion, axis=0), best)
     each = np.arange(len(at))
     return phi[best, each], joints[best, each]

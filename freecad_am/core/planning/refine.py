@@ -8,12 +8,14 @@ through SLSQP one by one.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.ties import alike
 from ..kinematics import jacobian as jac
-from . import basis, criteria
+from . import basis, criteria, feasible
 from .points import Points
 from .task import Task
 
@@ -23,7 +25,10 @@ Array = NDArray[np.float64]
 CONDITION_RESERVE = 1e-3
 # by how little a constraint may be violated and count as kept: limits and condition have reserves many times as wide
 KEPT = 4e-7
+# runs of the optimiser, each with the constraints added that the one before came close to
+ROUNDS = 4
 STATIONARY = "stationary at the start found by the search"
+OUT_OF_LIMITS = "no polynomial found that keeps all limits"
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,10 @@ def refine(
             _climbed(_Bead(task, part, thresholds[chosen]), start, directions[bead])
             for start in starts[:, bead] if np.isfinite(start).all()
         ]
-        best = min(range(len(tried)), key=lambda k: (tried[k][0], tried[k][1], k))
+        best = 0
+        for k in range(1, len(tried)):
+            if _better(tried[k], tried[best]):
+                best = k
         _, objective[bead], coefficients[bead], reasons[bead], iterations[bead] = tried[best]
     return Refined(coefficients, objective, tuple(reasons), tuple(iterations))
 
@@ -88,12 +96,23 @@ class _Bead:
     def state(self, coefficients: Array) -> _State:
         return _state(self.task, self.points, self.thresholds, coefficients[None])
 
+    def constraints(self, coefficients: Array, free: Array) -> tuple[Array, Array] | None:
+        """All constraints at all points (r,) and their derivatives (r, k) along the free columns; None out of reach."""
+        return _at_all_points(self.task, self.points, self.thresholds, coefficients[None], free)
+
     def worth(self, coefficients: Array) -> tuple[float, float]:
         """By how much the constraints are violated at worst, and the objective: the less the better."""
         state = self.state(coefficients)
         worst = float(np.nan_to_num(state.constraints, nan=-1.0).min())
         violated = max(0.0, -worst) if np.isfinite(state.objective[0]) else np.inf
         return (violated if violated > KEPT else 0.0, float(state.objective[0]))
+
+
+def _better(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
+    """Whether (violation, objective, ...) is less than another by more than rounding."""
+    if not alike(one[0], other[0]) or not alike(other[0], one[0]):
+        return bool(one[0] < other[0])
+    return not bool(alike(other[1], one[1]))
 
 
 def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float, Array, str, int]:
@@ -105,43 +124,87 @@ def _climbed(bead: _Bead, start: Array, directions: Array) -> tuple[float, float
         # an open bead of the first degree has been looked at in the search for slope and offset at once
         if count == 1 and len(used) > 1 and used[1] == 1:
             continue
-        found, reason, iterations = _slsqp(bead, here, directions[:, used[:count]])
+        free = directions[:, used[:count]]
+        if worth[0] > 0.0:
+            here, worth = _brought_in(bead, here, free, worth)
+            if worth[0] > 0.0:
+                reason = OUT_OF_LIMITS
+                continue
+        found, reason, iterations = _slsqp(bead, here, free)
         better = bead.worth(found)
         if better <= worth:
             here, worth = found, better
     return (*worth, here, reason, iterations)
 
 
+def _brought_in(bead: _Bead, here: Array, free: Array, worth: tuple[float, float]) -> tuple[Array, tuple[float, float]]:
+    """Coefficients that violate the limits less than those here, where there are any, and their worth."""
+    nearer = here + free @ feasible.approached(lambda x: bead.constraints(here + free @ x, free), np.zeros(free.shape[1]))
+    other = bead.worth(nearer)
+    return (nearer, other) if _better(other, worth) else (here, worth)
+
+
 def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, int]:
+    """Coefficients, why the optimiser stopped and after how many iterations; run again where it came upon constraints that
+    it had not been told of."""
+    x, reason, iterations = np.zeros(directions.shape[1]), STATIONARY, 0
+    rows = np.zeros(0, dtype=np.int64)
+    for _ in range(ROUNDS):
+        known = bead.constraints(start + directions @ x, directions)
+        if known is None:
+            break
+        before, rows = len(rows), np.union1d(rows, _tightest(known[0], len(bead.points)))
+        if len(rows) == before:
+            break
+        result = _run(bead, start, directions, x, rows)
+        x, reason, iterations = result.x, str(result.message), iterations + int(result.nit)
+    return start + directions @ x, reason, iterations
+
+
+def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: NDArray[np.int64]) -> Any:
     from scipy.optimize import minimize  # slow to import, and most jobs on parts of revolution never need it
 
-    cache: dict[bytes, _State] = {}
+    states: dict[bytes, _State] = {}
+    everywhere: dict[bytes, tuple[Array, Array]] = {}
 
     def state(x: Array) -> _State:
         key = x.tobytes()
-        if key not in cache:
-            cache.clear()
-            cache[key] = bead.state(start + directions @ x)
-        return cache[key]
+        if key not in states:
+            states.clear()
+            states[key] = bead.state(start + directions @ x)
+        return states[key]
+
+    def constraints(x: Array) -> tuple[Array, Array]:
+        key = x.tobytes()
+        if key not in everywhere:
+            everywhere.clear()
+            found = bead.constraints(start + directions @ x, directions)
+            lost = np.full(len(rows), -1.0), np.zeros((len(rows), len(x)))
+            everywhere[key] = lost if found is None else (found[0][rows], found[1][rows])
+        return everywhere[key]
 
     def objective(x: Array) -> float:
         value = float(state(x).objective[0])
         return value if np.isfinite(value) else 1e6
 
     # scipy's stubs do not know a list of constraint dictionaries with their own types
-    result = minimize(  # type: ignore[call-overload]
-        objective,
-        np.zeros(directions.shape[1]),
-        jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions,
-        constraints=[{
-            "type": "ineq",
-            "fun": lambda x: np.nan_to_num(state(x).constraints[0], nan=-1.0),
-            "jac": lambda x: np.nan_to_num(state(x).constraint_rates[0]) @ directions,
-        }],
+    return minimize(  # type: ignore[call-overload]
+        objective, x, jac=lambda x: np.nan_to_num(state(x).gradient[0]) @ directions,
+        constraints=[{"type": "ineq", "fun": lambda x: constraints(x)[0], "jac": lambda x: constraints(x)[1]}],
         method="SLSQP",
         options={"ftol": bead.task.parameters.tolerance, "maxiter": bead.task.parameters.max_iterations},
     )
-    return start + directions @ result.x, str(result.message), int(result.nit)
+
+
+def _tightest(values: Array, points: int) -> NDArray[np.int64]:
+    """Which constraints are told to the optimiser: of each row those at its local minima along the bead and beside them."""
+    value = values.reshape(-1, points)
+    padded = np.pad(value, ((0, 0), (1, 1)), constant_values=np.inf)
+    lowest = (value <= padded[:, :-2]) & (value <= padded[:, 2:])
+    beside = lowest.copy()
+    beside[:, 1:] |= lowest[:, :-1]
+    beside[:, :-1] |= lowest[:, 1:]
+    return np.flatnonzero(beside.ravel())
 
 
 def _state(task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True) -> _State:
@@ -188,33 +251,63 @@ def _narrow(task: Task) -> int:
     return int(high - low < 2.0 * np.pi - 1e-9)
 
 
+def _values(task: Task, thresholds: Array, phi: Array, joints: Array, matrix: Array) -> Array:
+    """Eqs. 18 and 19 as corrected, one row per limit and one for the condition: (m + 1, T)."""
+    ratio = jac.condition(matrix, task.parameters.characteristic_length)
+    values = [
+        0.25 * (1.0 - task.rows.offset(joints).T ** 2), (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None],
+    ]
+    if _narrow(task):
+        values.append(0.25 * (1.0 - _share(task, phi) ** 2)[None])
+    return np.concatenate(values)
+
+
+def _slopes(task: Task, phi: Array, phi_rate: Array, joints: Array, rates: Array, matrix: Array) -> Array:
+    """(m + 1, T) their derivatives by the value of the polynomial at each point."""
+    slopes = [
+        -0.5 * task.rows.offset(joints).T * (rates @ task.rows.matrix.T / task.rows.half).T,
+        criteria.condition_rate(task, joints, rates, matrix)[None],
+    ]
+    if _narrow(task):
+        low, high = task.parameters.rotation_range
+        slopes.append((-0.5 * _share(task, phi) / (0.5 * (high - low)) * phi_rate)[None])
+    return np.concatenate(slopes)
+
+
+def _share(task: Task, phi: Array) -> Array:
+    low, high = task.parameters.rotation_range
+    return (phi - 0.5 * (low + high)) / (0.5 * (high - low))
+
+
 def _constraints(
     task: Task, points: Points, thresholds: Array, phi: Array, phi_rate: Array, joints: Array, rates: Array,
     matrix: Array, powers: Array, wanted: bool,
 ) -> tuple[Array, Array]:
-    """Eqs. 18 and 19 as corrected, one value per limit and bead: (B, m + 1) and derivatives (B, m + 1, degree + 1)."""
-    offset = task.rows.offset(joints)
-    ratio = jac.condition(matrix, task.parameters.characteristic_length)
-    values = [0.25 * (1.0 - offset.T**2), (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None]]
-    low, high = task.parameters.rotation_range
-    half = 0.5 * (high - low)
-    share = (phi - (low + half)) / half
-    if _narrow(task):
-        values.append(0.25 * (1.0 - share**2)[None])
-    value = np.concatenate(values)
+    """The worst of each row and bead: (B, m + 1), and derivatives (B, m + 1, degree + 1)."""
+    value = _values(task, thresholds, phi, joints, matrix)
     worst = points.worst(value)
     if not wanted:
         return worst.T, np.zeros((points.beads, len(value), powers.shape[1]))
-    slopes = [
-        -0.5 * offset.T * (rates @ task.rows.matrix.T / task.rows.half).T,
-        criteria.condition_rate(task, joints, rates, matrix)[None],
-    ]
-    if _narrow(task):
-        slopes.append((-0.5 * share / half * phi_rate)[None])
-    slope = np.concatenate(slopes)
+    slope = _slopes(task, phi, phi_rate, joints, rates, matrix)
     at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
     rows = np.arange(len(value))[:, None]
     return worst.T, (slope[rows, at][:, :, None] * powers[at]).transpose(1, 0, 2)
+
+
+def _at_all_points(
+    task: Task, points: Points, thresholds: Array, coefficients: Array, free: Array
+) -> tuple[Array, Array] | None:
+    phi, phi_rate = task.rotation(points, points.polynomial(coefficients))
+    joints = task.joints(points, phi)
+    if np.isnan(joints).any():
+        return None
+    rates, matrix = task.spin_rates(points, phi, joints)
+    rates = rates * phi_rate[:, None]
+    value = _values(task, thresholds, phi, joints, matrix)
+    slope = _slopes(task, phi, phi_rate, joints, rates, matrix)
+    shape = points.powers(coefficients.shape[1] - 1) @ free
+    rate = (np.nan_to_num(slope)[:, :, None] * shape).reshape(-1, free.shape[1])
+    return np.nan_to_num(value, nan=-1.0).ravel(), rate
 
 
 def _where_worst(points: Points, values: Array, worst: Array) -> NDArray[np.int64]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.ties import first_least, first_most
 from ..kinematics import jacobian as jac
 from . import criteria
 from .points import Points, steps
@@ -53,8 +54,8 @@ class Found:
     def best(self) -> NDArray[np.int64]:
         """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
         feasible = self.margin >= 0.0
-        ranked = np.where(feasible, self.objective, np.inf).argmin(axis=0)
-        return np.asarray(np.where(feasible.any(axis=0), ranked, self.margin.argmax(axis=0)), dtype=np.int64)
+        ranked = first_least(np.where(feasible, self.objective, np.inf), axis=0)
+        return np.asarray(np.where(feasible.any(axis=0), ranked, first_most(self.margin, axis=0)), dtype=np.int64)
 
 
 def everywhere(

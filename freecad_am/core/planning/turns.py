@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.ties import first_least
 from ..issues import NOTE, WARNING, Issue
 from ..toolpath import Bead
 from .joint_path import BeadPath
@@ -24,6 +25,8 @@ Array = NDArray[np.float64]
 
 # an axis that moves this much between two beads is said to turn back, rad
 TURNS_BACK = 1.5 * math.pi
+# rad; an axis that ends no farther from where it started has come back
+ROUNDING = 1e-6
 # share of the stroke a piece of a split bead may use
 USABLE = 0.98
 
@@ -78,7 +81,7 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
     turn = joints[-1, axis] - joints[0, axis]
     off = joints[:-1, axis] + 0.5 * turn - centre
     off -= TURN * np.round(off / TURN)
-    index = int(np.abs(off).argmin())
+    index = int(first_least(np.abs(off)))
     return bead.started_at(index), index
 
 
@@ -104,16 +107,24 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
         count = int(np.ceil(np.ptp(along) / (USABLE * (high - low)))) + more
         ends = np.round(np.linspace(0, len(bead) - 1, count + 1)).astype(int)
         return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
-    rising = along[-1] > along[0]
+    if abs(along[-1] - along[0]) > ROUNDING:
+        return _cut(along, bool(along[-1] > along[0]), low, high)
+    # an axis that comes back may start from either side: from that with the fewer pieces, one alone being no way
+    both = [_cut(along, rising, low, high) for rising in (True, False)]
+    return min(both, key=lambda parts: (len(parts) == 1, len(parts)))
+
+
+def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
+    """The pieces of an axis (n,) that runs up, or down, each as far as the axis has room; one where that does not help."""
     cuts = [0]
     while True:
         turns = np.ceil((low - along[cuts[-1]]) / TURN) if rising else np.floor((high - along[cuts[-1]]) / TURN)
         turned = along[cuts[-1] :] + turns * TURN
         out = np.flatnonzero(turned > high if rising else turned < low)
         if not len(out):
-            return [slice(start, end + 1) for start, end in zip(cuts, [*cuts[1:], len(bead) - 1])]
+            return [slice(start, end + 1) for start, end in zip(cuts, [*cuts[1:], len(along) - 1])]
         if out[0] < 2:
-            return [slice(0, len(bead))]
+            return [slice(0, len(along))]
         cuts.append(cuts[-1] + int(out[0]) - 1)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..geometry.ties import alike, first_least, first_most
 from . import search
 from .points import TURN, Points
 from .task import Task
@@ -43,7 +44,7 @@ def settle(task: Task, points: Points, thresholds: Array, coefficients: Array) -
     flat = as_good(task, near.objective, here.objective)
     margin = np.where(flat, near.margin, -np.inf)
     chosen = _least_motion(task, points, near.coefficients, margin)
-    improved = margin[chosen, np.arange(points.beads)] > here.margin[0]
+    improved = ~alike(-here.margin[0], -margin[chosen, np.arange(points.beads)])
     return np.where(improved[:, None], near.coefficients[chosen, np.arange(points.beads)], coefficients)
 
 
@@ -55,9 +56,9 @@ def as_good(task: Task, objective: ArrayLike, best: Array) -> NDArray[np.bool_]:
 
 def _peaks(margin: Array) -> Array:
     """(2, B) coarse steps of the two highest peaks of the margin (C, B) around the turn that are different ones."""
-    first = margin.argmax(axis=0)
+    first = first_most(margin, axis=0)
     apart = np.abs((np.arange(COARSE)[:, None] - first + COARSE // 2) % COARSE - COARSE // 2)
-    second = np.where(apart >= APART, margin, -np.inf).argmax(axis=0)
+    second = first_most(np.where(apart >= APART, margin, -np.inf), axis=0)
     return np.stack([first, second]).astype(float)
 
 
@@ -75,11 +76,11 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
     for bead in range(points.beads):
         close = margin[:, bead] >= margin[:, bead].max() - CLOSE
         if bead == 0 or not np.isfinite(margin[:, bead].max()):
-            chosen[bead] = margin[:, bead].argmax()
+            chosen[bead] = first_most(margin[:, bead])
             continue
         step = start[:, bead] - end[chosen[bead - 1], bead - 1]
         step -= TURN * np.round(step / TURN)
-        chosen[bead] = np.where(close, (step * step) @ task.weights, np.inf).argmin()
+        chosen[bead] = first_least(np.where(close, (step * step) @ task.weights, np.inf))
     return chosen
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.columns import columns
+
 Array = NDArray[np.float64]
 
 STRAIGHT = 1e-9  # rad of turn over the window; less is none
@@ -20,7 +22,8 @@ def radii(flat: Array, closed: bool, window: float) -> Array:
     step = np.diff(flat, axis=0)
     length = np.linalg.norm(step, axis=1)
     s = np.r_[0.0, np.cumsum(length)]
-    heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    x, y = columns(step)
+    heading = np.unwrap(np.arctan2(y, x))
     if closed:
         last = np.unwrap([heading[-1], heading[0]])[1] - heading[0]  # turn of a whole round
         rounds = max(1, int(np.ceil(window / s[-1])))

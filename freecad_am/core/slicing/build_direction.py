@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.columns import columns
 from ..geometry.profile import Array
 
 SCAN = 48  # tilts tried before the first good one is refined
@@ -59,13 +60,15 @@ def held(build: Array, lead: float, tilt: float, rising: bool) -> Array:
 
 def from_vertical(directions: Array) -> Array:
     """Angle (n,) rad between directions (n, 3) and the axis."""
-    return np.arctan2(np.hypot(directions[:, 0], directions[:, 1]), directions[:, 2])
+    x, y, z = columns(directions)
+    return np.arctan2(np.hypot(x, y), z)
 
 
 def tilted_back(build: Array, angle: Array) -> Array:
     """Build directions (n, 3) turned by the angle (n,) rad towards the axis, at most onto it."""
-    level = np.hypot(build[:, 0], build[:, 1])
-    left = np.maximum(np.arctan2(level, build[:, 2]) - angle, 0.0)
+    x, y, z = columns(build)
+    level = np.hypot(x, y)
+    left = np.maximum(np.arctan2(level, z) - angle, 0.0)
     along = build[:, :2] / np.where(level > 0.0, level, 1.0)[:, None]
     turned = np.column_stack([np.sin(left)[:, None] * along, np.cos(left)])
     return np.where((angle > 0.0)[:, None] & (level > 0.0)[:, None], turned, build)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.columns import columns
 from ..geometry.surface import dot
 from ..issues import InputError
 
@@ -71,8 +72,9 @@ def held(build: Array, forward: Array, outside: Array, lead: float, tilt: float)
 
 def capped(vectors: Array, most: float) -> tuple[Array, float]:
     """Directions turned back to `most` rad from the vertical where they lean over more, and by how much the farthest is."""
-    level = np.hypot(vectors[:, 0], vectors[:, 1])
-    angle = np.arctan2(level, vectors[:, 2])
+    x, y, z = columns(vectors)
+    level = np.hypot(x, y)
+    angle = np.arctan2(level, z)
     over = angle > most + 1e-12
     if not over.any():
         return vectors, 0.0

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..filling.curve import PlaneCurve
+from ..geometry.columns import columns
 from ..geometry.developable import TURN, Array, Developable
 from ..geometry.on_hub import Base
 from ..parameters.build_direction import BuildDirectionParameters
@@ -75,7 +76,8 @@ def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
     length = np.linalg.norm(edge, axis=1)
     theta, z = _unrolled(flat, surface)
     phi = theta * math.sin(surface.taper)
-    heading = np.arctan2(edge[:, 1], edge[:, 0])
+    along, across = columns(edge)
+    heading = np.arctan2(across, along)
     share = np.maximum(np.abs(np.cos(heading - phi[:-1])), np.abs(np.cos(heading - phi[1:])))
     share = np.minimum(share + np.abs(np.diff(phi)), 1.0)
     rho = np.full(len(z), surface.radius) if surface.is_cylinder else (surface.height - z) * math.tan(surface.taper)

@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.ties import first_least
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
@@ -36,10 +38,10 @@ def least(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
     for k in range(1, n):
         between = fixed if fixed is not None else ((states[:, k - 1, :, None] - states[:, k, None, :]) ** 2).sum(axis=3)
         ways = total[:, :, None] + change[:, k - 1, None, None] * between
-        came[:, k] = ways.argmin(axis=1)
+        came[:, k] = first_least(ways, axis=1)
         total = ways.min(axis=1) + own[:, k]
     chosen = np.zeros((b, n), dtype=np.intp)
-    chosen[:, -1] = total.argmin(axis=1)
+    chosen[:, -1] = first_least(total, axis=1)
     for k in range(n - 1, 0, -1):
         chosen[:, k - 1] = came[np.arange(b), k, chosen[:, k]]
     return chosen

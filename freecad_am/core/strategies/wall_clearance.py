@@ -20,9 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
+from ..geometry.columns import columns
 from ..geometry.frustum import Frustum
 from ..geometry.obstacles import Obstacles, of_bodies
 from ..geometry.surroundings import Body
+from ..geometry.ties import first_least
 from ..issues import ERROR, NOTE, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
@@ -55,7 +57,8 @@ class _Room:
 
     def clear(self, at: Index, axis: Array) -> Mask:
         """Whether the axes (k, 3) at the points numbered `at` (k,) are clear and within the cap."""
-        clear = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]) <= self.max_tilt + CAP
+        x, y, z = columns(axis)
+        clear = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
         rows = np.flatnonzero(clear)
         clear[rows] = ~self.bodies.touched(self.above_bodies, self.points[at[rows]], axis[rows])
         rows = np.flatnonzero(clear)
@@ -205,7 +208,7 @@ class _Bench:
         # a closed bead starts where least tilt is needed, and with it
         size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
         anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
-        return states[self._least(states[None], allowed, anchor, size.argmin(axis=1))], stuck
+        return states[self._least(states[None], allowed, anchor, first_least(size))], stuck
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
         """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
