@@ -6,7 +6,10 @@ import json
 import math
 import shutil
 
+import FreeCAD
+import Mesh
 import numpy as np
+import Part
 import pytest
 
 from freecad_am.batch import job as jobs
@@ -75,6 +78,35 @@ def test_the_calibration_table_is_beside_the_job(read, tmp_path):
     assert read(START + "process: {bead_model: csw}\n").process.bead_model == "csw"
 
 
+MESH = """\
+part: {file: blade.stl}
+strategy:
+  kind: developable
+  base: {radius: 30 mm, height: 120 mm, axis: [[0, 0, 50], [0, 0, 1]]}
+  layer_height: 5 mm
+  chord_error: 0.1 mm
+"""
+
+
+def test_a_mesh_on_a_base_given_by_numbers(workshop):
+    bar = Part.makeBox(60.0, 14.0, 30.0, FreeCAD.Vector(0, -7, 60))
+    points, facets = bar.tessellate(0.1)
+    Mesh.Mesh([[points[k] for k in facet] for facet in facets]).write(str(workshop.folder / "blade.stl"))
+    (workshop.folder / "blade.yaml").write_text(MESH, encoding="utf-8")
+    done = workshop.run("plan", "blade.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    x, y, z, layer = (np.array([float(row[name]) for row in rows]) for name in ("x_mm", "y_mm", "z_mm", "layer"))
+    a = math.atan2(30.0, 120.0)
+    assert np.abs((np.hypot(x, y) - 30.0) * math.cos(a) + (z - 50.0) * math.sin(a) - 5.0 * layer).max() < 1e-5
+    assert np.abs(y).max() < 7.0 and z.min() > 60.0 and z.max() < 90.0
+    other = MESH.replace("developable", "revolution").split("  base")[0]
+    (workshop.folder / "blade.yaml").write_text(other, encoding="utf-8")
+    refused = workshop.run("plan", "blade.yaml")
+    assert (refused.status, refused.err.count("error[UNSUPPORTED_FILE]")) == (2, 1), refused.err
+
+
 def thruster(workshop, root, height):
     """Report and deposit rows of the thruster at another layer height, and the text of its programs."""
     for file in (root / "resources" / "examples" / "thruster").iterdir():
@@ -89,6 +121,8 @@ def thruster(workshop, root, height):
     report = json.loads((out / "report.json").read_text(encoding="utf-8"))
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert page.count("laid flat</text>") == 6 and "Predicted width of the bead" in page
     return report, rows, {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
 
 
