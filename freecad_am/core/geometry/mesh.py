@@ -46,13 +46,12 @@ class Mesh:
         return edges
 
     @cached_property
-    def border(self) -> Mask:
-        """The vertices (n,) on edges with a face on one side only."""
-        pairs = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        edges, count = np.unique(pairs, axis=0, return_counts=True)
-        border = np.zeros(len(self.vertices), dtype=bool)
-        border[edges[count == 1]] = True
-        return border
+    def border_edges(self) -> Index:
+        """The edges (k, 2) with a face on one side only, which is on their left."""
+        half = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        _, place, count = np.unique(np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True)
+        edges: Index = half[count[np.ravel(place)] == 1]
+        return edges
 
     @cached_property
     def longest_edge(self) -> float:
@@ -86,20 +85,21 @@ class Mesh:
         touched: Index = np.unique(faces[at])
         return touched
 
-    def joined(self, faces: Index, members: Mask, seeds: Mask) -> Mask:
-        """The members (n,) that edges of the faces link to a seed through members alone; seeds count as members."""
-        band, corners = np.unique(self.faces[faces], return_inverse=True)
-        seeded = seeds[band]
-        inside = members[band] | seeded
-        pairs = corners.reshape(-1, 3)[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    def joined(self, members: Mask, seeds: Mask) -> Mask:
+        """The members (n,) that edges link to a seed through members alone; seeds count as members."""
+        inside = members | seeds
+        pairs = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
         pairs = pairs[inside[pairs].all(axis=1)]
-        links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(band), len(band)))
+        links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(inside), len(inside)))
         count, label = connected_components(links, directed=False)
         linked = np.zeros(count, dtype=bool)
-        linked[label[seeded]] = True
-        found = seeds.copy()
-        found[band[inside & linked[label]]] = True
-        return found
+        linked[label[seeds]] = True
+        return inside & linked[label]
+
+    def part(self, faces: Index) -> tuple[Mesh, Index]:
+        """The mesh of some faces (k,) alone, and the numbers (m,) that its vertices have here."""
+        vertices, corners = np.unique(self.faces[faces], return_inverse=True)
+        return Mesh(self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)), vertices
 
     def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
         """The lines on the faces (k,) along which the values (n,) are zero, interpolated along edges.

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Beads that close what fronts leave between them.
 
-Where fronts meet, or come together at a corner, points are left that no front passes: up to a layer height deep in a
-front that closes on itself, and between two that run into each other. What lies deeper than COVERED in there gets a bead
-of its own along the middle of the gap. Gaps that reach an edge of the wall are left: there the wall ends.
+Where fronts meet, come together at a corner, or run along the edge of an opening or a side of the wall, points are left that
+no front passes: up to a layer height deep in a front that closes on itself, and between two that run into each other. What
+lies deeper than COVERED in there gets a bead of its own along the middle of the gap. Within a layer height of an edge at
+which layers finish nothing is asked: there the wall ends.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,41 +18,46 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry.mesh import Mesh
+from ..geometry.mesh import LevelLine, Mesh, chains
 from ..geometry.space_curve import SpaceCurve
+from .even_line import even, rounded
 from .front_curve import Wall
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-COVERED = 0.59  # of the height; no point is to be farther from a bead
+COVERED = 0.585  # of the height; no point is to be farther from a bead
 LEVELS = (0.5, 0.42, 0.34)  # of the height; how deep the border of what is closed lies, for a bead that is long enough
 SHORTEST = 0.5  # of the height
-FINE = 0.2  # of the height; edges of the mesh on which gaps are seen
+COARSE, FINE = 0.2, 0.1  # of the height; edges of the mesh on which gaps are sought, and are seen
+LONGEST = 2.0  # of the height; of a bead in a gap whose border is not as deep as layers leave the wall anyway
+STRAIGHT = 1.2  # of the height; shorter beads are
+ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
 SAMPLED = 0.05  # of the height; places along the beads
 ROUNDS = 4
-SEEN = 0.56  # of the height; gaps this deep at one of those edges' ends are looked at
+SEEN = 0.02  # of the height; gaps deeper by this than half the spacing of layers are looked at
+LEFT = 0.005  # of the height, likewise; what is left open
+SAME = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
 ALIKE = 6  # decimals of mm to which vertices of the fine mesh are told apart
 
 
-def closing(wall: Wall, mesh: Mesh, fronts: list[SpaceCurve], passed: Mask, height: float) -> list[SpaceCurve]:
+def closing(
+    wall: Wall, mesh: Mesh, fronts: list[SpaceCurve], passed: Index, height: float, ends: Array, widest: float = 1.0
+) -> list[SpaceCurve]:
     """The beads, along the middle of gaps, that cover the wall between fronts.
 
     fronts: of two layers that follow each other, or of the last one. passed: (n,) the vertices of the mesh between them.
+    ends: points (k, 3) along the edges at which layers finish. widest: heights that the layers may be apart.
     """
-    faces = mesh.faces[passed[mesh.faces].any(axis=1)]
-    if not len(faces):
+    if not len(passed):
         return []
+    faces = mesh.faces[mesh.faces_at(passed)]
     near = cKDTree(_samples(fronts, SAMPLED * height))
     corners = mesh.vertices[faces]
-    share, _ = _parts(corners, FINE * height)
+    share, _ = _parts(corners, COARSE * height)
     depth = np.asarray(near.query(np.einsum("sk,mkc->msc", share, corners), distance_upper_bound=height)[0])
-    deep: Mask = np.any(depth > SEEN * height, axis=1)  # infinite where it is farther
-    edge = np.unique(faces[mesh.border[faces]])
-    bare = edge[near.query(mesh.vertices[edge])[0] > LEVELS[0] * height] if len(edge) else edge
-    if len(bare) and deep.any():  # of the gaps that reach an edge of the wall nothing is asked
-        deep[deep] = cKDTree(mesh.vertices[bare]).query(corners[deep].mean(axis=1))[0] > height
+    deep: Mask = np.any(depth > (0.5 * widest + SEEN) * height, axis=1)  # infinite where it is farther
     if not deep.any():
         return []
     # the gap ends within a layer height of where it is deep
@@ -57,11 +65,15 @@ def closing(wall: Wall, mesh: Mesh, fronts: list[SpaceCurve], passed: Mask, heig
     beside = cKDTree(corners[deep].mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * size
     fine = _finer(mesh.vertices, faces[beside], FINE * height)
     depth = np.asarray(near.query(fine.vertices)[0])
+    asked = np.ones(len(depth), dtype=bool)
+    cut = np.setdiff1d(fine.border_edges, _on_rims(mesh, np.unique(faces), fine))
+    if len(ends):
+        asked = np.asarray(cKDTree(ends).query(fine.vertices)[0]) > height
+    levels = LEVELS if widest == 1.0 else (0.5 * widest,)  # lower ones would take all that lies between uneven layers in
+    gaps = _Gaps(wall, fine, asked, cut, height, max(COVERED, 0.5 * widest + LEFT), levels)
     found: list[SpaceCurve] = []
     for _ in range(ROUNDS):
-        if depth.max() <= COVERED * height:
-            break
-        more = _closed_gaps(wall, fine, depth, height)
+        more = gaps.closed(depth)
         if not more:
             break
         found += more
@@ -69,31 +81,91 @@ def closing(wall: Wall, mesh: Mesh, fronts: list[SpaceCurve], passed: Mask, heig
     return found
 
 
-def _closed_gaps(wall: Wall, fine: Mesh, depth: Array, height: float) -> list[SpaceCurve]:
-    """One bead for each gap that is deeper than COVERED somewhere."""
-    found: list[SpaceCurve] = []
-    done = np.zeros(len(depth), dtype=bool)
-    for level in LEVELS:
-        inside = depth > level * height
-        label = _labels(fine, inside)
-        deepest = np.zeros(label.max() + 1)
-        np.maximum.at(deepest, label[inside], depth[inside])
-        lines = fine.level_lines(depth - level * height, np.arange(len(fine.faces)))
-        if not lines or not inside.any():
-            continue
-        places, tree = np.flatnonzero(inside), cKDTree(fine.vertices[inside])
-        owner = np.array([label[places[tree.query(line.points.mean(axis=0) if len(line.points) < 3 else line.points[0])[1]]]
-                          for line in lines])
-        for gap in np.unique(owner):
-            its = [lines[k] for k in np.flatnonzero(owner == gap)]
-            members = label == gap
-            if deepest[gap] <= COVERED * height or done[members].any() or not all(line.closed for line in its):
-                continue
-            bead = _middle(wall, [line.points for line in its], height)
-            if bead is not None and (bead.length >= SHORTEST * height or level == LEVELS[-1]):
+class _Gaps(NamedTuple):
+    """Where gaps may be: a fine mesh, and its vertices (n,) that must not be farther than `covered` heights from a bead.
+
+    cut: those of its vertices (k,) that lie on its border, but on none of the wall: what reaches them is no gap between
+    fronts. levels: heights, where borders of gaps are drawn."""
+
+    wall: Wall
+    fine: Mesh
+    asked: Mask
+    cut: Index
+    height: float
+    covered: float
+    levels: tuple[float, ...]
+
+    def closed(self, depth: Array) -> list[SpaceCurve]:
+        """One bead for each gap that is too deep somewhere; depth: (n,) of the vertices."""
+        height, fine = self.height, self.fine
+        found: list[SpaceCurve] = []
+        short: list[tuple[SpaceCurve, Mask]] = []
+        done = np.zeros(len(depth), dtype=bool)
+        for level in self.levels:
+            inside = depth > level * height
+            if not (self.asked & (depth > self.covered * height) & ~done).any():
+                break
+            label = _labels(fine, inside)
+            deepest = np.zeros(label.max() + 1)
+            np.maximum.at(deepest, label[inside & self.asked], depth[inside & self.asked])
+            deepest[label[self.cut[inside[self.cut]]]] = 0.0
+            lines = fine.level_lines(level * height - depth, np.arange(len(fine.faces)))  # gaps on their left
+            places, tree = np.flatnonzero(inside), cKDTree(fine.vertices[inside])
+            owner = np.array([label[places[tree.query(line.points[0])[1]]] for line in lines])
+            for gap in np.flatnonzero(deepest > self.covered * height):
+                members = label == gap
+                loops = _loops(fine, members, [line for line, own in zip(lines, owner) if own == gap])
+                bead = _middle(self.wall, loops, height) if loops and not done[members].any() else None
+                if bead is None or (level != self.levels[0] and bead.length > LONGEST * height):
+                    continue
+                if bead.length < SHORTEST * height:
+                    short.append((bead, members))
+                else:
+                    found.append(bead)
+                    done |= members
+        for bead, members in short:  # with lower borders they are no longer, or take in too much
+            if not done[members].any():
                 found.append(bead)
                 done |= members
-    return found
+        return found
+
+
+def _on_rims(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
+    """The vertices of the fine mesh that lie on the border of the mesh, near some vertices of that."""
+    edges = mesh.border_edges[np.isin(mesh.border_edges, vertices).all(axis=1)]
+    if not len(edges):
+        return np.empty(0, dtype=np.intp)
+    border = np.unique(fine.border_edges)
+    start, end = mesh.vertices[edges].transpose(1, 0, 2)
+    near = cKDTree(0.5 * (start + end)).query(fine.vertices[border], k=min(4, len(edges)))[1].reshape(len(border), -1)
+    along, ahead = (end - start)[near], fine.vertices[border][:, None] - start[near]
+    share = np.clip((along * ahead).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
+    off = np.linalg.norm(ahead - share[..., None] * along, axis=-1).min(axis=1)
+    on: Index = border[off < SAME]
+    return on
+
+
+def _loops(fine: Mesh, members: Mask, lines: list[LevelLine]) -> list[Array]:
+    """The borders (k, 3) of a gap, all the way around: its level lines, and where they end the mesh's own border."""
+    loops = [line.points for line in lines if line.closed]
+    pieces = [line.points for line in lines if not line.closed]
+    begin, end = fine.border_edges[members[fine.border_edges].all(axis=1)].T
+    own, place = np.unique(np.r_[begin, end, fine.border_edges[:, 0][members[fine.border_edges[:, 0]]]], return_inverse=True)
+    following = np.full(len(own), -1, dtype=np.intp)
+    following[place[: len(begin)]] = place[len(begin) : 2 * len(begin)]
+    for chain, closed in chains(following) if len(own) else ():
+        (loops if closed else pieces).append(fine.vertices[own[chain]])
+    while pieces:
+        loop = [pieces.pop(0)]
+        while pieces:
+            here = loop[-1][-1]
+            steps = [np.linalg.norm(piece[0] - here) for piece in pieces]
+            following_one = int(np.argmin(steps))
+            if steps[following_one] > np.linalg.norm(loop[0][0] - here):
+                break
+            loop.append(pieces.pop(following_one))
+        loops.append(np.vstack(loop))
+    return [loop for loop in loops if len(loop) > 2]
 
 
 def _labels(fine: Mesh, inside: Mask) -> Index:
@@ -137,16 +209,19 @@ def _through(wall: Wall, points: Array, height: float, closed: bool) -> SpaceCur
         points = np.vstack([points, points[:1]])
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     points = points[np.r_[True, steps > 1e-9]]
-    s = np.r_[0.0, np.cumsum(steps[steps > 1e-9])]
-    count = max(2 if not closed else 6, int(np.ceil(s[-1] / (0.5 * height))))
-    if len(s) < 2:
+    length = float(steps.sum())
+    count = max(2 if not closed else 6, int(np.ceil(length / (0.5 * height))))
+    if len(points) < 2:
         return None
-    at = np.linspace(0.0, s[-1], count + 1)
-    # means over the way to the neighbours: the sides of a gap are known to the fine mesh alone
-    fine = np.linspace(0.0, s[-1], 16 * count + 1)
-    dense = np.column_stack([np.interp(fine, s, column) for column in points.T])
-    means = np.stack([dense[np.clip(16 * np.arange(count + 1) + k, 0, 16 * count)] for k in range(-6, 7)]).mean(axis=0)
-    means[[0, -1]] = dense[[0, -1]] if not closed else 0.5 * (means[0] + means[-1])
+    # the sides of a gap are known to the fine mesh alone, and its middle has hooks at the ends
+    line = even(points, closed, 16 * count)
+    wide = min(ROUND * height / (length / (16 * count)), 4.0 * count)
+    means = rounded(line, closed, wide)[::16]
+    if closed:
+        means = np.vstack([means, means[:1]])
+    elif length < STRAIGHT * height:
+        means = line[0] + np.linspace(0.0, 1.0, count + 1)[:, None] * (line[-1] - line[0])
+    at = np.linspace(0.0, length, count + 1)
     nodes = wall.project(means)[0]
     if closed:
         nodes[-1] = nodes[0]

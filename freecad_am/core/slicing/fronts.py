@@ -25,9 +25,11 @@ from ..geometry.patch_wall import FirstCurve, Rim
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from ..issues import InputError
+from .banded import HEAVY
 from .closing import closing
 from .front_curve import exact, feet
 from .rims import Rims, cut_at_rims
+from .smooth_front import SmoothFront, Smoothing, smoothed
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -70,45 +72,78 @@ class FrontWall(Protocol):
 
 @dataclass(frozen=True)
 class State:
-    """Where the deposit has come to: the fronts of the last layer and the vertices (n,) behind them."""
+    """Where the deposit has come to: the fronts of the last layer, the vertices (n,) behind them, those (k,) that the last
+    layer passed, and which of banded.WEIGHTS smooth fronts were made with."""
 
     fronts: list[SpaceCurve]
     behind: Mask
+    passed: Index
+    weight: int = HEAVY
 
 
 def start(wall: FrontWall) -> State:
     """The first layer. All fronts have the wall still to come on their left, seen from where the normals point to."""
     mesh = wall.mesh
     fronts = [_facing(wall, one.curve()) for one in wall.first]
-    band = _near(mesh, fronts, mesh.longest_edge)
+    band = _around(mesh, _spots(fronts, mesh.longest_edge), mesh.longest_edge)
     behind = wall.behind.copy()
     behind[band] |= feet(fronts, mesh.vertices[band]).distance < BEHIND
-    return State(fronts, behind)
+    return State(fronts, behind, np.flatnonzero(behind))
 
 
-def step(wall: FrontWall, rims: Rims, state: State, height: float) -> State:
-    """The next layer: all fronts at `height` mm from those of the state, which may be none."""
-    mesh = wall.mesh
-    reach = height + mesh.longest_edge
-    spots = _spots(state.fronts, reach)
-    faces = mesh.faces_at(_around(mesh, spots, reach))
-    band = np.unique(mesh.faces[faces])
-    below = feet(state.fronts, mesh.vertices[band])
-    value = np.full(len(mesh.vertices), np.inf)
-    value[band] = np.where(state.behind[band], -below.distance, below.distance) - height
-    low = mesh.joined(faces, value < -SAME, state.behind)  # near in space is not enough: the wall must lead there
+def step(wall: FrontWall, rims: Rims, state: State, height: float, smoothing: Smoothing | None = None) -> State:
+    """The next layer: all fronts at `height` mm from those of the state, which may be none; smooth ones as near to that as
+    their smoothing allows. The state's `behind` is carried on: the new state has the same array, with more behind.
+
+    Only the part of the mesh near the fronts is looked at, so that all layers together look at each vertex a few times.
+    """
+    spots = _spots(state.fronts, reach := height + wall.mesh.longest_edge)
+    near = _around(wall.mesh, spots, reach)
+    mesh, band = wall.mesh.part(wall.mesh.faces_at(near[~state.behind[near]]))
+    if not len(band):
+        return State([], state.behind, band, state.weight)
+    behind = state.behind[band]
+    below = feet(state.fronts, mesh.vertices)
+    value = np.where(behind, -below.distance, below.distance) - height
+    low = mesh.joined(value < -SAME, behind)  # near in space is not enough: the wall must lead there
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
-    value[~np.isfinite(value)] = reach
     ends = rims.reached(state.fronts, height, spots, reach, SAME)
-    lines = mesh.level_lines(value, faces[np.isfinite(value[mesh.faces[faces]]).all(axis=1)])
     fronts = []
-    for line in cut_at_rims(lines, ends, mesh.longest_edge):
-        points = _thinned(line.points, line.closed, THIN * mesh.typical_edge)
+    for line in cut_at_rims(mesh.level_lines(value, np.arange(len(mesh.faces))), ends, wall.mesh.longest_edge):
+        points = _thinned(line.points, line.closed, THIN * wall.mesh.typical_edge)
         if len(points) < (4 if line.closed else 2):
             continue
         pieces = exact(wall, state.fronts, height, points, line.closed, line.rims, line.ends)
         fronts += [front for front in pieces if front.length > SHORTEST * height]
-    return State(fronts, state.behind | low)
+    weight = state.weight
+    if smoothing is not None:
+        found = [smoothed(wall, rims, state.fronts, front, fronts[:k] + fronts[k + 1 :], height, smoothing, weight)
+                 for k, front in enumerate(fronts)]
+        doubtful = np.flatnonzero(~behind & (np.abs(below.distance - height) < 1.1 * smoothing.band * height))
+        low[doubtful] = _passed(wall, fronts, found, mesh.vertices[doubtful], low[doubtful], smoothing.band * height)
+        fronts, weight = [one.curve for one in found], max((one.weight for one in found), default=weight)
+    passed = band[low & ~behind]
+    state.behind[passed] = True
+    return State(fronts, state.behind, passed, weight)
+
+
+def _passed(
+    wall: FrontWall, exact_ones: list[SpaceCurve], found: list[SmoothFront], points: Array, low: Mask, far: float
+) -> Mask:
+    """Whether points (n, 3) lie behind the fronts found, where these are not the exact ones; low: of the latter."""
+    fronts = [one.curve for one in found]
+    if not fronts or not len(points):
+        return low
+    place = feet(fronts, points)
+    moved = np.array([one.curve is not before for one, before in zip(found, exact_ones)])
+    slope = np.empty_like(points)
+    for k, front in enumerate(fronts):
+        mine = place.front == k
+        slope[mine] = front.at(place.w[mine])[1]
+    left = np.cross(wall.project(points)[1], slope)
+    side = dot(points - place.point, left / np.linalg.norm(left, axis=1, keepdims=True))
+    near = moved[place.front] & (place.distance < 2.0 * far)
+    return np.where(near, side < -SAME, low)
 
 
 class Sliced(NamedTuple):
@@ -119,15 +154,19 @@ class Sliced(NamedTuple):
     closing: list[list[SpaceCurve]]
 
 
-def layers(wall: FrontWall, height: float) -> Sliced:
+def layers(wall: FrontWall, height: float, smoothing: Smoothing | None = None) -> Sliced:
     """All layers, from the first until the wall is covered or its edges are reached."""
     state, rims = start(wall), Rims.of(wall.rims)
+    ends = np.vstack([np.empty((0, 3)), *(rim.points for rim in wall.rims if rim.end)])
+    widest = 1.0 if smoothing is None else 1.0 + smoothing.band
     done, closed = [state.fronts], [list[SpaceCurve]()]
-    while not state.behind.all():
+    left = len(state.behind) - len(state.passed)
+    while left:
         below = state
-        state = step(wall, rims, below, height)
-        passed = state.behind & ~below.behind
-        gaps = closing(wall, wall.mesh, [*below.fronts, *state.fronts], passed, height)
+        state = step(wall, rims, below, height, smoothing)
+        left -= len(state.passed)
+        gaps = [_on_left(wall, gap, below.fronts)
+                for gap in closing(wall, wall.mesh, [*below.fronts, *state.fronts], state.passed, height, ends, widest)]
         if state.fronts or gaps:
             closed.append(gaps)
         if not state.fronts:
@@ -138,6 +177,13 @@ def layers(wall: FrontWall, height: float) -> Sliced:
             )
         done.append(state.fronts)
     return Sliced(done, closed)
+
+
+def _on_left(wall: FrontWall, curve: SpaceCurve, below: list[SpaceCurve]) -> SpaceCurve:
+    """The curve run so that what was deposited below is on its right."""
+    place, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
+    left = np.cross(wall.project(place)[1], slope)
+    return curve if dot(feet(below, place).away, left).sum() >= 0.0 else curve.reversed()
 
 
 def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) -> Array:
@@ -159,10 +205,6 @@ def _around(mesh: Mesh, spots: Array, reach: float) -> Index:
     found: Any = mesh.tree.query_ball_point(spots, 1.3 * reach)
     near: Index = np.unique(np.fromiter(chain.from_iterable(found), dtype=np.intp))
     return near
-
-
-def _near(mesh: Mesh, fronts: list[SpaceCurve], reach: float) -> Index:
-    return _around(mesh, _spots(fronts, reach), reach)
 
 
 def _thinned(points: Array, closed: bool, least: float) -> Array:

@@ -135,6 +135,14 @@ class Rims:
             at = new
         return point
 
+    def nearest(self, points: Array) -> tuple[Array, Array, Array]:
+        """Distance (n,) mm of points (n, 3) from the rims, nearest places (n, 3), unit vectors (n, 3) along the rim."""
+        if not self.curves:
+            return np.full(len(points), np.inf), points, np.zeros_like(points)
+        place = feet(list(self.curves), points)
+        slope = self._at(place.front, place.w)[1]
+        return place.distance, place.point, slope / np.linalg.norm(slope, axis=1, keepdims=True)
+
     def ends_of(self, front: SpaceCurve) -> bool:
         """Whether an open front is cut off: one of its ends lies where layers finish, and on no other rim."""
         if front.closed or not any(self.end):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.surface import dot
 from ..geometry.surface_wall import Array, Placed, SurfaceWall
-from ..issues import NOTE, WARNING, InputError, Issue
+from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import SurfaceParameters
@@ -21,7 +21,7 @@ from ..toolpath import Layer, Toolpath
 from . import surface_directions
 from .surface_directions import Along
 from .surface_end import Stretch, trimmed
-from .wall_beads import Traced, along, bead, corner_notes, short_note, spacing_issues, traced
+from .wall_beads import Traced, along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
 
 FINER = 4  # places per arc of a layer at which its distance from the one below is measured
 
@@ -151,19 +151,7 @@ def _corner_notes(surface: Placed, fronts: list[WallLayer], strategy: SurfacePar
     """Corners that fronts have formed, for a robot slows down there; where there are none, the sharpest turn."""
     cornered = [index for index, front in enumerate(fronts) if len(front.curve.corners)]
     if not cornered:
-        rates = [float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts]
-        # the first layer is the substrate's
-        over = [index for index, rate in enumerate(rates) if index and rate > strategy.bead_turn]
-        if strategy.spacing == "smooth" and over:
-            return [Issue(
-                WARNING, "TURN",
-                f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(fronts)} "
-                f"layers turn by more than {np.degrees(strategy.bead_turn):.3g} deg/mm, first layer {over[0]}, by up to "
-                f"{np.degrees(max(rates[1:])):.3g} deg/mm. The robot slows down there; a wider strategy.band rounds them",
-                int(np.argmax(rates[1:])) + 1,
-            )]
-        text = f"no layer has a corner; within the wall they turn by up to {np.degrees(max(rates)):.3g} deg/mm"
-        return [Issue(NOTE, "TURN", text, int(np.argmax(rates)))]
+        return turn_notes([float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts], strategy)
     return corner_notes([[front.curve] for front in fronts])
 
 

@@ -95,6 +95,28 @@ def corner_notes(fronts: list[list[SpaceCurve]]) -> list[Issue]:
     )]
 
 
+def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
+    """The sharpest turn of layers, a warning where that is more than smooth ones were to have.
+
+    rates: rad/mm of each layer within the wall, infinite where it has corners.
+    """
+    # the first layer is the substrate's
+    over = [index for index, rate in enumerate(rates) if index and rate > strategy.bead_turn]
+    corners = sum(np.isinf(rates[index]) for index in over)
+    finite = np.where(np.isinf(rates), 0.0, rates)
+    if strategy.spacing == "smooth" and over:
+        some = f", {corners} of them in corners" if corners else ""
+        return [Issue(
+            WARNING, "TURN",
+            f"a band of {100.0 * strategy.band:g} % does not suffice: within the wall {len(over)} of {len(rates)} "
+            f"layers turn by more than {np.degrees(strategy.bead_turn):.3g} deg/mm{some}, first layer {over[0]}, by up to "
+            f"{np.degrees(finite[1:].max()):.3g} deg/mm{' elsewhere' if corners else ''}. The robot slows down there; a "
+            "wider strategy.band rounds them", int(np.argmax(rates[1:])) + 1,
+        )]
+    text = f"no layer has a corner; within the wall they turn by up to {np.degrees(finite.max()):.3g} deg/mm"
+    return [Issue(NOTE, "TURN", text, int(np.argmax(finite)))] if not np.isinf(rates).any() else []
+
+
 def short_note(dropped: int) -> list[Issue]:
     """Says that beads too short to be worth a start are left out."""
     if not dropped:

@@ -23,11 +23,12 @@ from ..slicing import fronts
 from ..slicing.curve_points import within_chord
 from ..slicing.front_curve import feet
 from ..slicing.rims import Rims
+from ..slicing.smooth_front import Smoothing, turn
 from ..toolpath import Bead, Layer, Toolpath
 from . import surface_directions
 from .front_seams import Middle, seam
 from .front_tree import Piece, events, shorn, tree, whole
-from .wall_beads import along, bead, corner_notes, short_note, spacing_issues, traced
+from .wall_beads import along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
 
 Array = NDArray[np.float64]
 
@@ -42,17 +43,18 @@ def plan(
     Closed beads start at the seam's angle about the middle line of the wall, which runs through the centres of the closed
     beads, from the X of the part carried along it without twist. Counter-clockwise is meant as seen against the
     build direction of a tube; on any wall it keeps the layer below on the right, seen from outside. Raises InputError
-    'NO_PARAMETER', 'NOT_YET', 'LAYER_HEIGHT', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
+    'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
     """
     _refuse(strategy)
     normal = surface_directions.plane(wall, build)
     height = strategy.layer_height
-    curves, closing = fronts.layers(wall, height)
+    smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
+    curves, closing = fronts.layers(wall, height, smooth)
     distances = [
         np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
         for below, layer in zip(curves[:-1], curves[1:], strict=True)
     ]
-    issues = spacing_issues(distances, strategy) + corner_notes(curves)
+    issues = spacing_issues(distances, strategy) + _turns(wall, curves, strategy)
     pieces = tree(curves, Rims.of(wall.rims))
     issues += events(pieces)
     full = [len(layer) for layer in pieces]
@@ -66,13 +68,18 @@ def _refuse(strategy: SurfaceParameters) -> None:
     if strategy.spacing == "iso-parameter":
         raise InputError(
             "NO_PARAMETER", "strategy.spacing", "this wall has no closed parameter whose lines layers could follow (several "
-            "faces, openings, a side or a slanted end); use constant-distance",
+            "faces, openings, a side or a slanted end); use constant-distance or smooth",
         )
-    if strategy.spacing == "smooth":
-        raise InputError(
-            "NOT_YET", "strategy.spacing", "smooth layers are made on walls of one surface that closes around and ends on a "
-            "line of it, and this is none; use constant-distance",
-        )
+
+
+def _turns(wall: PatchWall, curves: list[list[SpaceCurve]], strategy: SurfaceParameters) -> list[Issue]:
+    """Corners that the fronts have formed, and how sharply smooth ones turn."""
+    cornered = corner_notes(curves)
+    if cornered and strategy.spacing != "smooth":
+        return cornered
+    sharp = [any(len(front.corners) for front in layer) for layer in curves]
+    rates = [np.inf if corner else max(turn(wall, front) for front in layer) for corner, layer in zip(sharp, curves)]
+    return cornered + turn_notes(rates, strategy)
 
 
 def _kept(wall: PatchWall, pieces: list[list[Piece]], strategy: SurfaceParameters) -> tuple[list[list[Piece]], list[Issue]]:
@@ -143,7 +150,8 @@ def _layers(
             curve = way.piece.curve
             w = within_chord(curve, way.start, way.start + curve.period, strategy.chord_error)
             line = traced(curve, w, curve.closed)
-            out = wall.project(line.points)[1]
+            points, out = wall.project(line.points)
+            line = line._replace(points=points)
             over = along(line, out, np.cross(out, line.tangents.sum(axis=1)))  # up is on the left
             if way.backwards:
                 line, over = line.reversed(), over.reversed()

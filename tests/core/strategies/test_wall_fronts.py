@@ -135,9 +135,12 @@ def test_pieces_alternate_so_that_links_are_short():
     assert codes(toolpath)["SPLIT"].message == "a front splits in 2 at layer 7"
     assert codes(toolpath)["MERGE"].message == "2 fronts merge at layer 21"
     beads = [bead for _, _, bead in toolpath]
-    links = np.array([np.linalg.norm(after.points[0] - before.points[-1]) for before, after in zip(beads, beads[1:])])
+    links = np.array([
+        np.linalg.norm(after.points[0] - before.points[-1]) for before, after in zip(beads, beads[1:])
+        if not before.closing and not after.closing
+    ])
     assert (links < 1.01 * height).sum() >= len(links) - 17  # but for the ways across the opening, once a layer
-    assert links.max() < 32.0
+    assert links.max() < 40.0  # the sheet is 60 mm wide
     as_found = planned(wall, height)
     for _, _, bead in as_found:
         assert bead.closing or (bead.points[-1] - bead.points[0])[0] > 0.0  # all the same way
@@ -195,12 +198,25 @@ def test_lead_tilt_and_planes():
     assert caught.value.code == "NO_SYMMETRY_PLANE" and "build_direction.plane" in caught.value.message
 
 
-def test_spacings_that_need_a_parameter_are_refused():
-    wall = tube(FLOOR, 10.0, 2.0)
-    for spacing, code in (("iso-parameter", "NO_PARAMETER"), ("smooth", "NOT_YET")):
-        with pytest.raises(InputError) as caught:
-            planned(wall, 5.0, strategy={"spacing": spacing})
-        assert (caught.value.code, caught.value.where) == (code, "strategy.spacing")
+def test_layers_along_lines_need_a_parameter():
+    with pytest.raises(InputError) as caught:
+        planned(tube(FLOOR, 10.0, 2.0), 5.0, strategy={"spacing": "iso-parameter"})
+    assert (caught.value.code, caught.value.where) == ("NO_PARAMETER", "strategy.spacing")
+
+
+def test_smooth_layers_say_what_they_cost():
+    wall, height, exact = made("a bend")
+    smooth = planned(wall, height, ProcessParameters(direction="alternate"), {"spacing": "smooth", "chord_error": 0.0003})
+    assert codes(exact)["CORNERS"].level == "note"
+    assert "CORNERS" not in codes(smooth) and codes(smooth)["SPACING"].level == "note"
+    assert codes(smooth)["TURN"].level == "warning" and "first layer 13" in codes(smooth)["TURN"].message
+    spacings = np.concatenate(between_layers(smooth))
+    assert spacings.min() >= 0.8 * height and spacings.max() <= 1.2 * height
+    straight = planned(tube(FLOOR, 20.0, 1.5), height, strategy={"spacing": "smooth"})
+    assert codes(straight)["TURN"].level == "note"
+    off = cKDTree(dense([bead for _, _, bead in smooth])).query(samples(wall, 2))[0]
+    inside = cKDTree(np.vstack([rim.points for rim in wall.rims])).query(samples(wall, 2))[0] > height
+    assert off.max() < height and off[inside].max() < 0.6 * height
 
 
 @pytest.mark.parametrize("seed", range(3))

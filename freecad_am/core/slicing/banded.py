@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The smoothest layer within a band: heights over a line of places that bend as little as asked, and the search for what is
+enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags, identity
+from scipy.sparse.linalg import splu
+
+Array = NDArray[np.float64]
+
+WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
+HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for
+GAIN, IDLE = 0.02, 2
+AIM = 0.8  # of the limit; layers above sharpen what is round, so some of it is kept for them
+MARGIN = 0.02  # of the band, kept free for what the curve does between its points
+ROUNDS, LOOK, RELAXED, CLOSE = 2000, 5, 1.6, 1e-3  # of the alternation; how near its two halves come, of the band
+
+
+class Weighed(Protocol):
+    """A layer: its sharpest turn within the wall (rad/mm), and which of the weights it was made with."""
+
+    @property
+    def turn(self) -> float: ...
+
+    @property
+    def weight(self) -> int: ...
+
+
+Layer = TypeVar("Layer", bound=Weighed)
+
+
+def between(wanted: Array, low: Array, high: Array, weight: float, bend: Array | None = None, closed: bool = True) -> Array:
+    """x (n,) that minimises |x - wanted|^2 + weight |second differences + bend|^2 with low <= x <= high.
+
+    bend: second differences of what x is measured from, none unless given; (n,), or (n - 2,) of the places between the ends.
+    closed: x is periodic. By alternating directions: a smooth x and one within the bounds approach each other. The
+    smooth one is returned.
+    """
+    n = len(wanted)
+    if closed:
+        second = diags([1.0, 1.0, -2.0, 1.0, 1.0], [-(n - 1), -1, 0, 1, n - 1], shape=(n, n))
+    else:
+        second = diags([1.0, -2.0, 1.0], [0, 1, 2], shape=(n - 2, n))
+    matrix = csc_matrix(identity(n) + weight * (second.T @ second))
+    pull = 1.0 + np.sqrt(weight)
+    solve = splu(csc_matrix(matrix + pull * identity(n))).solve
+    goal = wanted if bend is None else wanted - weight * (second.T @ bend)
+    bounded, debt = np.minimum(np.maximum(wanted, low), high), np.zeros(n)
+    x = wanted
+    for count in range(ROUNDS):
+        x = solve(goal + pull * (bounded - debt))
+        leaning = RELAXED * x + (1.0 - RELAXED) * bounded
+        bounded = np.minimum(np.maximum(leaning + debt, low), high)
+        debt = debt + leaning - bounded
+        if count % LOOK == 0 and np.abs(x - bounded).max() < CLOSE * (high - low).max():
+            break
+    return x
+
+
+def lightest(trial: Callable[[int], Layer | None], start: int, limit: float) -> Layer | None:
+    """The layer of the lightest weight that keeps the limit, searched from `start`, or the one that turns least.
+
+    A heavier weight turns less until the band stops it; too heavy a one leaves the band (`trial` gives None).
+    """
+    best = trial(start)
+    for index in range(start - 1, -1, -1):
+        if best is not None and best.turn > limit:
+            break
+        lighter = trial(index)
+        if best is not None and (lighter is None or lighter.turn > limit):
+            return best
+        best = lighter
+    if best is None or best.turn <= limit or best.weight < start:
+        return best
+    idle = 0
+    for index in range(start + 1, len(WEIGHTS)):
+        heavier = trial(index)
+        if heavier is None:
+            break
+        idle = 0 if index <= HEAVY or heavier.turn < (1.0 - GAIN) * best.turn else idle + 1
+        best = min(best, heavier, key=lambda layer: layer.turn)
+        if best.turn <= limit or idle == IDLE:
+            break
+    return best
