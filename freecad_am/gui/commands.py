@@ -92,10 +92,10 @@ def _new_job() -> None:
     stage_panel.show(job_panel.JobPanel())
 
 
-def _open(proxy: Any, title: str, *more: Any) -> None:
+def _open(proxy: Any, title: str) -> None:
     from . import inputs, stage_panel
 
-    stage_panel.show(stage_panel.StagePanel(proxy, title, [*inputs.of(proxy), *more]))
+    stage_panel.show(stage_panel.StagePanel(proxy, title, inputs.of(proxy)))
 
 
 def _cell() -> None:
@@ -136,9 +136,14 @@ def _joint_path() -> None:
 
 def _program() -> None:
     from ..objects.program import Program
-    from . import inputs
+    from . import inputs, stage_panel, suggestions
 
-    _open(Program, "Program", inputs.NameChoice(_part_name()))
+    choices = [*inputs.of(Program), inputs.NameChoice(_part_name())]
+    panel = stage_panel.StagePanel(Program, "Program", choices)
+    post = suggestions.post_for(App.ActiveDocument)
+    if post:
+        panel.places["program_post"][0].widget.setEditText(post)
+    stage_panel.show(panel)
 
 
 def _part_name() -> str:

@@ -15,7 +15,7 @@ from .colours import ramp
 from .lines import Array
 
 HEIGHT, STEPS, DOT = 190, 60, 2.6
-_LEFT, _RIGHT, _TOP, _BOTTOM = 36, 8, 8, 34
+_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 8, 8, 34
 _FAINT = 70  # of 255, how the grid shows
 _ROOM = 0.06  # of the span, left free beyond the values
 
@@ -56,8 +56,7 @@ class FitPlot(QtGui.QWidget):
         y = _spread(np.concatenate([*curves, self.measured.width, [] if self.wanted is None else [self.wanted]]))
         self._grid(painter, x, y)
         area = self._area()
-        for radius, curve, colour in zip(radii, curves, ramp(np.linspace(0.0, 0.8, len(radii))), strict=True):
-            shade = QtGui.QColor.fromRgbF(*(float(part) for part in colour))
+        for radius, curve, shade in zip(radii, curves, _shades(len(radii)), strict=True):
             painter.setPen(QtGui.QPen(shade, 1.6))
             painter.setBrush(QtCore.Qt.NoBrush)
             places = zip(_place(MINUTE * speed, x, area.left(), area.width()),
@@ -97,7 +96,12 @@ class FitPlot(QtGui.QWidget):
         painter.setBrush(QtCore.Qt.NoBrush)
         painter.drawRect(area)
         box = QtCore.QRectF(area.left(), self.height() - line - 1.0, area.width(), line)
-        painter.drawText(box, QtCore.Qt.AlignHCenter, "width in mm over travel speed in mm/min")
+        painter.drawText(box, QtCore.Qt.AlignHCenter, "travel speed, mm/min")
+        painter.save()
+        painter.translate(0.0, area.bottom())
+        painter.rotate(-90.0)
+        painter.drawText(QtCore.QRectF(0.0, 1.0, area.height(), line), QtCore.Qt.AlignHCenter, "width, mm")
+        painter.restore()
         if self.wanted is not None:
             down = float(_place(np.array(self.wanted), y, area.bottom(), -area.height()))
             painter.setPen(QtGui.QPen(ink, 1.2, QtCore.Qt.DashLine))
@@ -105,10 +109,19 @@ class FitPlot(QtGui.QWidget):
 
     def _legend(self, painter: Any, radii: Array) -> None:
         line, area = painter.fontMetrics().height(), self._area()
-        for row, (radius, colour) in enumerate(zip(radii, ramp(np.linspace(0.0, 0.8, len(radii))), strict=True)):
-            box = QtCore.QRectF(area.left(), area.top() + 3.0 + row * line, area.width() - 5.0, line)
-            painter.setPen(QtGui.QColor.fromRgbF(*(float(part) for part in colour)))
-            painter.drawText(box, QtCore.Qt.AlignRight, f"r {radius:g} mm")
+        texts = [f"r {radius:g} mm" for radius in radii]
+        wide = max(painter.fontMetrics().boundingRect(text).width() for text in texts) + 6.0
+        for row, (text, shade) in enumerate(zip(texts, _shades(len(radii)), strict=True)):
+            box = QtCore.QRectF(area.right() - wide, area.top() + 3.0 + row * line, wide, line)
+            painter.setPen(self.palette().color(QtGui.QPalette.WindowText))
+            painter.drawText(box, QtCore.Qt.AlignLeft, text)
+            painter.setPen(shade)
+            painter.setBrush(shade)
+            painter.drawEllipse(QtCore.QPointF(box.left() - 6.0, box.center().y()), DOT, DOT)
+
+
+def _shades(count: int) -> list[Any]:
+    return [QtGui.QColor.fromRgbF(*(float(part) for part in colour)) for colour in ramp(np.linspace(0.0, 0.8, count))]
 
 
 def told(measured: Measured, model: BeadModel) -> str:

@@ -17,6 +17,7 @@ from .hub_nodes import HubNodes
 from .lines import Array
 from .pick_field import PickField
 from .pick_panel import PickPanel
+from .preview import Draft
 
 SOLIDS = Link(
     "Solids", "", "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.",
@@ -27,6 +28,8 @@ HUB = Link(
     required=False, type_name="App::PropertyLinkSub",
 )
 _PLACES = {"Source": "Solids", "Further": "Solids", "Substrate": "Hub", "BaseFaces": "Hub", "Fixtures": "Fixtures"}
+COARSE = 0.3  # mm
+_SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
 _NO_BASE = ("NO_HUB", "NO_BASE")
 
 
@@ -38,6 +41,7 @@ class HubPanel(PickPanel):
 
     stage, icon, function, draft = DevelopableFeature, "solids_on_hub", "make_developable_feature", "Solids"
     nodes: HubNodes
+    kept: tuple[Any, Outcome] | None = None  # what was computed last, and what of
 
     def __init__(self, obj: Any = None) -> None:
         solids, hub, fixtures = ((), None, ()) if obj is None else _present(obj)
@@ -100,6 +104,21 @@ class HubPanel(PickPanel):
         }
 
     # ---- preview
+
+    def _values(self) -> dict[str, Any]:
+        """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+        found = super()._values()
+        if 0.0 < found["ChordError"] < COARSE:
+            found["ChordError"] = COARSE
+        return found
+
+    def _made(self, draft: Draft) -> Outcome:
+        """Computed anew only where solids or hub are others."""
+        draft.check()
+        key = (self._inputs(), [getattr(draft.obj, name) for name in _SHAPING])
+        if self.kept is None or self.kept[0] != key:
+            self.kept = (key, draft.outcome())
+        return self.kept[1]
 
     def _link_places(self) -> dict[str, str]:
         return _PLACES

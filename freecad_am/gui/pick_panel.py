@@ -16,7 +16,7 @@ from ..objects.stage import Outcome, Stage
 from . import picking
 from .colours import WRONG
 from .pick_field import PickField
-from .preview import Preview, outcome
+from .preview import Draft, Preview
 from .stage_panel import StagePanel
 from .wall_nodes import WallNodes
 
@@ -82,6 +82,10 @@ class PickPanel(StagePanel):
     def _link_places(self) -> dict[str, str]:
         """The label of the input that each link is entered by."""
         return {field.link.name: field.label for field in self.picks}
+
+    def _made(self, draft: Draft) -> Outcome:
+        """What is entered makes. Raises AmError."""
+        return draft.outcome()
 
     def _draw(self, made: Outcome | None) -> str:
         """Draw what was computed, or what can be without; what to tell about it."""
@@ -170,8 +174,8 @@ class PickPanel(StagePanel):
             self._draw(None)
             return
         try:
-            made = outcome(self.proxy, self.document, self.draft, self._links(), self._values())
-            self._say(self._draw(made), False)
+            draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
+            self._say(self._draw(self._made(draft)), False)
             return
         except InputError as error:
             self._place(error)

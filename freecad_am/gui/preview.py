@@ -15,13 +15,26 @@ NAME = "RoboticAM_Preview"
 _VIEW = "Gui::View3DInventor"
 
 
-def outcome(proxy: type[Stage], document: Any, label: str, links: dict[str, Any], values: dict[str, Any]) -> Outcome:
-    """What a stage would compute from all its links and outer values by property name; the document is only read.
+class Draft:
+    """A stage that is not in the document, which is only read: all links and outer values by property name.
 
-    Raises what the stage raises, naming `label` where the object's Label would stand.
+    Errors name `label` where the object's Label would stand.
     """
-    draft = SimpleNamespace(Label=label, Name=label, Document=document, **values, **links)
-    return proxy.compute(proxy.__new__(proxy), draft)
+
+    def __init__(
+        self, proxy: type[Stage], document: Any, label: str, links: dict[str, Any], values: dict[str, Any]
+    ) -> None:
+        self.stage = proxy.__new__(proxy)
+        self.obj = SimpleNamespace(Label=label, Name=label, Document=document, **values, **links)
+
+    def check(self) -> None:
+        """Raises InputError for a parameter that the stage refuses."""
+        for section in self.stage.sections:
+            self.stage.parameters(self.obj, section.cls)
+
+    def outcome(self) -> Outcome:
+        """What the stage would compute. Raises what it raises."""
+        return self.stage.compute(self.obj)
 
 
 class Preview:

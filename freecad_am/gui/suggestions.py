@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
+from ..core.issues import InputError
 from ..core.kinematics import machine
+from ..core.parameters.program import ProgramParameters
 from ..core.process import bead_table
 from ..objects import user_machines
 from ..posts import catalogue
@@ -25,3 +28,15 @@ def of(section: str, key: str) -> Callable[[], list[str]] | None:
 def _branches() -> list[str]:
     sides = [(a, b, c) for a in ("front", "back") for b in ("up", "down") for c in ("flip", "noflip")]
     return ["auto", *(" ".join(words) for words in sides)]
+
+
+def post_for(document: Any) -> str:
+    """The post for the last joint path's machine, '' where the one by default will do or none is known."""
+    paths = [obj for obj in document.Objects if getattr(getattr(obj, "Proxy", None), "kind", "") == "joint path"]
+    if not paths or paths[-1].Cell is None:
+        return ""
+    try:
+        posts = machine.load(paths[-1].Cell.Machine, user_machines.folders()).posts
+    except InputError:
+        return ""
+    return posts[0] if posts and ProgramParameters().post not in posts else ""
