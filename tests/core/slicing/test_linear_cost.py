@@ -4,13 +4,15 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.implicit import HalfSpace, Round
+from freecad_am.core.geometry.mesh import Mesh
 from freecad_am.core.geometry.space_curve import SpaceCurve
 from freecad_am.core.geometry.surface import Torus
 from freecad_am.core.process import spacing
-from freecad_am.core.slicing import constant_distance, iso_parameter, smooth_spacing
+from freecad_am.core.slicing import constant_distance, fronts, iso_parameter, smooth_spacing
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.wall_layer import even_grid
+from tests.core.patch_walls import tube
 
 TORUS = Torus(60.0, 15.0)
 COUNTS = (180, 360, 720, 1440)
@@ -56,6 +58,28 @@ def test_evaluations_grow_with_the_points_and_no_faster(evaluated, rule):
     assert work[0] > COUNTS[0] * len(made)  # it is counted
     for before, after in zip(work, work[1:]):
         assert after < 2.2 * before
+
+
+def test_fronts_on_half_the_height_are_four_times_the_work(evaluated, monkeypatch):
+    """Twice the layers of twice the points: places evaluated on curves, and faces of the mesh looked at."""
+    looked = [0]
+    part = Mesh.part
+
+    def counted(self, faces):
+        looked[0] += len(faces)
+        return part(self, faces)
+
+    monkeypatch.setattr(Mesh, "part", counted)
+    work = []
+    for height in (4.0, 2.0):
+        wall = tube(HalfSpace(np.zeros(3), np.array([0.2, 0.1, 1.0])), 20.0, 0.5 * height, low=-6.0)
+        evaluated[0] = looked[0] = 0
+        nodes = sum(len(front.w) for layer in fronts.layers(wall, height).fronts for front in layer)
+        assert evaluated[0] > nodes
+        work.append((evaluated[0], looked[0], len(wall.triangles)))
+    (curves, faces, mesh), (more_curves, more_faces, finer) = work
+    assert more_curves < 1.1 * curves * finer / mesh
+    assert more_faces < 1.1 * faces * finer / mesh and more_faces < 8 * finer
 
 
 def test_of_segments_below_only_the_near_ones_are_tried(monkeypatch):
