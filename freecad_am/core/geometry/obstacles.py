@@ -17,6 +17,7 @@ Index = NDArray[np.intp]
 BRANCH = 8
 QUERIES, PAIRS = 16384, 200_000  # worked on at once
 PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
+MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are longer
 
 
 class Obstacles:
@@ -102,11 +103,14 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Obstacles:
     """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3)."""
     low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
     corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
+    whole = len(corners)
     while True:
         corners = corners[((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)]
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
-        long = edges.max(axis=1, initial=0.0) > PIECE
-        if not long.any():
+        # halves of the longest edges first, so that where there is no room for more the largest are cut
+        longest = edges.max(axis=1, initial=0.0)
+        long = longest > max(PIECE, 0.5 * float(longest.max(initial=0.0)))
+        if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
             break
         corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
     if len(corners):
