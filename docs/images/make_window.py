@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Draws window.png and wall-window.png of the README: FreeCAD's window with the planned hemisphere of the examples, and
-with the panel of a bend on a pipe.
+"""Draws window.png, wall-window.png and hub-window.png of the README: FreeCAD's window with the planned hemisphere of the
+examples, with the panel of a bend on a pipe, and with the beads of a thruster beside the fit of their bead model.
 
-    python3 docs/images/make_window.py
+    python3 docs/images/make_window.py [PICTURE...]
 
 Needs FreeCAD (of Qt 5, as Debian 12 has it) and xvfb-run. A fresh FreeCAD profile is made for it, as the tests of the
 window do; the same file is run again inside FreeCAD for each picture, where it opens the parts, clicks what the README
@@ -69,10 +69,7 @@ class Photographer:
 
     def picture(self, path: str) -> None:
         """Make what the picture of this name shows, look at it from the front above and keep what the screen shows."""
-        if Path(path).name == "window.png":
-            self._hemisphere()
-        else:
-            self._wall()
+        {"window.png": self._hemisphere, "wall-window.png": self._wall, "hub-window.png": self._hub}[Path(path).name]()
         self.idle(1.0)
         if not self.widgets.QApplication.primaryScreen().grabWindow(0).save(path):
             raise RuntimeError(f"{path} is not written")
@@ -101,6 +98,25 @@ class Photographer:
         panel.findChild(self.widgets.QWidget, "LayerHeight").findChild(self.widgets.QLineEdit).setText("5 mm")
         self._look()
 
+    def _hub(self) -> None:
+        from freecad_am import api
+        from freecad_am.gui import stage_panel
+
+        blades, spindle = self._open("Thruster", Blades="thruster/blades.brep", Spindle="thruster/spindle.step")
+        document = blades.Document
+        feature = api.make_developable_feature(
+            document, blades, spindle, layer_height=8, bead_spacing=7, chord_error=0.2
+        )
+        toolpath = api.make_toolpath(document, feature, bead_model="csw", bead_width=9.5)
+        toolpath.ViewObject.Colouring = "speed"
+        stage_panel.edit(toolpath)
+        self.idle(0.5)
+        self._look(wide=400)
+        fit = self.find(self.widgets.QLabel, "BeadModelFit")
+        for area in self.gui.getMainWindow().findChildren(self.widgets.QScrollArea):
+            if area.isVisible() and area.isAncestorOf(fit):
+                area.ensureWidgetVisible(fit)
+
     def _hemisphere(self) -> None:
         from freecad_am import api
 
@@ -119,12 +135,12 @@ class Photographer:
         self.gui.Selection.addSelection(document.Toolpath)
         self._look()
 
-    def _look(self) -> None:
+    def _look(self, wide: int = 330) -> None:
         view = self.gui.ActiveDocument.ActiveView
         view.viewIsometric()
         view.fitAll()
         window = self.gui.getMainWindow()
-        window.resizeDocks([window.findChild(self.widgets.QDockWidget, "Combo View")], [330], self.core.Qt.Horizontal)
+        window.resizeDocks([window.findChild(self.widgets.QDockWidget, "Combo View")], [wide], self.core.Qt.Horizontal)
         for tree in window.findChildren(self.widgets.QTreeWidget):
             tree.expandAll()
         self.idle(0.5)
@@ -151,4 +167,4 @@ if PICTURE in os.environ:
 
     QtCore.QTimer.singleShot(1000, take)
 elif __name__ == "__main__":
-    sys.exit(max(start(name) for name in ("window.png", "wall-window.png")))
+    sys.exit(max(start(name) for name in sys.argv[1:] or ("window.png", "wall-window.png", "hub-window.png")))
