@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points on a curve in space so that straight segments between them stay within a chord error."""
+"""Points on a curve in space so that straight segments between them stay within a chord error, and what the points outline
+is the curve."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.outline import outline
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 
@@ -15,10 +17,15 @@ CLOSER = 4  # places per arc of the curve at which its curvature is taken
 BETWEEN = np.arange(1, 8) / 8.0  # places of a segment at which its distance from the curve is measured
 MORE = 1.15  # times as many segments where the chord error is not met
 FEWEST = 24  # segments of a whole curve
+WITHIN = 5e-5  # mm; how far the outline of the points may be off the curve at INSIDE, half of what it is anywhere
+# of each segment; where the curvature jumps within it, its middle may be right by chance
+INSIDE = np.array([1.0 / 3.0, 2.0 / 3.0])
+HALVINGS = 12
 
 
 def within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float) -> Array:
-    """Parameters (n,) from low to high, rising, with every corner between; the chords are off by `chord_error` mm at most.
+    """Parameters (n,) from low to high, rising, with every corner between; the chords are off by `chord_error` mm at most,
+    the outline of the points by 2 WITHIN.
 
     Segments are shorter where the curve bends more. On a closed curve high may lie beyond the last node.
     """
@@ -27,8 +34,34 @@ def within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float)
         corners = np.concatenate([corners + turn * curve.period for turn in (-1, 0, 1, 2)])
     inner = np.unique(corners[(corners > low + 1e-9 * curve.period) & (corners < high - 1e-9 * curve.period)])
     breaks = np.r_[low, inner, high]
-    pieces = [_piece(curve, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
+    pieces = [_outlining(curve, _piece(curve, a, b, chord_error))[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
     return np.concatenate([*pieces, [high]])
+
+
+def _outlining(curve: SpaceCurve, w: Array) -> Array:
+    """The places (n,) on a piece without corners, and more, so that points added between them later by their outline lie on
+    the curve."""
+    asked = np.ones(len(w) - 1, dtype=bool)
+    for _ in range(HALVINGS):
+        points, along, _ = curve.at(w)
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        # at the end of the piece the curve may have a corner, where it is that of the next
+        last = curve.at(w[-1:] - 1e-9 * (w[-1] - w[-2]))[1]
+        tangents = np.stack([along, along], axis=1)
+        tangents[-1, 0] = last[0] / np.linalg.norm(last)
+        some = np.repeat(np.flatnonzero(asked), len(INSIDE))
+        share = np.tile(INSIDE, int(asked.sum()))
+        drawn = outline(points, tangents).at(some, share)[0]
+        place, slope, _ = curve.at(curve.walked(drawn, w[some] + share * np.diff(w)[some]))
+        off = np.linalg.norm(np.cross(drawn - place, slope), axis=1) / np.linalg.norm(slope, axis=1)
+        bad = np.unique(some[off > WITHIN])
+        if not len(bad):
+            break
+        asked[:] = False
+        asked[bad] = True
+        w = np.insert(w, bad + 1, 0.5 * (w[bad] + w[bad + 1]))
+        asked = np.insert(asked, bad + 1, True)
+    return w
 
 
 def chord_errors(curve: SpaceCurve, w: Array) -> Array:

@@ -19,7 +19,9 @@ ROUNDS = 12
 SETTLED = 1e-6  # of the height; points off by more have not found their place
 SAME_PLACE = 1e-5  # mm; of two nodes nearer than this one goes, and it is not the corner
 SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is no corner
-WITHIN = 1e-4  # mm; between the nodes, a tenth of what is promised
+WITHIN = 5e-5  # mm; at INSIDE, where arcs are off by more than half of what they are anywhere between the nodes
+# of each arc; where the wall's curvature jumps within it, its middle may be right by chance
+INSIDE = np.array([1.0 / 3.0, 2.0 / 3.0])
 SAME_FOOT = 1e-3  # of the height; branches whose nearest points lie closer than this are one
 
 
@@ -57,6 +59,12 @@ def _feet(points: Array, foot: Array, front: Index, w: Array) -> Feet:
     return Feet(distance, gap / np.maximum(distance, 1e-300)[:, None], front, w, foot)
 
 
+def inside(curve: SpaceCurve) -> Array:
+    """The parameters at INSIDE of each arc, (2 (m - 1),), rising."""
+    places: Array = (curve.w[:-1, None] + curve.span[:, None] * INSIDE).ravel()
+    return places
+
+
 def exact(
     wall: Wall, fronts: list[SpaceCurve], height: float, points: Array, closed: bool, rims: Array, ends: Array
 ) -> list[SpaceCurve]:
@@ -89,15 +97,16 @@ def exact(
     for _ in range(ROUNDS):
         nodes = _forward(nodes, closed)
         curve = _curve(nodes, closed)
-        middle = curve.at(curve.w[:-1] + 0.5 * curve.span)[0]
-        on_wall = wall.project(middle)[0]
-        off = np.maximum(np.abs(feet(fronts, on_wall).distance - height), np.linalg.norm(on_wall - middle, axis=1))
-        bad = np.flatnonzero((off > WITHIN) & (curve.span > 1e-6 * curve.period))
+        inner = curve.at(inside(curve))[0]
+        on_wall = wall.project(inner)[0]
+        off = np.maximum(np.abs(feet(fronts, on_wall).distance - height), np.linalg.norm(on_wall - inner, axis=1))
+        bad = np.flatnonzero((off.reshape(-1, len(INSIDE)).max(axis=1) > WITHIN) & (curve.span > 1e-6 * curve.period))
         if not len(bad):
             return [curve]
         corner = _corners(wall, fronts, height, nodes, bad)
         rest = bad[~np.isin(bad, corner[0])]
-        spot, spot_normal, spot_below = _settled(wall, fronts, height, on_wall[rest], None)
+        middle = curve.at(curve.w[rest] + 0.5 * curve.span[rest])[0]
+        spot, spot_normal, spot_below = _settled(wall, fronts, height, middle, None)
         sound = np.abs(spot_below.distance - height) < SETTLED * height
         rest, spot, spot_normal = rest[sound], spot[sound], spot_normal[sound]
         spot_below = _those(spot_below, sound)
