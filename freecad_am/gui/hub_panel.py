@@ -30,6 +30,7 @@ HUB = Link(
 _PLACES = {"Source": "Solids", "Further": "Solids", "Substrate": "Hub", "BaseFaces": "Hub", "Fixtures": "Fixtures"}
 COARSE = 0.3  # mm
 _SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
+_OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_max_turn", "build_direction_plane")
 _NO_BASE = ("NO_HUB", "NO_BASE")
 
 
@@ -51,6 +52,11 @@ class HubPanel(PickPanel):
         picks = [self.solids, self.hub, self.fixtures]
         title = "Solids on hub" if obj is None else obj.Label
         super().__init__(title, picks, obj, HubNodes(pickable=False))
+        for place in _OF_WALLS:
+            field, _, fold = self.places[place]
+            if field.value == field.row.outer(field.row.default):  # what is refused must be put right here
+                fold.enable(field.widget, False)
+                field.widget.setToolTip("Of walls alone: solids on a hub grow along the normals of its surface")
 
     # ---- what is picked
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import FreeCADGui as Gui
@@ -35,12 +36,24 @@ class ToolpathPanel(StagePanel):
         self.fit.setWordWrap(True)
         self.fit.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         field, _, fold = self.places[MODEL]
-        for more in (self.fit, self.plot):
+        self.choose = QtGui.QPushButton("Choose a table…")
+        self.choose.setObjectName("ChooseBeadTable")
+        self.choose.setToolTip("Takes the beads that were measured from a file of comma separated values")
+        self.choose.setAutoDefault(False)
+        self.choose.clicked.connect(self._choose)
+        for more in (self.fit, self.plot, self.choose):
             fold.add_below(field.widget, more)
         self.later = Later(self.form, self._show_fit)
         field.widget.editTextChanged.connect(lambda *_: self._soon(True))
         self.places[WIDTH][0].widget.findChild(QtGui.QLineEdit).textChanged.connect(lambda *_: self._soon(False))
         self._show_fit()
+
+    def _choose(self, *_: Any) -> None:
+        """Ask for the file of a calibration table."""
+        first, kinds = os.path.dirname(self.document.FileName), "Tables (*.csv);;All files (*)"
+        path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), "Calibration table", first, kinds)
+        if path:
+            self.places[MODEL][0].widget.setEditText(path)
 
     def _soon(self, of_model: bool) -> None:
         """Something was typed: show the fit once no more follows, and scroll to that of another model."""

@@ -94,6 +94,7 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     assert "2 solids on Hub" in told and f"half angle {half:.4g}°" in told and "2 contours" in told
     assert person.screen_pixels(ORANGE) > 150
     assert (set(document.Objects), document.UndoCount) == (set(blades), steps)  # nothing is made yet
+    assert not person.field(panel, "Mode").isEnabled() and person.field(panel, "Lead").isEnabled()
     hand.enter(panel, "LayerHeight", "5 mm")
     hand.enter(panel, "BeadSpacing", "4 mm")
     previewed(person, panel)
@@ -238,7 +239,7 @@ def test_beads_are_told_by_kind_and_layers_by_solid(person, blades):
     assert scale.classes == (colouring.NO_WIDTH,)
 
 
-def test_a_bead_model_is_seen_by_its_fit(person, blades, tmp_path):
+def test_a_bead_model_is_seen_by_its_fit(person, blades, tmp_path, monkeypatch):
     hub, first, _ = blades
     feature = api.make_developable_feature(hub.Document, first, hub, layer_height=5)
     person.gui.Selection.clearSelection()
@@ -260,7 +261,9 @@ def test_a_bead_model_is_seen_by_its_fit(person, blades, tmp_path):
     rows = ["radius_mm,wire_feed_m_min,travel_speed_mm_min,width_mm,height_mm"]
     rows += [f"{r},5,{v},{40 / v ** (1 / 3) + 20 / r + 1},2.5" for r in (20, 40) for v in (200, 400, 800)]
     (tmp_path / "own.csv").write_text("\n".join(rows))
-    person.type(panel, "BeadModel", str(tmp_path / "own.csv"))
+    monkeypatch.setattr(
+        person.widgets.QFileDialog, "getOpenFileName", staticmethod(lambda *_: (str(tmp_path / "own.csv"), "")))
+    person.field(panel, "ChooseBeadTable").click()
     person.until(plot.isVisible, "the plot", 5)
     assert "Width = 40 v^(-1/3) + 20/r + 1 mm" in fit.text() and "R² 1.0000" in fit.text()
     assert not person.field(panel, "BeadModelNote").isVisible()
