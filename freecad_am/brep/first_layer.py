@@ -14,6 +14,7 @@ import Part
 from ..core.geometry.surface import dot
 from ..core.geometry.surface_wall import TABLE, TORUS, Array, Placed, SurfaceWall
 from ..core.issues import NOTE, InputError, Issue
+from .patch_wall import sound
 from .wall import Tube, tubes
 
 TOUCH = 0.05  # mm; a wall that ends this short of its substrate stands on it
@@ -31,10 +32,12 @@ def find_wall(
 
     The first layer is the loop in which the wall leaves the substrate for good; where there are several loops an issue
     says so. Raises the InputErrors of `brep.wall.tubes`, and NO_SOLID, INSIDE_OUT, NO_CONTACT, OPEN_CONTACT, INSIDE,
-    WALL_EDGE.
+    WALL_EDGE, SELF_INTERSECTION.
     """
     solid = _solid(substrate, substrate_label)
     named, both = tubes(shape, faces, label)
+    if both[0].kind == TABLE:
+        sound(named, label)  # the kernel may crash on faces that cut themselves
     tube = min(both, key=lambda one: _away(one, solid))
     surface = tube.surface()
     loops = _loops(tube, named, solid)

@@ -65,12 +65,19 @@ def find_patch_wall(
 
 def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
     """Longest edge of the mesh: the layer height, a quarter of the wall's smallest radius if that is less."""
-    size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
-    coarse = sheet(named, max(COARSE * height, SHARE * size), label)
-    refuse_folded(coarse, label)
-    refuse_crossing(coarse, label)  # early: where a surface is bent that tightly, a finer mesh takes long
-    radius = float(smallest_radii(coarse)[0].min())
+    # checked early: where a surface is bent that tightly, a finer mesh takes long
+    radius = float(smallest_radii(sound(named, label, COARSE * height))[0].min())
     return float(np.clip(0.25 * radius, 0.25 * height, height))
+
+
+def sound(named: Sequence[tuple[str, Any]], label: str, edge: float = 0.0) -> PatchWall:
+    """A coarse mesh of the faces, edges not longer than `edge` mm or a share of their size, that has been found not to cut
+    itself. InputError SELF_INTERSECTION, and those of `sheet`."""
+    size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
+    coarse = sheet(named, max(edge, SHARE * size), label)
+    refuse_folded(coarse, label)
+    refuse_crossing(coarse, label)
+    return coarse
 
 
 def _outward(wall: PatchWall, shape: Any) -> PatchWall:
@@ -113,9 +120,11 @@ def _from_substrate(
             f"a few {wall.mesh.typical_edge:.2g} mm); let it reach in all around, or choose the edges to start from",
         )
     found = f"the first layer lies on the wall and on {substrate.label}"
-    if off > 0.0:
+    if ground.facets:
         found += (f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them, about as far as "
-                  "they are off what they stand for")
+                  "they are off what they stand for" if off > 0.0 else "")
+    else:
+        found += f" within {off:.2g} mm"
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
 
 

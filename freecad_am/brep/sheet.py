@@ -20,6 +20,7 @@ from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.refined import Edges, count_halved, flipped, refined
 from ..core.geometry.surface import dot
 from ..core.issues import InputError
+from .kernel import refuse_bare
 from .sheet_places import Places
 from .surface_patch import patch_of
 
@@ -37,7 +38,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     """The faces as a wall that neither starts nor ends anywhere yet, its edges not longer than `edge` mm.
 
     Triangles are turned as the faces are, and all to one side. Raises InputError ROUGH_WALL, NOT_ORIENTABLE,
-    TOO_FINE.
+    TOO_FINE, and those of `kernel.refuse_bare`.
     """
     names, faces = [name for name, _ in named], [face for _, face in named]
     shape, order = _sewn(faces)
@@ -45,6 +46,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     faces = shape.Faces
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
     (vertices, triangles, owner, nodes), about = _tessellated_for(shape, edge)
+    refuse_bare(list(zip(names, faces)), owner, label)
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
     made = refined(vertices, triangles, owner, edge, places.middles, MOST) if about < 2 * MOST else None

@@ -14,6 +14,7 @@ from ..core.geometry.surroundings import Body
 from ..core.geometry.told import place
 from ..core.issues import InputError
 from . import tessellate
+from .kernel import refuse_bare
 from .sheet import facing, tessellated, welded
 from .surface_patch import patch_of
 
@@ -53,14 +54,25 @@ def substrate_of(source: Any, label: str) -> Substrate:
         return Substrate(label, None, mesh_solid(mesh.vertices, mesh.triangles, label))
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it is no solid; choose a solid part or a closed mesh for the wall to grow on")
-    if source.Volume <= 0.0:
-        box = source.BoundBox
-        raise InputError(
-            "INSIDE_OUT", label, f"the solid around {place(box.Center)} is turned inside out (volume {source.Volume:.4g} "
-            "mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
-        )
+    for solid in source.Solids:
+        if solid.Volume <= 0.0:
+            raise InputError(
+                "INSIDE_OUT", label, f"the solid around {place(solid.BoundBox.Center)} is turned inside out (volume "
+                f"{solid.Volume:.4g} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
+            )
+    source = _as_one(source)
     made = tessellated(source.copy(), CHORD)
+    refuse_bare([(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)], made.owner, label)
     return Substrate(label, source, SolidMesh(made.vertices, made.triangles), made.owner)
+
+
+def _as_one(shape: Any) -> Any:
+    """The shape with solids that touch made one, for what lies between them is no outside to leave."""
+    solids = shape.Solids
+    boxes = [solid.BoundBox for solid in solids]
+    near = [one.intersect(other) for k, one in enumerate(boxes) for other in boxes[:k]]
+    fused = solids[0].multiFuse(solids[1:]).removeSplitter() if any(near) else shape
+    return fused if fused.Solids else shape
 
 
 def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import FreeCAD
@@ -14,7 +15,8 @@ from ..core.geometry.mesh import Index, Mask
 from ..core.geometry.patch import SPLINE, Array
 from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.refined import Edges, boundary
-from ..core.geometry.surface import dot
+from ..core.geometry.surface import dot, normals
+from ..core.geometry.surface_wall import SurfaceWall
 from ..core.geometry.told import place
 from ..core.geometry.triangles import closest
 from ..core.geometry.wall_rims import parts
@@ -27,6 +29,7 @@ BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, 
 ASKED, CLOSING = 12, 20  # cuts of triangles that are followed up, and steps to the place where the faces meet
 CROSSING = 0.05  # rad; faces that touch at less run into each other, or are the same one
 STEP = 1e-5  # of the size of a parameter's step, for curvatures
+PLACES = 96  # up and around a tube at which its radii are taken
 
 
 def refuse_gaps(wall: PatchWall, label: str) -> None:
@@ -127,11 +130,33 @@ def refuse_tight(wall: PatchWall, chosen: Mask, height: float, label: str) -> No
     radius, patch = smallest_radii(wall)
     radius = np.where(chosen, radius, np.inf)
     at = int(np.argmin(radius))
-    if radius[at] < height * (1.0 - 1e-6):
+    _refuse_below(height, float(radius[at]), wall.vertices[at], f"{label} {wall.faces[patch[at]]}")
+
+
+def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
+    """InputError LAYER_HEIGHT where the smaller principal radius of a tube, from its first layer to its end, is below the
+    layer height."""
+    surface = tube.surface()
+    low, around = surface.inverse(tube.first[:: max(1, len(tube.first) // PLACES)])
+    rise = np.linspace(0.0, 1.0, PLACES)[1:-1, None]  # steps stay inside
+    u = low + rise * (tube.end - low)
+    v = np.broadcast_to(around, u.shape)
+    slopes = surface.derivatives(u, v)[1:]
+    turns = []
+    for step_u, step_v in ((STEP * tube.end, 0.0), (0.0, STEP * tube.period)):
+        ahead, back = normals(surface, u + step_u, v + step_v), normals(surface, u - step_u, v - step_v)
+        turns.append((ahead - back) / (2.0 * (step_u + step_v)))
+    radius = principal_radii(slopes, turns)
+    at = np.unravel_index(int(np.argmin(radius)), radius.shape)
+    named = f"{label} {tube.faces[0]}" if len(tube.faces) == 1 else label
+    _refuse_below(height, float(radius[at]), surface.point(u[at], v[at]), named)
+
+
+def _refuse_below(height: float, radius: float, point: Array, where: str) -> None:
+    if radius < height * (1.0 - 1e-6):
         raise InputError(
-            "LAYER_HEIGHT", f"{label} {wall.faces[patch[at]]}", f"layers of {height:g} mm are higher than the wall's "
-            f"smallest radius of curvature, {radius[at]:.3g} mm at {place(wall.vertices[at])}; use lower layers, or a "
-            "larger radius there",
+            "LAYER_HEIGHT", where, f"layers of {height:g} mm are higher than the wall's smallest radius of curvature, "
+            f"{radius:.3g} mm at {place(point)}; use lower layers, or a larger radius there",
         )
 
 
@@ -154,16 +179,23 @@ def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
             (ahead, up), (back, down) = one.at(at + step), one.at(at - step)
             slopes.append((ahead - back) / (2.0 * STEP * reach[axis]))
             turns.append((up - down) / (2.0 * STEP * reach[axis]))
-        a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
-        e, g = dot(slopes[0], turns[0]), dot(slopes[1], turns[1])
-        f = 0.5 * (dot(slopes[0], turns[1]) + dot(slopes[1], turns[0]))
-        area = a * c - b * b
-        plain = area > 1e-10 * np.median(area)  # not at a pole
-        safe = np.where(plain, area, 1.0)
-        mean, gauss = 0.5 * (e * c - 2.0 * f * b + g * a) / safe, (e * g - f * f) / safe
-        bend = np.abs(mean) + np.sqrt(np.maximum(mean * mean - gauss, 0.0))
-        radius[mine] = np.where(plain, 1.0 / np.maximum(bend, 1e-12), np.inf)
+        radius[mine] = principal_radii(slopes, turns)
     return radius, patch
+
+
+def principal_radii(slopes: Sequence[Array], turns: Sequence[Array]) -> Array:
+    """Smaller principal radius (...,) mm, given the derivatives (..., 3) of point and unit normal along both parameters;
+    infinite at poles."""
+    a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
+    e, g = dot(slopes[0], turns[0]), dot(slopes[1], turns[1])
+    f = 0.5 * (dot(slopes[0], turns[1]) + dot(slopes[1], turns[0]))
+    area = a * c - b * b
+    plain = area > 1e-10 * np.median(area)
+    safe = np.where(plain, area, 1.0)
+    mean, gauss = 0.5 * (e * c - 2.0 * f * b + g * a) / safe, (e * g - f * f) / safe
+    bend = np.abs(mean) + np.sqrt(np.maximum(mean * mean - gauss, 0.0))
+    radius: Array = np.where(plain, 1.0 / np.maximum(bend, 1e-12), np.inf)
+    return radius
 
 
 def refuse_folded(wall: PatchWall, label: str) -> None:

@@ -12,9 +12,11 @@ from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.surface_wall import SurfaceWall
 from ..core.issues import InputError
 from .first_layer import find_wall
+from .kernel import FAULTS, told
 from .patch_wall import find_patch_wall
 from .substrate import Substrate, substrate_of
 from .wall import tubes
+from .wall_checks import refuse_tight_tube
 
 BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
 # what is no closed tube of one surface that starts in one loop may still be a wall
@@ -29,17 +31,29 @@ def wall_on(
 
     substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part. A
     SurfaceWall where the faces are one surface that closes around, its end straight across, and the first layer one loop; a
-    PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and `substrate_of`.
+    PatchWall otherwise. Raises the InputErrors of `find_patch_wall` and `substrate_of`, LAYER_HEIGHT,
+    BAD_SHAPE.
     """
-    carrier = None if substrate is None else substrate_of(substrate, substrate_label)
+    with told(substrate_label):
+        carrier = None if substrate is None else substrate_of(substrate, substrate_label)
+    with told(label):
+        return _wall_on(shape, faces, carrier, height, label, start_edges)
+
+
+def _wall_on(
+    shape: Any, faces: Sequence[str], carrier: Substrate | None, height: float, label: str, start_edges: Sequence[str]
+) -> SurfaceWall | PatchWall:
     if carrier is not None and carrier.shape is not None and not start_edges:
         try:
-            tube = find_wall(shape, faces, carrier.shape, label, substrate_label)
+            tube = find_wall(shape, faces, carrier.shape, label, carrier.label)
             if _starts_all_around(tube, carrier.shape):
+                refuse_tight_tube(tube, height, label)
                 return tube
         except InputError as error:
             if error.code not in OTHER_KIND:
                 raise
+        except FAULTS:
+            pass  # the wall as a sheet asks less of the kernel
     named = named_faces(shape, faces, label)
     found = find_patch_wall(shape, named, carrier, height, label, start_edges)
     if carrier is None or carrier.shape is not None or start_edges:

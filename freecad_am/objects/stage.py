@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 
 import FreeCAD as App
 
+from ..brep.kernel import told
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
 from . import hooks, properties, staleness, store
 from .properties import HIDDEN, OUTPUT, READ_ONLY
@@ -135,11 +136,12 @@ class Stage:
         """
         self._busy = True
         try:
-            key = self.key(obj)
-            if force or key != obj.Key:
-                started = time.perf_counter()
-                outcome = self.compute(obj)
-                self._store(obj, outcome, key, time.perf_counter() - started)
+            with told(_subject(obj)):
+                key = self.key(obj)
+                if force or key != obj.Key:
+                    started = time.perf_counter()
+                    outcome = self.compute(obj)
+                    self._store(obj, outcome, key, time.perf_counter() - started)
             found = issues_of(obj)
             _say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
         except InfeasibleError as error:
@@ -272,6 +274,12 @@ def _say(obj: Any, status: str, message: str) -> None:
         obj.Message = message
     if obj.Status != status:
         obj.Status = status
+
+
+def _subject(obj: Any) -> str:
+    """What a stage of shapes is made from, for messages."""
+    source = getattr(obj, "Source", None)
+    return str(source[0].Label if source else obj.Label)
 
 
 def _checked(obj: Any, link: Link) -> Any:
