@@ -22,6 +22,8 @@ CORNER = np.radians(0.1)  # rad; smaller turns of the substrate are smooth joint
 CLOSE = 0.3  # of the wall's typical edge; of nearer points of a chain one is enough
 ROUNDS, SAGITTAS = 8, 1.2  # of points added between others; what a smooth curve may be off a facet, in its sagittas
 WITHIN = 1e-5  # mm between the points of a chain and both surfaces
+# of each arc; where a curvature jumps within it, its middle may be right by chance
+THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 
 
 def levels(wall: PatchWall, ground: Ground) -> Array:
@@ -36,8 +38,8 @@ def levels(wall: PatchWall, ground: Ground) -> Array:
 
 
 def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]) -> tuple[list[FirstCurve], float]:
-    """The chains between the negative and the other values (n,) of the wall's vertices, and how far they leave the ground
-    between the points of a ground of triangles, mm.
+    """The chains between the negative and the other values (n,) of the wall's vertices, and how far they leave wall or
+    ground between the points, mm: by about WITHIN, on a ground of triangles by what they stand for.
 
     Points lie on wall and ground to rounding. Corners are where pieces of the ground meet at an angle; those of facets that
     stand for something round (turns under SHARP) are smoothed, see `_rounded`.
@@ -73,7 +75,40 @@ def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ..
     if ground.facets:
         return _rounded(wall, ground, points, into, out, edge, line.closed)
     points, into, out = _ordered(points, into, out, edge, line.closed)
-    return FirstCurve(points, into, out, line.closed), 0.0
+    return _refined(wall, ground, FirstCurve(points, into, out, line.closed))
+
+
+def _refined(wall: PatchWall, ground: Ground, first: FirstCurve) -> tuple[FirstCurve, float]:
+    """The curve with further points where it leaves wall or ground between them, as it does where their curvature jumps; and
+    how far (mm) it is off either then."""
+    for _ in range(ROUNDS + 4):
+        curve = first.curve()
+        inner = curve.at((curve.w[:-1, None] + curve.span[:, None] * THIRDS).ravel())[0]
+        apart = np.maximum(np.linalg.norm(wall.project(inner)[0] - inner, axis=1), _off(ground, inner))
+        off = apart.reshape(-1, len(THIRDS)).max(axis=1)
+        bad = np.flatnonzero((off > WITHIN) & (curve.span > 1e-6 * curve.period))
+        if not len(bad):
+            break
+        middle, along, _ = curve.at(curve.w[bad] + 0.5 * curve.span[bad])
+        points, piece = _settled(wall, ground, middle)
+        slope = _unit(np.cross(wall.project(points)[1], ground.on(piece, points)[1]))
+        slope *= np.where(dot(slope, along) < 0.0, -1.0, 1.0)[:, None]
+        sound = np.abs(dot(points - ground.on(piece, points)[0], ground.on(piece, points)[1])) < 1e-6
+        sound &= np.linalg.norm(points - middle, axis=1) < 0.5 * curve.span[bad]
+        if not sound.any():
+            break
+        at, points, slope = bad[sound] + 1, points[sound], slope[sound]
+        first = FirstCurve(
+            np.insert(first.points, at, points, axis=0), np.insert(first.into, at, slope, axis=0),
+            np.insert(first.out, at, slope, axis=0), first.closed,
+        )
+    return first, float(max(off.max(), _off(ground, first.points).max()))
+
+
+def _off(ground: Ground, points: Array) -> Array:
+    """Distances (n,) mm from the exact pieces of the ground."""
+    off: Array = np.linalg.norm(points - ground.located(points)[0], axis=1)
+    return off
 
 
 def _settled(wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0) -> tuple[Array, Index]:

@@ -20,8 +20,10 @@ from scipy.spatial import cKDTree
 
 from ..geometry.mesh import LevelLine, Mesh, chains
 from ..geometry.space_curve import SpaceCurve
+from ..geometry.surface import dot
 from .even_line import even, rounded
 from .front_curve import Wall
+from .on_wall import on_wall
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -222,11 +224,12 @@ def _through(wall: Wall, points: Array, height: float, closed: bool) -> SpaceCur
     elif length < STRAIGHT * height:
         means = line[0] + np.linspace(0.0, 1.0, count + 1)[:, None] * (line[-1] - line[0])
     at = np.linspace(0.0, length, count + 1)
-    nodes = wall.project(means)[0]
+    nodes, normal = wall.project(means)
     if closed:
-        nodes[-1] = nodes[0]
+        nodes[-1], normal[-1] = nodes[0], normal[0]
     slope = CubicSpline(at, nodes, bc_type="periodic" if closed else "natural")(at, 1)
-    return SpaceCurve(at, nodes, slope, slope, closed)
+    slope -= dot(slope, normal)[:, None] * normal
+    return on_wall(wall, SpaceCurve(at, nodes, slope, slope, closed))
 
 
 def _samples(curves: list[SpaceCurve], step: float) -> Array:

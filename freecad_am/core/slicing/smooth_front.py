@@ -20,6 +20,7 @@ from ..geometry.surface import dot
 from .banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
 from .even_line import even, rounded
 from .front_curve import Wall, feet
+from .on_wall import on_wall
 from .rims import ON_RIM, Rims
 from .wall_turn import turns_in_wall
 
@@ -35,7 +36,6 @@ STEPS = 40
 FOUND = 1e-6  # of the height
 ROOM = 0.4  # of the way to the next front of the layer; no front runs farther ahead
 FINER = 4  # places per arc at which the result is measured
-ON_WALL = 5e-5  # mm
 ENDS = np.array([0, -1])
 SPREAD = 4.0  # layer heights over which the slide of an end is spread
 SLIDES = 0.3  # share of a way along a rim that leads across the front; less, and the end stays
@@ -103,7 +103,7 @@ def smoothed(
     best = lightest(trial, min(weight, HEAVY), AIM * smoothing.limit)
     if best is None or best.turn >= kept.turn:
         return kept
-    return best._replace(curve=_on_wall(wall, best.curve))
+    return best._replace(curve=on_wall(wall, best.curve))
 
 
 @dataclass(frozen=True)
@@ -197,20 +197,3 @@ def _spline(points: Array, closed: bool) -> tuple[Array, Array]:
     """Parameters (n,) and derivatives (n, 3) of a smooth curve through points; a closed one repeats its first."""
     w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     return w, CubicSpline(w, points, bc_type="periodic" if closed else "not-a-knot")(w, 1)
-
-
-def _on_wall(wall: Wall, curve: SpaceCurve) -> SpaceCurve:
-    """The curve with further nodes where its arcs are off the wall between the nodes."""
-    for _ in range(FINER):
-        middle = curve.w[:-1] + 0.5 * curve.span
-        points, slope, _ = curve.at(middle)
-        places, normal = wall.project(points)
-        bad = np.flatnonzero(np.linalg.norm(places - points, axis=1) > ON_WALL)
-        if not len(bad):
-            break
-        slope = slope[bad] - dot(slope[bad], normal[bad])[:, None] * normal[bad]
-        curve = SpaceCurve(
-            np.insert(curve.w, bad + 1, middle[bad]), np.insert(curve.points, bad + 1, places[bad], axis=0),
-            np.insert(curve.into, bad + 1, slope, axis=0), np.insert(curve.out, bad + 1, slope, axis=0), curve.closed,
-        )
-    return curve

@@ -150,7 +150,9 @@ def _layers(
             curve = way.piece.curve
             w = within_chord(curve, way.start, way.start + curve.period, strategy.chord_error)
             line = traced(curve, w, curve.closed)
-            points, out = wall.project(line.points)
+            points, out = wall.project(line.points)  # arcs are off it between their nodes, if by next to nothing
+            if curve.closed:
+                points[-1] = points[0]
             line = line._replace(points=points)
             over = along(line, out, np.cross(out, line.tangents.sum(axis=1)))  # up is on the left
             if way.backwards:
