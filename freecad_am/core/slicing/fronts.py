@@ -37,6 +37,7 @@ Mask = NDArray[np.bool_]
 
 MOST = 20000  # layers
 SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
+SLIVER, OFF = 10.0, 5e-4  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
 THIN = 0.3  # of the typical edge; nearer points of a level line are one
 BEHIND = 1e-3  # mm; vertices nearer to a first curve lie on it
 SAME = 1e-4  # mm; vertices nearer to a front lie on it, so that the last layer may lie on the wall's edge
@@ -114,7 +115,7 @@ def step(wall: FrontWall, rims: Rims, state: State, height: float, smoothing: Sm
         if len(points) < (4 if line.closed else 2):
             continue
         pieces = exact(wall, state.fronts, height, points, line.closed, line.rims, line.ends)
-        fronts += [front for front in pieces if front.length > SHORTEST * height]
+        fronts += [front for front in pieces if front.length > SHORTEST * height and _true(front, state.fronts, height)]
     weight = state.weight
     if smoothing is not None:
         found = [smoothed(wall, rims, state.fronts, front, fronts[:k] + fronts[k + 1 :], height, smoothing, weight)
@@ -125,6 +126,12 @@ def step(wall: FrontWall, rims: Rims, state: State, height: float, smoothing: Sm
     passed = band[low & ~behind]
     state.behind[passed] = True
     return State(fronts, state.behind, passed, weight)
+
+
+def _true(front: SpaceCurve, below: list[SpaceCurve], height: float) -> bool:
+    """Whether a front keeps its distance between the nodes too: slivers between fronts that meet head on may not; a bead
+    that closes the gap takes their place."""
+    return front.length > SLIVER * height or bool(np.abs(local_distances(front, below, 10) - height).max() < OFF)
 
 
 def _passed(
