@@ -113,7 +113,7 @@ class Frustum:
         lean = normal - np.einsum("ij,ij->i", normal, axis)[:, None] * axis
         size = np.linalg.norm(lean, axis=1)
         lean = lean / np.where(size > 0.0, size, 1.0)[:, None]
-        inside = np.zeros(len(corners), dtype=bool)
+        inside: Mask = np.zeros(len(corners), dtype=bool)
         lines = [(self.low * axis, (self.high - self.low) * axis)]
         for height in (self.low, self.high):
             room = self.radius + self.slope * height
@@ -128,4 +128,5 @@ class Frustum:
             inside |= (
                 crossing & (place > 1e-12) & (place < 1.0 - 1e-12) & (u >= 0.0) & (v >= 0.0) & (u + v <= square)
             )
-        return inside & (square > 0.0)
+        inside &= square > 0.0
+        return inside

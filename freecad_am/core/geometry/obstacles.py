@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Many segments or triangles in a tree of balls, and which nozzles they reach into."""
+"""Many segments or triangles in a tree of balls, and which nozzles they reach into or enclose."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from .frustum import Array, Frustum, Mask
+from .inside import Inside, inside_of
 from .surroundings import Body
 
 Index = NDArray[np.intp]
@@ -23,11 +24,13 @@ MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are
 class Obstacles:
     """Segments (m, 2, 3) or triangles (m, 3, 3), neighbours in the list near each other.
 
-    since: (m,) the moment from which each is there; none, then always.
+    since: (m,) the moment from which each is there; none, then always. solids: closed bodies, always there, whose
+    triangles are among the obstacles as far as nozzles reach.
     """
 
-    def __init__(self, corners: Array, since: Index | None = None) -> None:
+    def __init__(self, corners: Array, since: Index | None = None, solids: Sequence[Inside] = ()) -> None:
         self.corners = corners
+        self.solids = tuple(solids)
         self.since = np.full(len(corners), -1, dtype=np.intp) if since is None else since
         self._levels = [self._balls(1)]
         if corners.shape[1] == 3:
@@ -49,10 +52,24 @@ class Obstacles:
         return centre, np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
 
     def touched(self, nozzle: Frustum, tip: Array, axis: Array, moment: Index | None = None) -> Mask:
-        """Whether nozzles with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,)."""
+        """Whether nozzles with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,).
+
+        A nozzle that meets no triangle of a closed body is inside it as a whole or not at all: a point of its axis says.
+        """
         found = np.zeros(len(tip), dtype=bool)
-        if not len(self.corners) or nozzle.high <= nozzle.low:
+        if nozzle.high <= nozzle.low:
             return found
+        if len(self.corners):
+            found = self._all_touched(nozzle, tip, axis, moment)
+        for solid in self.solids:
+            ends = [tip + height * axis for height in (nozzle.low, nozzle.high)]
+            boxed = [((end > solid.low) & (end < solid.high)).all(axis=1) for end in ends]
+            rows = np.flatnonzero(~found & boxed[0] & boxed[1])
+            found[rows] = solid.holds(0.5 * (ends[0][rows] + ends[1][rows]))
+        return found
+
+    def _all_touched(self, nozzle: Frustum, tip: Array, axis: Array, moment: Index | None) -> Mask:
+        found = np.zeros(len(tip), dtype=bool)
         if moment is None:
             moment = np.zeros(len(tip), dtype=np.intp)
         for first in range(0, len(tip), QUERIES):
@@ -100,7 +117,8 @@ class Obstacles:
 
 
 def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Obstacles:
-    """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3)."""
+    """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3), and the inside of
+    those that are closed; a body with an opening counts by its triangles alone."""
     low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
     corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
     whole = len(corners)
@@ -115,7 +133,10 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Obstacles:
         corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
     if len(corners):
         corners = corners[cKDTree(corners.mean(axis=1), leafsize=BRANCH).indices]
-    return Obstacles(corners)
+    # only a body whose box reaches as far has room for a whole nozzle about one of the points
+    near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
+            and (body.vertices.max(axis=0) >= low).all()]
+    return Obstacles(corners, solids=[solid for solid in map(inside_of, near) if solid is not None])
 
 
 def _halves(corners: Array, edge: Index) -> Array:

@@ -61,7 +61,8 @@ def held(build: Array, lead: float, tilt: float, rising: bool) -> Array:
 def from_vertical(directions: Array) -> Array:
     """Angle (n,) rad between directions (n, 3) and the axis."""
     x, y, z = columns(directions)
-    return np.arctan2(np.hypot(x, y), z)
+    angle: Array = np.arctan2(np.hypot(x, y), z)
+    return angle
 
 
 def tilted_back(build: Array, angle: Array) -> Array:

@@ -58,7 +58,7 @@ class _Room:
     def clear(self, at: Index, axis: Array) -> Mask:
         """Whether the axes (k, 3) at the points numbered `at` (k,) are clear and within the cap."""
         x, y, z = columns(axis)
-        clear = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
+        clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
         rows = np.flatnonzero(clear)
         clear[rows] = ~self.bodies.touched(self.above_bodies, self.points[at[rows]], axis[rows])
         rows = np.flatnonzero(clear)

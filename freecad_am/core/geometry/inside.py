@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether points are inside closed bodies: by the triangles that a ray from each point crosses.
+
+Where all triangles of a body face one way, a point is inside where the ray leaves the body more often than it enters it:
+shells that overlap add up, cavities count as outside. Where some are turned over, an odd number of crossings decides. A
+body whose triangles leave an opening has no inside.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from .surroundings import Body
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+# of all rays; along no edge or face that anyone draws, so that none runs through an edge but by chance
+RAY = np.array([0.5423261, 0.3190717, 0.7772039])
+SAME = 1e-6  # mm; vertices that lie closer are one
+BRANCH = 8
+AT_ONCE = 16384
+
+
+class Inside:
+    """The inside of one closed body. low, high: (3,) mm, the box about it."""
+
+    def __init__(self, body: Body, faces_one_way: bool) -> None:
+        corners = body.corners()
+        corners = corners[cKDTree(corners.mean(axis=1), leafsize=BRANCH).indices]
+        self.low, self.high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        self._faces_one_way = faces_one_way
+        # as seen along the ray: across it (m, 3, 2), and along it (m, 3)
+        ray = RAY / np.linalg.norm(RAY)
+        one = np.cross(ray, [1.0, 0.0, 0.0])
+        one /= np.linalg.norm(one)
+        self._frame = np.stack([one, np.cross(ray, one), ray])
+        self._seen = corners @ self._frame.T
+        self._levels = [self._boxes(1)]
+        while len(self._levels[-1][0]) > 2 * BRANCH:
+            self._levels.append(self._boxes(BRANCH ** len(self._levels)))
+
+    def _boxes(self, size: int) -> tuple[Array, Array]:
+        """Lowest and highest places (k, 3), as seen along the ray, of so many triangles each."""
+        starts = np.arange(0, len(self._seen), size)
+        return (
+            np.minimum.reduceat(self._seen.min(axis=1), starts), np.maximum.reduceat(self._seen.max(axis=1), starts)
+        )
+
+    def holds(self, points: Array) -> Mask:
+        """Whether points (n, 3) are inside; on the surface itself it may be either."""
+        found = np.zeros(len(points), dtype=bool)
+        some = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
+        for part in np.split(some, np.arange(AT_ONCE, len(some), AT_ONCE)):
+            found[part] = self._held(points[part] @ self._frame.T)
+        return found
+
+    def _held(self, seen: Array) -> Mask:
+        top = len(self._levels[-1][0])
+        query, node = np.repeat(np.arange(len(seen)), top), np.tile(np.arange(top), len(seen))
+        for depth in range(len(self._levels) - 1, -1, -1):
+            low, high = self._levels[depth]
+            at = seen[query]
+            near = (at <= high[node]).all(axis=1) & (at[:, :2] >= low[node, :2]).all(axis=1)
+            query, node = query[near], node[near]
+            if depth:
+                node = (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()
+                query = np.repeat(query, BRANCH)
+                real = node < len(self._levels[depth - 1][0])
+                query, node = query[real], node[real]
+        offset = self._seen[node] - seen[query, None]
+        after = np.roll(offset, -1, axis=1)
+        # twice the areas of the ray's end with each edge, against the edge's opposite corner: the shares of the corners
+        area = np.roll(offset[:, :, 0] * after[:, :, 1] - offset[:, :, 1] * after[:, :, 0], -1, axis=1)
+        way = np.where((area >= 0.0).all(axis=1), 1, 0) - np.where((area < 0.0).all(axis=1), 1, 0)
+        crossed = (way != 0) & ((area * offset[:, :, 2]).sum(axis=1) * way > 0.0)
+        query, way = query[crossed], way[crossed]
+        if self._faces_one_way:
+            out: Mask = np.bincount(query, weights=way, minlength=len(seen)) != 0.0
+            return out
+        odd: Mask = np.bincount(query, minlength=len(seen)) % 2 == 1
+        return odd
+
+
+def inside_of(body: Body) -> Inside | None:
+    """The inside of a body; None where its triangles leave an opening, or are none."""
+    if not len(body.triangles):
+        return None
+    _, first = np.unique(np.round(body.vertices / SAME).astype(np.int64), axis=0, return_inverse=True)
+    corners = first.ravel()[body.triangles]
+    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    forward = np.where(edges[:, 0] < edges[:, 1], 1, -1)
+    _, edge = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    edge = edge.ravel()
+    if (np.bincount(edge) % 2).any():
+        return None
+    return Inside(body, bool((np.bincount(edge, weights=forward) == 0.0).all()))
