@@ -53,7 +53,7 @@ def lines_round(strip: Strip, beads: Beads) -> list[PlaneCurve]:
     turn, room = strip.period.around, _Room(strip, inner)
     curves = []
     for row, level in enumerate(levels_between(low + 0.5 * beads.spacing, high - 0.5 * beads.spacing, beads)):
-        count = max(24, math.ceil(turn / math.sqrt(8.0 * beads.chord_error * max(_radius(strip, level), beads.spacing))))
+        count = _round_count(strip, level, beads)
         u = -0.5 * turn + turn / count * np.arange(count + 1)
         inside = room.contains(np.stack([u, np.full(len(u), level)], axis=1))
         for a, b in _runs(inside[:-1]):
@@ -122,6 +122,10 @@ def _middle(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     points = simplified(points, 0.2 * beads.chord_error)
     v = np.interp(-0.5 * turn, points[:, 0], points[:, 1])
     within = points[(points[:, 0] > -0.5 * turn) & (points[:, 0] < 0.5 * turn)]
+    if not math.isinf(strip.period.apex):  # what is straight in (u, v) is an arc on the plane
+        count = _round_count(strip, 0.5 * sum(strip.levels), beads)
+        u = np.union1d(within[:, 0], -0.5 * turn + turn / count * np.arange(1, count))
+        within = np.stack([u, np.interp(u, points[:, 0], points[:, 1])], axis=1)
     flat = strip.period.laid(np.vstack([[[-0.5 * turn, v]], within]))
     sense = -1 if beads.clockwise else 1
     return [PlaneCurve(flat[::-1] if beads.clockwise else flat, True, "centre", ring, sense)]
@@ -167,6 +171,12 @@ def _runs(inside: NDArray[np.bool_], closed: bool = True) -> list[tuple[int, int
     if closed and len(runs) > 1 and runs[0][0] == 0 and runs[-1][1] == count:
         runs = [*runs[1:-1], (runs[-1][0], count + runs[0][1])]
     return [run for run in runs if run[1] - run[0] > 1]
+
+
+def _round_count(strip: Strip, level: float, beads: Beads) -> int:
+    """Points of a line once round the hub, within the chord error on the plane."""
+    radius = max(_radius(strip, level), beads.spacing)
+    return max(24, math.ceil(strip.period.around / math.sqrt(8.0 * beads.chord_error * radius)))
 
 
 def _radius(strip: Strip, level: float) -> float:

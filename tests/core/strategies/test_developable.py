@@ -344,3 +344,20 @@ def test_what_is_refused():
     with pytest.raises(InputError) as caught:
         planned(solids(CONE, box()), build=BuildDirectionParameters(mode="fixed"))
     assert caught.value.code == "NOT_FOR_FAMILY"
+
+
+@pytest.mark.parametrize("direction", ["counter-clockwise", "clockwise"])
+def test_collars_have_margins_and_the_torch_leans_away_from_them(direction):
+    made = solids(CONE, collar(30.0, 80.0, 10.0, 40.0))
+    path = planned(
+        made, process=ProcessParameters(direction=direction), margin=5.0, deflection=math.radians(10.0), layer_height=8.0
+    )
+    first = [bead for bead in path.layers[0].beads if bead.closed]
+    low, high = min(first, key=lambda bead: bead.points[:, 2].min()), max(first, key=lambda bead: bead.points[:, 2].max())
+    # up the cone a way of s is s cos(a) of height; beads are half a spacing inside of what is 5 mm larger
+    reach = 2.0 * math.cos(CONE.taper)
+    assert low.points[:, 2] == pytest.approx(np.full(len(low), 10.0 - reach), abs=0.06)
+    assert high.points[:, 2] == pytest.approx(np.full(len(high), 40.0 + reach), abs=0.06)
+    assert (low.tool[:, 2] < low.build[:, 2]).all() and (high.tool[:, 2] > high.build[:, 2]).all()
+    turn = np.cross(low.points[:-1], low.points[1:])[:, 2]
+    assert (turn > 0.0).all() if direction == "counter-clockwise" else (turn < 0.0).all()
