@@ -92,8 +92,10 @@ def turn_rates(points: Array, directions: Array) -> Array:
     return rate
 
 
-def limited(points: Array, directions: Array, closed: bool, rate: float, label: str = "build_direction") -> Limited:
-    """Directions that turn by no more than `rate` rad/mm from point to point (n, 3).
+def limited(
+    points: Array, directions: Array, closed: bool, rate: float, label: str = "build_direction", most: float = np.pi
+) -> Limited:
+    """Directions that turn by no more than `rate` rad/mm from point to point (n, 3), and lean by no more than `most` rad.
 
     Where they turn faster, and near there, each is the mean over a stretch of the bead; stretches shrink to nothing away
     from such places, and are as short as the limit allows. Closed beads repeat their first point. InputError
@@ -106,7 +108,7 @@ def limited(points: Array, directions: Array, closed: bool, rate: float, label: 
     s = np.r_[0.0, np.cumsum(steps)]
     away = _distance_along(s, fast, closed)
     low, high = 0.0, 1e-3 * s[-1]  # narrow ones first
-    while (good := _checked(points, s, directions, closed, high - away, rate)) is None:
+    while (good := _checked(points, s, directions, closed, high - away, rate, most)) is None:
         low, high = high, 1.5 * high
         if high > 2.0 * s[-1]:
             raise InputError(
@@ -117,7 +119,7 @@ def limited(points: Array, directions: Array, closed: bool, rate: float, label: 
         if high - low < 1e-4 * high:
             break
         middle = 0.5 * (low + high)
-        tried = _checked(points, s, directions, closed, middle - away, rate)
+        tried = _checked(points, s, directions, closed, middle - away, rate, most)
         if tried is None:
             low = middle
         else:
@@ -126,11 +128,14 @@ def limited(points: Array, directions: Array, closed: bool, rate: float, label: 
     return Limited(good, np.arctan2(cross, dot(directions, good)))
 
 
-def _checked(points: Array, s: Array, directions: Array, closed: bool, half: Array, rate: float) -> Array | None:
+def _checked(
+    points: Array, s: Array, directions: Array, closed: bool, half: Array, rate: float, most: float
+) -> Array | None:
     found = _spread(s, directions, closed, np.maximum(half, 0.0))
-    if found is None or (turn_rates(points, found) > rate).any():
+    if found is None:
         return None
-    return found
+    found = capped(found, most)[0]  # a mean of directions beyond the level leans over more than they do
+    return None if (turn_rates(points, found) > rate).any() else found
 
 
 def _spread(s: Array, directions: Array, closed: bool, half: Array) -> Array | None:

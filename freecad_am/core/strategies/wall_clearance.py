@@ -23,12 +23,15 @@ from ..geometry import frames
 from ..geometry.columns import columns
 from ..geometry.frustum import Frustum
 from ..geometry.obstacles import Obstacles, of_bodies
+from ..geometry.surface import dot
 from ..geometry.surroundings import Body
 from ..geometry.ties import first_least
-from ..issues import ERROR, NOTE, Issue
+from ..issues import ERROR, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
+from ..slicing.wall_direction import limited, turn_rates
 from ..toolpath import Toolpath
+from .clearance_notes import place, tilt_issues, turn_issues
 from .least_turn import least
 
 Array = NDArray[np.float64]
@@ -42,6 +45,8 @@ SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
 FAR = 4.0  # times SPREAD, beyond which nothing is left of a tilt
 COARSE = 0.2  # mm of height left out more over bodies: their triangles are off the true faces by half of that
 CAP = 1e-9  # rad
+SLOWER = 6  # times that a bead is tilted anew where it turns too fast
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -91,15 +96,10 @@ def kept_clear(
         return toolpath
     rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
     closed = np.array([beads[k].closed for k in blocked])
-    bench = _Bench(room, rows, closed, asked, plane, free)
-    offset, stuck = bench.coarse()
-    for level in range(1, LEVELS + 1):
-        offset = bench.finer(offset, RING / 2.0**level, level)
-    tool, tilt = asked.copy(), np.zeros(len(asked))
-    flat = np.concatenate(rows)
-    tool[flat], tilt[flat] = bench.axes(flat, offset), np.linalg.norm(offset, axis=1)
+    tool, tilt, stuck = _cleared(room, rows, closed, asked, plane, free)
     lost = np.zeros(len(asked), dtype=bool)
-    lost[flat[stuck]] = True
+    lost[stuck] = True
+    turned = _slowed(room, rows, closed, asked, plane, float(build.max_turn), tool, tilt, lost)
     layers = iter(np.split(tool, begin[1:-1]))
     places = [(i, j) for i, j, _ in toolpath]
     return dataclasses.replace(
@@ -108,8 +108,66 @@ def kept_clear(
             dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, tool=next(layers)) for bead in layer.beads))
             for layer in toolpath.layers
         ),
-        issues=(*toolpath.issues, *_issues(places, begin, tilt, lost)),
+        issues=(*toolpath.issues, *tilt_issues(places, begin, tilt, lost), *turn_issues(turned, float(build.max_turn))),
     )
+
+
+def _cleared(
+    room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, spread: float = SPREAD
+) -> tuple[Array, Array, Index]:
+    """Axes (n, 3) of all points, those of the beads with the rows tilted clear; tilts (n,) rad; the points that touch even
+    so."""
+    bench = _Bench(room, rows, closed, asked, plane, free, spread)
+    offset, stuck = bench.coarse()
+    for level in range(1, LEVELS + 1):
+        offset = bench.finer(offset, RING / 2.0**level, level)
+    tool, tilt = asked.copy(), np.zeros(len(asked))
+    flat = np.concatenate(rows)
+    tool[flat], tilt[flat] = bench.axes(flat, offset), np.linalg.norm(offset, axis=1)
+    return tool, tilt, flat[stuck]
+
+
+def _slowed(
+    room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array,
+    lost: Mask,
+) -> float:
+    """Find axes anew, in place, for beads that turn faster than `most` rad/mm with their tilts though what was asked does
+    not; comes back with the fastest turn that is left of them, 0 where none is.
+
+    Each time what is asked turns slower, by as much as is too much, and tilts come and go over a longer way.
+    """
+    if most == np.inf:
+        return 0.0
+
+    def fastest(row: Index, axes: Array) -> float:
+        return float(turn_rates(room.points[row], axes[row]).max(initial=0.0))
+
+    worst = 0.0
+    for row, loop in zip(rows, closed, strict=True):
+        rate, spread, now = most, SPREAD, fastest(row, tool)
+        if now <= most or fastest(row, asked) > most * (1.0 + ROUNDING) or lost[row].any():
+            continue
+        for _ in range(SLOWER):
+            rate, spread = 0.98 * rate * most / now, 1.5 * spread
+            slower = asked.copy()
+            try:
+                slower[row] = limited(room.points[row], asked[row], bool(loop), rate, most=room.max_tilt).directions
+            except InputError:
+                break
+            free = np.ones(len(asked), dtype=bool)
+            free[row] = room.clear(row, slower[row])
+            found, stuck = slower, row[:0]
+            if not free[row].all():
+                found, _, stuck = _cleared(room, [row], np.array([loop]), slower, plane, free, spread)
+            now = fastest(row, found)
+            if not len(stuck) and now < fastest(row, tool):
+                cross = np.linalg.norm(np.cross(asked[row], found[row]), axis=1)
+                tool[row], tilt[row] = found[row], np.arctan2(cross, dot(asked[row], found[row]))
+            if now <= most:
+                break
+        left = fastest(row, tool)
+        worst = max(worst, left if left > most else 0.0)
+    return worst
 
 
 def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
@@ -122,7 +180,7 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
         return []
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
     places = [(i, j) for i, j, _ in toolpath]
-    at, point = _place(places, begin, int(np.argmax(hit)))
+    at, point = place(places, begin, int(np.argmax(hit)))
     names = " or ".join(body.name for body in bodies)
     return [Issue(
         ERROR, "CLEARANCE", f"the nozzle touches {names} at {int(hit.sum())} of {len(points)} points; on parts of "
@@ -150,8 +208,9 @@ class _Bench:
     without twist; one of them is 0 where the tool must stay in a plane.
     """
 
-    def __init__(self, room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask) -> None:
-        self.room, self.closed, self.plane = room, closed, plane
+    def __init__(self, room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
+                 spread: float) -> None:
+        self.room, self.closed, self.plane, self.spread = room, closed, plane, spread
         self.flat = np.concatenate(rows)
         self.asked = asked
         self.counts = np.array([len(row) for row in rows])
@@ -161,7 +220,7 @@ class _Bench:
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
         self.step[self.begin + self.counts - 1] = 0.0
         self.near = np.concatenate([
-            _near(points[b : b + n], ~free[row], loop)
+            _near(points[b : b + n], ~free[row], loop, FAR * spread)
             for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
         ])
 
@@ -269,7 +328,7 @@ class _Bench:
             place[k, :count] = start + around
             step = self.step[place[k, : count - 1]]
             weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
-            change[k, : count - 1] = SPREAD**2 / np.maximum(step, 1e-6)
+            change[k, : count - 1] = self.spread**2 / np.maximum(step, 1e-6)
             free[k, :count] = allowed[place[k, :count]]
             if self.closed[k]:
                 ends = np.arange(s) == fixed[start + anchor[k]]
@@ -283,13 +342,13 @@ class _Bench:
         return chosen
 
 
-def _near(points: Array, blocked: Mask, closed: bool) -> Mask:
-    """Which points of a bead are within reach, along it, of a tilt at the blocked ones."""
+def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
+    """Which points of a bead are within `reach` mm, along it, of the blocked ones."""
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     apart = np.abs(length[:, None] - length[None, blocked])
     if closed:
         apart = np.minimum(apart, length[-1] - apart)
-    near: Mask = apart.min(axis=1, initial=np.inf) <= FAR * SPREAD
+    near: Mask = apart.min(axis=1, initial=np.inf) <= reach
     return near
 
 
@@ -305,32 +364,3 @@ def _sides(asked: Array, plane: Array | None) -> Array:
     level = frames.smallest_rotation(middle, np.array([0.0, 0.0, 1.0]))[:2]
     sides: Array = np.einsum("nij,kj->nki", frames.smallest_rotation(middle, asked), level)
     return sides
-
-
-def _place(places: list[tuple[int, int]], begin: Index, row: int) -> tuple[tuple[int, int], int]:
-    bead = int(np.searchsorted(begin, row, side="right")) - 1
-    return places[bead], row - int(begin[bead])
-
-
-def _issues(places: list[tuple[int, int]], begin: Index, tilt: Array, lost: Mask) -> list[Issue]:
-    bead = np.repeat(np.arange(len(places)), np.diff(begin))
-    layer = np.array([place[0] for place in places])[bead]
-    issues = []
-    if lost.any():
-        at, point = _place(places, begin, int(np.argmax(lost)))
-        issues.append(Issue(
-            ERROR, "CLEARANCE", f"however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at "
-            f"{int(lost.sum())} point(s) of layers {layer[lost].min()} to {layer[lost].max()}; use a slimmer nozzle, a "
-            "larger build_direction.max_tilt or another place for what is in the way", *at, point,
-        ))
-    moved = ~lost & (tilt > 1e-9)
-    if moved.any():
-        worst = int(np.argmax(np.where(moved, tilt, 0.0)))
-        at, point = _place(places, begin, worst)
-        first, last = int(layer[moved].min()), int(layer[moved].max())
-        where = f"in layer {first}" if first == last else f"in layers {first} to {last}"
-        issues.append(Issue(
-            NOTE, "TILT_BACK", f"{where}, tool axes are tilted back to keep the nozzle clear, by up to "
-            f"{np.degrees(tilt[worst]):.2f} deg", *at, point,
-        ))
-    return issues
