@@ -19,6 +19,7 @@ from ..core.parameters.strategy import DevelopableParameters, RevolutionParamete
 from ..core.process import bead_table
 from ..core.strategies import developable, revolution, surface, surface_directions, wall_clearance, wall_fronts
 from ..core.toolpath import Toolpath as CoreToolpath
+from . import progress
 from .developable_feature import DevelopableFeature
 from .stage import Link, Outcome, Section, Stage, stage_of
 from .surface_feature import SurfaceFeature
@@ -97,7 +98,7 @@ def _of_solids(
 ) -> CoreToolpath:
     """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
     model = None if process.bead_model == "none" else bead_table.load(process.bead_model)
-    toolpath = developable.plan(solids, strategy, build, process, model)
+    toolpath = developable.plan(solids, strategy, build, process, model, progress.report)
     if build.clearance == "none":
         return toolpath
     nozzle = NozzleParameters() if cell is None else cell.nozzle

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -28,15 +29,21 @@ from .hub_notes import notes
 BESIDE = 0.6  # of the bead spacing; that far outside of a contour there is no material
 FAMILY = "developable"
 
+Progress = Callable[[float, str], None]
+
+
+def _silent(fraction: float, text: str) -> None:
+    """Tells nobody."""
+
 
 def plan(
     solids: SolidsOnHub, strategy: DevelopableParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    model: BeadModel | None,
+    model: BeadModel | None, progress: Progress = _silent,
 ) -> Toolpath:
     """The toolpath of solids on a hub, in part coordinates; layer i lies i layer heights outside of the hub.
 
-    model: sets the speeds, None for the travel speed everywhere. Raises InputError APEX_INSIDE, TOO_FAR_ROUND,
-    NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, InfeasibleError THIN_REGION.
+    model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
+    InputError APEX_INSIDE, TOO_FAR_ROUND, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, InfeasibleError THIN_REGION.
     """
     if build.mode != "local":
         raise InputError(
@@ -46,11 +53,14 @@ def plan(
     laid: list[Laid] = []
     made: list[Rolled] = []
     mended: list[Issue] = []
+    share = 1.0 / sum(len(one.bodies) for one in solids.groups)
+    done = 0
     for group, one in enumerate(solids.groups):
         for number, body in enumerate(one.bodies):
             centre = middle_azimuth(one.base, body.vertices)
             for layer in slices(one.base, body, strategy):
                 mended += layer.issues
+                progress(share * done, f"{body.name} layer {layer.layer}")
                 for curve in _filled(layer, centre, body, strategy, process):
                     deflection = _deflection(curve, layer, strategy)
                     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
@@ -58,6 +68,7 @@ def plan(
                     bead = rolled(curve, layer.surface, layer.middle, one.base, strategy, build, process, model, deflection)
                     made.append(bead)
                     laid.append(Laid(group, number, layer.layer, curve.ring, bead.bead))
+            done += 1
     if not laid:
         raise InputError(
             "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.shortest:g} mm or more finds room in any layer; "
