@@ -51,5 +51,5 @@ def turn_issues(fastest: float, most: float) -> list[Issue]:
         return []
     return [Issue(
         WARNING, "TURN_PASSED", f"to keep the nozzle clear, tool axes turn by up to {np.degrees(fastest):.3g} deg/mm, "
-        f"faster than build_direction.max_turn ({np.degrees(most):.3g} deg/mm); use a slimmer nozzle, or allow a faster turn",
+        f"faster than build_direction.max_turn ({np.degrees(most):.3g} deg/mm); use a slimmer nozzle or allow a faster turn",
     )]
