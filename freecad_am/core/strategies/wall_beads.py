@@ -18,6 +18,7 @@ from .surface_directions import Along, Directions
 Array = NDArray[np.float64]
 
 TURN = 2.0 * np.pi
+NEAREST = 1e-3  # mm; nearer points of a bead are one: no controller tells the time between them
 
 
 class Traced(NamedTuple):
@@ -32,7 +33,8 @@ class Traced(NamedTuple):
 
 
 def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
-    """The bead through the places w (n,) of a curve; a closed one ends where it starts, to the bit."""
+    """The bead through the places w (n,) of a curve, points nearer than NEAREST made one; a closed one ends where it starts,
+    to the bit."""
     points, leaving, _ = curve.at(w)
     if closed:
         points[-1] = points[0]
@@ -42,9 +44,27 @@ def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
         node = np.clip(np.searchsorted(curve.w[corners], curve.wrapped(w) - 1e-12), 0, len(corners) - 1)
         at = np.abs(curve.w[corners][node] - curve.wrapped(w)) < 1e-9 * curve.period
         arriving[at], leaving[at] = curve.into[corners[node[at]]], curve.out[corners[node[at]]]
+    points, arriving, leaving = _apart(points, arriving, leaving)
     if not closed:
         arriving[0], leaving[-1] = leaving[0], arriving[-1]
     return Traced(points, _unit(np.stack([arriving, leaving], axis=1)))
+
+
+def _apart(points: Array, arriving: Array, leaving: Array) -> tuple[Array, Array, Array]:
+    """The columns (n, 3) with points nearer than NEAREST to the one before left out; the first and the last stay. A point
+    that stands for others, such as an end next to a corner, is left as the last of them and arrived at as the first."""
+    if np.linalg.norm(np.diff(points, axis=0), axis=1).min() >= NEAREST:
+        return points, arriving, leaving
+    starts, end = [0], len(points) - 1
+    for k in range(1, end):
+        if np.linalg.norm(points[k] - points[starts[-1]]) >= NEAREST:
+            starts.append(k)
+    merged = end
+    while len(starts) > 1 and np.linalg.norm(points[end] - points[starts[-1]]) < NEAREST:
+        merged = starts.pop()
+    starts.append(merged)
+    ends = [*(k - 1 for k in starts[1:]), end]
+    return points[[*starts[:-1], end]], arriving[starts], leaving[ends]
 
 
 def along(bead: Traced, normal: Array, up: Array) -> Along:
