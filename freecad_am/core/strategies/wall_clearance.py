@@ -8,21 +8,21 @@ is what is not deposited yet.
 In a bead on which the nozzle would touch, each point has candidate axes on cones about the asked one, in growing angle
 until every point has a clear one; of all ways through clear candidates that is taken for which the integral of tilt^2 +
 (SPREAD d tilt / ds)^2 along the bead is least. Finer candidates about the way found follow, level by level.
+
+Halfway between points that are clear the nozzle is looked at too; where it touches there, the bead gets a point.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import frames
-from ..geometry.columns import columns
 from ..geometry.frustum import Frustum
-from ..geometry.obstacles import Obstacles, of_bodies
+from ..geometry.obstacles import of_bodies
 from ..geometry.surface import dot
 from ..geometry.surroundings import Body
 from ..geometry.ties import first_least
@@ -32,6 +32,7 @@ from ..parameters.cell import NozzleParameters
 from ..slicing.wall_direction import limited, turn_rates
 from ..toolpath import Toolpath
 from .clearance_notes import place, tilt_issues, turn_issues
+from .clearance_room import CAP, COARSE, Room, halfway, halved, left_out, room_of, touched_between
 from .least_turn import least
 
 Array = NDArray[np.float64]
@@ -43,38 +44,9 @@ LARGEST = np.radians(90.0)  # tilt that is tried
 LEVELS = 4  # of finer candidates, each of half the distance
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
 FAR = 4.0  # times SPREAD, beyond which nothing is left of a tilt
-COARSE = 0.2  # mm of height left out more over bodies: their triangles are off the true faces by half of that
-CAP = 1e-9  # rad
 SLOWER = 6  # times that a bead is tilted anew where it turns too fast
 ROUNDING = 1e-9
-
-
-@dataclass(frozen=True)
-class _Room:
-    """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit."""
-
-    points: Array
-    bodies: Obstacles
-    deposit: Obstacles
-    above_bodies: Frustum
-    above_deposit: Frustum
-    max_tilt: float
-
-    def clear(self, at: Index, axis: Array) -> Mask:
-        """Whether the axes (k, 3) at the points numbered `at` (k,) are clear and within the cap."""
-        x, y, z = columns(axis)
-        clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
-        rows = np.flatnonzero(clear)
-        clear[rows] = ~self.bodies.touched(self.above_bodies, self.points[at[rows]], axis[rows])
-        rows = np.flatnonzero(clear)
-        clear[rows] = ~self.deposit.touched(self.above_deposit, self.points[at[rows]], axis[rows], at[rows] + 1)
-        return clear
-
-
-def left_out(nozzle: NozzleParameters) -> float:
-    """Height (mm) over the tip plane at which the nozzle's side is one nozzle diameter from the deposit point."""
-    a, k = 0.5 * nozzle.diameter, np.tan(nozzle.half_angle)
-    return float(a * (np.sqrt(k * k + 3.0 * (1.0 + k * k)) - k) / (1.0 + k * k))
+HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 
 def kept_clear(
@@ -84,22 +56,44 @@ def kept_clear(
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
     bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
-    tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE.
+    tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE. Beads get points halfway between
+    those that are clear where the nozzle would touch there.
     """
+    for last in (False,) * HALVINGS + (True,):
+        found, between = _tilted(toolpath, bodies, nozzle, build, plane, last)
+        if not between.any():
+            break
+        toolpath = halved(toolpath, between)
+    return found
+
+
+def _tilted(
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
+    plane: Array | None, last: bool,
+) -> tuple[Toolpath, Mask]:
+    """The toolpath tilted clear at its points, and the points (n,) after which the nozzle touches halfway to the next; none
+    at the `last` try, where an issue says so. Where it touches with the axes asked for, nothing is tilted yet."""
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
     asked = np.concatenate([bead.tool for bead in beads])
-    room = _room(toolpath, bodies, nozzle, build.max_tilt)
+    room = room_of(toolpath, bodies, nozzle, build.max_tilt)
     free = room.clear(np.arange(len(asked)), asked)
-    blocked = [k for k in range(len(beads)) if not free[begin[k] : begin[k + 1]].all()]
+    between = touched_between(room, beads, asked, free)
+    if between.any() and not last:
+        return toolpath, between
+    blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
     if not blocked:
-        return toolpath
+        return toolpath, between
     rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
     closed = np.array([beads[k].closed for k in blocked])
     tool, tilt, stuck = _cleared(room, rows, closed, asked, plane, free)
     lost = np.zeros(len(asked), dtype=bool)
     lost[stuck] = True
     turned = _slowed(room, rows, closed, asked, plane, float(build.max_turn), tool, tilt, lost)
+    between = touched_between(room, beads, tool, ~lost)
+    if between.any() and not last:
+        return toolpath, between
+    lost |= between
     layers = iter(np.split(tool, begin[1:-1]))
     places = [(i, j) for i, j, _ in toolpath]
     return dataclasses.replace(
@@ -109,11 +103,11 @@ def kept_clear(
             for layer in toolpath.layers
         ),
         issues=(*toolpath.issues, *tilt_issues(places, begin, tilt, lost), *turn_issues(turned, float(build.max_turn))),
-    )
+    ), np.zeros(len(asked), dtype=bool)
 
 
 def _cleared(
-    room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, spread: float = SPREAD
+    room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask, spread: float = SPREAD
 ) -> tuple[Array, Array, Index]:
     """Axes (n, 3) of all points, those of the beads with the rows tilted clear; tilts (n,) rad; the points that touch even
     so."""
@@ -128,7 +122,7 @@ def _cleared(
 
 
 def _slowed(
-    room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array,
+    room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, most: float, tool: Array, tilt: Array,
     lost: Mask,
 ) -> float:
     """Find axes anew, in place, for beads that turn faster than `most` rad/mm with their tilts though what was asked does
@@ -173,9 +167,10 @@ def _slowed(
 def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
     """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
     beads = [bead for _, _, bead in toolpath]
-    points = np.concatenate([bead.points for bead in beads])
+    points, tool = np.concatenate([bead.points for bead in beads]), np.concatenate([bead.tool for bead in beads])
     around = Frustum(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), left_out(nozzle) + COARSE, nozzle.length)
-    hit = of_bodies(bodies, points, around.reach).touched(around, points, np.concatenate([bead.tool for bead in beads]))
+    near = of_bodies(bodies, points, around.reach)
+    hit = near.touched(around, points, tool) | near.touched(around, *halfway(beads, tool))
     if not hit.any():
         return []
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
@@ -188,19 +183,6 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
     )]
 
 
-def _room(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float) -> _Room:
-    points = np.concatenate([bead.points for _, _, bead in toolpath])
-    ends = np.cumsum([len(bead) for _, _, bead in toolpath])
-    second = np.setdiff1d(np.arange(1, len(points)), ends)
-    a, k, low = 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), left_out(nozzle)
-    near_bodies = Frustum(a, k, low + COARSE, nozzle.length)
-    return _Room(
-        points, of_bodies(bodies, points, near_bodies.reach),
-        Obstacles(np.stack([points[second - 1], points[second]], axis=1), second),
-        near_bodies, Frustum(a, k, low, nozzle.length), max_tilt,
-    )
-
-
 class _Bench:
     """The blocked beads side by side: their points one after the other (m,), and padded to chains (b, n).
 
@@ -208,7 +190,7 @@ class _Bench:
     without twist; one of them is 0 where the tool must stay in a plane.
     """
 
-    def __init__(self, room: _Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
+    def __init__(self, room: Room, rows: list[Index], closed: Mask, asked: Array, plane: Array | None, free: Mask,
                  spread: float) -> None:
         self.room, self.closed, self.plane, self.spread = room, closed, plane, spread
         self.flat = np.concatenate(rows)

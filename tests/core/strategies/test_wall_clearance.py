@@ -224,3 +224,47 @@ def test_a_look_at_fixtures_names_the_first_place():
     (issue,) = touched_at(path, [clamp], NOZZLE)
     assert (issue.code, issue.layer, issue.bead, issue.point) == ("CLEARANCE", 0, 0, 1) and "clamp" in issue.message
     assert touched_at(path, [box([60, -5, 5], [70, 5, 30])], NOZZLE) == []
+
+
+def between(path, count=40):
+    """Tips and axes (n, 3) closely along all segments, the axes interpolated."""
+    share = np.linspace(0, 1, count)[:, None]
+    pairs = [
+        (one.points[k] + share * (one.points[k + 1] - one.points[k]), one.tool[k] + share * (one.tool[k + 1] - one.tool[k]))
+        for _, _, one in path for k in range(len(one) - 1)
+    ]
+    tip, axis = (np.concatenate(some) for some in zip(*pairs))
+    return tip, axis / np.linalg.norm(axis, axis=1, keepdims=True)
+
+
+def test_a_thin_plate_that_reaches_in_between_two_points_is_seen():
+    """Too narrow to touch the nozzle at any point of the bead, and beside it all the way."""
+    along = np.arange(-20.0, 21.0, 4.0)
+    path = toolpath(bead(np.stack([along, np.zeros(11), np.zeros(11)], axis=1)))
+    low, high = np.array([1.9, 0.3, 1.3]), np.array([2.1, 1.5, 1.7])
+    plate = box(low, high, "plate")
+    solid = sampled(NOZZLE, left_out(NOZZLE), *(path.layers[0].beads[0].points, path.layers[0].beads[0].tool))
+    assert not ((solid > low) & (solid < high)).all(axis=2).any()
+    (issue,) = touched_at(path, [plate], NOZZLE)
+    assert (issue.code, issue.point) == ("CLEARANCE", 5)
+    found = kept_clear(path, [plate], NOZZLE, LOCAL)
+    one = found.layers[0].beads[0]
+    assert codes(found) == ["TILT_BACK"] and 12 <= len(one) <= 16 and np.isin(along, one.points[:, 0]).all()
+    assert (one.points[:, 1:] == 0).all() and touched_at(found, [plate], NOZZLE) == []
+    height = np.linspace(left_out(NOZZLE) + COARSE, 4.0, 60)
+    tip, axis = between(found)
+    x, y = np.stack([np.linspace(low[0], high[0], 9), np.full(9, low[1])])
+    for z in np.linspace(low[2], high[2], 9):  # the plate's near edge, as deep in the nozzle as it is let pass
+        offset = np.stack([x, y, np.full(9, z)], axis=1) - tip[:, None]
+        up = np.einsum("kij,kj->ki", offset, axis)
+        side = np.linalg.norm(offset - up[:, :, None] * axis[:, None], axis=2)
+        above = up > height[0]
+        assert (side - 0.5 * NOZZLE.diameter - np.tan(NOZZLE.half_angle) * up)[above].min() > -0.15
+
+
+def test_a_plate_between_two_points_that_no_tilt_clears_is_an_error():
+    path = toolpath(bead([[-4, 0, 0], [0, 0, 0], [4, 0, 0]]))
+    ring = [box([1.9, low, 1.3], [2.1, low + 1.2, 1.7]) for low in (-1.5, 0.3)]
+    found = kept_clear(path, ring, NOZZLE, BuildDirectionParameters(max_tilt=np.radians(5.0)))
+    error = next(issue for issue in found.issues if issue.code == "CLEARANCE")
+    assert (error.level, error.layer, error.bead) == ("error", 0, 0)
