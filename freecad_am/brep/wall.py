@@ -74,7 +74,7 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
         return [(name, known[name]) for name in dict.fromkeys(names)]
     curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]
     if len(curved) != 1:
-        raise InputError("NO_WALL", label, f"it has {len(curved)} faces that are not flat; name those of the wall")
+        raise InputError("NO_WALL", label, f"it has {len(curved)} faces that are not flat; name the wall's in part.faces")
     return curved
 
 

@@ -16,8 +16,10 @@ from .kernel import FAULTS, told
 from .patch_wall import find_patch_wall
 from .substrate import Substrate, substrate_of
 from .wall import tubes
-from .wall_checks import refuse_tight_tube
+from .wall_checks import CREASE, refuse_tight_tube
 
+FLAT = "Part::GeomPlane"
+TOLD = 8  # faces named in a message
 BELOW = 9  # places up the tube at which it is told whether it stays in the substrate's box
 # what is no closed tube of one surface that starts in one loop may still be a wall
 OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"})
@@ -87,7 +89,8 @@ def _starts_below(tube: SurfaceWall, carrier: Substrate) -> bool:
 
 
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
-    """The faces chosen: those named, else all of a shape without solids, else the only one that is not flat.
+    """The faces chosen: those named, else all of a shape without solids, else those of a solid that are not flat, if they
+    hang together and no flat one joins them smoothly.
 
     Raises InputError NO_WALL, UNKNOWN_FACE.
     """
@@ -101,10 +104,46 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         return [(name, known[name]) for name in dict.fromkeys(names)]
     if not shape.Solids:
         return list(known.items())
-    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]
-    if len(curved) != 1:
-        raise InputError("NO_WALL", label, f"it has {len(curved)} faces that are not flat; name those of the wall")
+    curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != FLAT]
+    if not curved or not _one_piece([face for _, face in curved]):
+        told = ", ".join(name for name, _ in curved[:TOLD]) + (", ..." if len(curved) > TOLD else "") or "none"
+        raise InputError(
+            "NO_WALL", label, f"it is a solid whose faces that are not flat ({told}) are not one wall; name the faces "
+            "of the wall: part.faces of a job, or select them"
+        )
+    flat = next((name for name, face in known.items() if face.Surface.TypeId == FLAT
+                 and any(_runs_on(face, other) for _, other in curved)), "")
+    if flat:
+        raise InputError(
+            "NO_WALL", label, f"its faces that are not flat run on smoothly into {flat}, which is; name the faces of the "
+            "wall: part.faces of a job, or select them"
+        )
     return curved
+
+
+def _one_piece(faces: list[Any]) -> bool:
+    """Whether faces hang together by common edges."""
+    edges = [{edge.hashCode() for edge in face.Edges} for face in faces]
+    reached, left = edges[0], edges[1:]
+    while left:
+        near = [one for one in left if one & reached]
+        if not near:
+            return False
+        left = [one for one in left if not one & reached]
+        reached = reached.union(*near)
+    return True
+
+
+def _runs_on(face: Any, other: Any) -> bool:
+    """Whether two faces join smoothly along an edge."""
+    codes = {edge.hashCode() for edge in other.Edges}
+    for edge in face.Edges:
+        if edge.hashCode() in codes:
+            point = edge.valueAt(0.5 * (edge.FirstParameter + edge.LastParameter))
+            one, two = (side.normalAt(*side.Surface.parameter(point)) for side in (face, other))
+            if one.cross(two).Length < np.sin(CREASE):
+                return True
+    return False
 
 
 def _as_tube(

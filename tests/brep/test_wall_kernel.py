@@ -147,3 +147,49 @@ def test_a_waist_of_a_loft_is_told_with_its_place():
     height = float(caught.value.message.split("(")[1].split(")")[0].split(", ")[2])
     assert height == pytest.approx(18.0, abs=2.0)
     assert isinstance(wall_on(flared(), (), slab(), 4.0), SurfaceWall)
+
+
+def rod_of_two():
+    """A solid rod: a cylinder that flares, both of it one wall."""
+    outline = [Vector(0, 0, -5), Vector(12, 0, -5), Vector(12, 0, 20)]
+    arc = Part.Arc(Vector(12, 0, 20), Vector(20 - 8 * np.cos(0.35), 0, 20 + 8 * np.sin(0.35)),
+                   Vector(20 - 8 * np.cos(0.7), 0, 20 + 8 * np.sin(0.7)))
+    top = Vector(20 - 8 * np.cos(0.7), 0, 20 + 8 * np.sin(0.7))
+    back = Part.makePolygon([top, Vector(0, 0, top.z), outline[0]])
+    edges = [*Part.makePolygon(outline).Edges, arc.toShape(), *back.Edges]
+    return Part.makeSolid(Part.Face(Part.Wire(edges)).revolve(Vector(), Vector(0, 0, 1), 360))
+
+
+def test_of_a_solid_the_faces_that_are_not_flat_are_the_wall_where_that_is_clear():
+    rod = rod_of_two()
+    curved = [f"Face{k}" for k, face in enumerate(rod.Faces, 1) if face.Surface.TypeId != "Part::GeomPlane"]
+    assert rod.isValid() and rod.Solids and len(curved) == 2
+    assert [name for name, _ in module.named_faces(rod, (), "Rod")] == curved
+    found = wall_on(rod, (), slab(), 3.0)
+    assert isinstance(found, PatchWall) and sorted(found.faces) == curved
+
+
+def rounded_box():
+    box = Part.makeBox(60, 40, 30, Vector(-30, -20, -5))
+    return box.makeFillet(9, [edge for edge in box.Edges if abs(edge.tangentAt(0).z) > 0.99])
+
+
+def rounded_on_top():
+    box = Part.makeBox(60, 40, 30, Vector(-30, -20, -5))
+    return box.makeFillet(5, [edge for edge in box.Edges if min(vertex.Z for vertex in edge.Vertexes) > 24.0])
+
+
+def hollow():
+    return Part.makeCylinder(15, 30).cut(Part.makeCylinder(10, 30))
+
+
+@pytest.mark.parametrize(("make", "words"), [
+    (rounded_box, ["are not one wall", "Face"]), (hollow, ["are not one wall", "Face"]),
+    (rounded_on_top, ["run on smoothly into Face"]), (lambda: Part.makeBox(9, 9, 9), ["none"]),
+])
+def test_of_a_solid_where_it_is_not_clear_it_is_told_how_to_name_them(make, words):
+    with pytest.raises(InputError) as caught:
+        wall_on(make(), (), slab(), 3.0, "Part")
+    assert (caught.value.code, caught.value.where) == ("NO_WALL", "Part")
+    for word in [*words, "part.faces"]:
+        assert word in caught.value.message
