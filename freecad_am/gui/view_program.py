@@ -7,6 +7,8 @@ from typing import Any
 
 from .view_base import StageView
 
+_SHOWN = ("Key", "ResultLayout", "ResultData", "Status", "Message")  # undo brings them back in any order
+
 
 class ProgramView(StageView):
     """Nothing to draw. A double click reads the text; the context menu has the parameters and the export."""
@@ -21,7 +23,7 @@ class ProgramView(StageView):
     def updateData(self, obj: Any, name: str) -> None:
         """A property of the object has changed."""
         super().updateData(obj, name)
-        if name in ("Key", "Status", "Message") and not obj.Document.Restoring:
+        if name in _SHOWN and not obj.Document.Restoring:
             from .program_panel import renew
 
             renew(obj)
