@@ -22,14 +22,14 @@ from ..geometry.mesh import LevelLine, Mesh, chains
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from .even_line import even, rounded
-from .front_curve import Wall
+from .front_curve import Wall, feet
 from .on_wall import on_wall
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-COVERED = 0.585  # of the height; no point is to be farther from a bead
+COVERED = 0.594  # of the height; no point is to be farther from a bead, and is found to less than the rest to 0.6
 LEVELS = (0.5, 0.42, 0.34)  # of the height; how deep the border of what is closed lies, for a bead that is long enough
 SHORTEST = 0.5  # of the height
 COARSE, FINE = 0.2, 0.1  # of the height; edges of the mesh on which gaps are sought, and are seen
@@ -41,6 +41,8 @@ ROUNDS = 4
 SEEN = 0.02  # of the height; gaps deeper by this than half the spacing of layers are looked at
 LEFT = 0.005  # of the height, likewise; what is left open
 SAME = 1e-5  # mm; what is nearer to an edge of the mesh lies on it
+UNSURE = 0.07  # of the height; how far off the depth of a gap may be that is told by the vertices of the fine mesh
+AROUND, CLIMB, SHORTER = 8, 14, 0.7  # ways in which deeper places are sought, how often, how much shorter each time
 ALIKE = 6  # decimals of mm to which vertices of the fine mesh are told apart
 
 
@@ -72,10 +74,10 @@ def closing(
     if len(ends):
         asked = np.asarray(cKDTree(ends).query(fine.vertices)[0]) > height
     levels = LEVELS if widest == 1.0 else (0.5 * widest,)  # lower ones would take all that lies between uneven layers in
-    gaps = _Gaps(wall, fine, asked, cut, height, max(COVERED, 0.5 * widest + LEFT), levels)
+    gaps = _Gaps(wall, fine, asked, cut, height, max(COVERED, 0.5 * widest + LEFT), levels, ends)
     found: list[SpaceCurve] = []
     for _ in range(ROUNDS):
-        more = gaps.closed(depth)
+        more = gaps.closed(depth, [*fronts, *found])
         if not more:
             break
         found += more
@@ -87,7 +89,7 @@ class _Gaps(NamedTuple):
     """Where gaps may be: a fine mesh, and its vertices (n,) that must not be farther than `covered` heights from a bead.
 
     cut: those of its vertices (k,) that lie on its border, but on none of the wall: what reaches them is no gap between
-    fronts. levels: heights, where borders of gaps are drawn."""
+    fronts. levels: heights, where borders of gaps are drawn. ends: points (k, 3) where layers finish."""
 
     wall: Wall
     fine: Mesh
@@ -96,20 +98,61 @@ class _Gaps(NamedTuple):
     height: float
     covered: float
     levels: tuple[float, ...]
+    ends: Array
 
-    def closed(self, depth: Array) -> list[SpaceCurve]:
-        """One bead for each gap that is too deep somewhere; depth: (n,) of the vertices."""
+    def _peaks(self, depth: Array, beads: list[SpaceCurve]) -> Array:
+        """The depths (n,), at the vertices nearest to the deepest places on the exact wall those of the places, where they
+        are about `covered`: whether a gap is closed must not depend on where the mesh has its vertices."""
+        low, high = self.fine.edges.T
+        over = np.zeros(len(depth))
+        np.maximum.at(over, low, depth[high])
+        np.maximum.at(over, high, depth[low])
+        near = self.asked & (depth >= over) & (np.abs(depth / self.height - self.covered) < UNSURE)
+        near[self.fine.border_edges] = False
+        top = np.flatnonzero(near)
+        peaks = depth.copy()
+        if not len(top):
+            return peaks
+        place, normal = self.wall.project(self.fine.vertices[top])
+        best = feet(beads, place).distance
+        angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+        tree, border = cKDTree(self.fine.vertices), np.zeros(len(depth), dtype=bool)
+        border[self.fine.border_edges] = True
+        step = FINE * self.height
+        for _ in range(CLIMB):
+            one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
+            one /= np.linalg.norm(one, axis=1, keepdims=True)
+            other = np.cross(normal, one)
+            way = np.cos(angle)[:, None, None] * one + np.sin(angle)[:, None, None] * other
+            tried, out = self.wall.project((place + step * way).reshape(-1, 3))
+            found = feet(beads, tried).distance
+            found[border[np.asarray(tree.query(tried)[1])]] = 0.0
+            if len(self.ends):
+                found[np.asarray(cKDTree(self.ends).query(tried)[0]) <= self.height] = 0.0
+            found, tried, out = found.reshape(AROUND, -1), tried.reshape(AROUND, -1, 3), out.reshape(AROUND, -1, 3)
+            row, pick = np.arange(len(top)), np.argmax(found, axis=0)
+            up = found[pick, row] > best
+            best = np.where(up, found[pick, row], best)
+            place = np.where(up[:, None], tried[pick, row], place)
+            normal = np.where(up[:, None], out[pick, row], normal)
+            step *= SHORTER
+        np.maximum.at(peaks, np.asarray(tree.query(place)[1]), best)
+        return peaks
+
+    def closed(self, depth: Array, beads: list[SpaceCurve]) -> list[SpaceCurve]:
+        """One bead for each gap that is too deep somewhere; depth: (n,) of the vertices below the beads."""
         height, fine = self.height, self.fine
+        peaks = self._peaks(depth, beads)
         found: list[SpaceCurve] = []
         short: list[tuple[SpaceCurve, Mask]] = []
         done = np.zeros(len(depth), dtype=bool)
         for level in self.levels:
             inside = depth > level * height
-            if not (self.asked & (depth > self.covered * height) & ~done).any():
+            if not (self.asked & (peaks > self.covered * height) & ~done).any():
                 break
             label = _labels(fine, inside)
             deepest = np.zeros(label.max() + 1)
-            np.maximum.at(deepest, label[inside & self.asked], depth[inside & self.asked])
+            np.maximum.at(deepest, label[inside & self.asked], peaks[inside & self.asked])
             deepest[label[self.cut[inside[self.cut]]]] = 0.0
             lines = fine.level_lines(level * height - depth, np.arange(len(fine.faces)))  # gaps on their left
             places, tree = np.flatnonzero(inside), cKDTree(fine.vertices[inside])
