@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from ..geometry.surface_wall import Array, Placed, SurfaceWall
 from ..issues import NOTE, InputError, Issue
@@ -38,9 +39,10 @@ def plan(
     normal = surface_directions.plane(wall, build)
     surface = wall.surface()
     curves = sliced(wall, surface, strategy)
-    distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
-    issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, strategy)
     stretches, notes = _stretches(wall, surface, curves, strategy)
+    curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
+    distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
+    issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
     layers, found = _layers(wall, surface, stretches, strategy, build, process, normal)
     return Toolpath(
         layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface"
@@ -147,12 +149,23 @@ def _backwards(
     return bool((turning > 0.0) != wanted)
 
 
-def _corner_notes(surface: Placed, fronts: list[WallLayer], strategy: SurfaceParameters) -> list[Issue]:
-    """Corners that fronts have formed, for a robot slows down there; where there are none, the sharpest turn."""
-    cornered = [index for index, front in enumerate(fronts) if len(front.curve.corners)]
-    if not cornered:
+def _corner_notes(
+    surface: Placed, fronts: list[WallLayer], stretches: list[list[Stretch]], strategy: SurfaceParameters
+) -> list[Issue]:
+    """Corners that fronts have formed where they are deposited, for a robot slows down there; where there are none, the
+    sharpest turn."""
+    turns = [_corners(front.curve, pieces) for front, pieces in zip(fronts, stretches, strict=True)]
+    if not any(map(len, turns)):
         return turn_notes([float(smooth_spacing.turns_in_wall(surface, front).max()) for front in fronts], strategy)
-    return corner_notes([[front.curve] for front in fronts])
+    return corner_notes(turns)
+
+
+def _corners(curve: SpaceCurve, pieces: list[Stretch]) -> Array:
+    """Turns (k,) rad at the corners of a front on its pieces."""
+    w = curve.w[curve.corners]
+    on = [np.mod(w - piece.low, curve.period) <= piece.high - piece.low for piece in pieces]
+    turns: Array = curve.turns[curve.corners][np.any(on, axis=0)] if pieces else np.empty(0)
+    return turns
 
 
 def _unit(vectors: Array) -> Array:

@@ -102,16 +102,18 @@ def spacing_issues(found: list[Array], strategy: SurfaceParameters) -> list[Issu
     return [Issue(WARNING, "SPACING", f"{text}, the layer height {height:g} mm; {advice}", worst)]
 
 
-def corner_notes(fronts: list[list[SpaceCurve]]) -> list[Issue]:
-    """Corners that the fronts of each layer have formed, for a robot slows down there; nothing where there are none."""
-    cornered = [index for index, layer in enumerate(fronts) if any(len(front.corners) for front in layer)]
+def corner_notes(turns: list[Array]) -> list[Issue]:
+    """Corners that the fronts of each layer have formed, for a robot slows down there; nothing where there are none.
+
+    turns: rad at the corners of each layer."""
+    cornered = [index for index, layer in enumerate(turns) if len(layer)]
     if not cornered:
         return []
-    turns = [max((float(front.turns.max()) for front in layer), default=0.0) for layer in fronts]
+    sharpest = [float(layer.max(initial=0.0)) for layer in turns]
     return [Issue(
         NOTE, "CORNERS",
-        f"{len(cornered)} of {len(fronts)} fronts have corners, first layer {cornered[0]}; the sharpest turns by "
-        f"{np.degrees(max(turns)):.3g} deg. The robot slows down there", int(np.argmax(turns)),
+        f"{len(cornered)} of {len(turns)} fronts have corners, first layer {cornered[0]}; the sharpest turns by "
+        f"{np.degrees(max(sharpest)):.3g} deg. The robot slows down there", int(np.argmax(sharpest)),
     )]
 
 

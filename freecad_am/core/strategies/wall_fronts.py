@@ -50,15 +50,15 @@ def plan(
     height = strategy.layer_height
     smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
     curves, closing = fronts.layers(wall, height, smooth)
-    distances = [
-        np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
-        for below, layer in zip(curves[:-1], curves[1:], strict=True)
-    ]
-    issues = spacing_issues(distances, strategy) + _turns(wall, curves, strategy)
     pieces = tree(curves, Rims.of(wall.rims))
-    issues += events(pieces)
     full = [len(layer) for layer in pieces]
     pieces, notes = _kept(wall, pieces, strategy)
+    laid = [[piece.curve for piece in layer] for layer in pieces]  # what is not deposited is nobody's concern
+    distances = [
+        np.concatenate([fronts.local_distances(front, below, FINER) for front in layer])
+        for below, layer in zip(curves, laid[1:])
+    ]
+    issues = spacing_issues(distances, strategy) + _turns(wall, laid, strategy) + events(pieces)
     notes += _close(pieces, closing, full)
     layers, found = _layers(wall, pieces, strategy, build, process, normal)
     return Toolpath(layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface")
@@ -74,7 +74,7 @@ def _refuse(strategy: SurfaceParameters) -> None:
 
 def _turns(wall: PatchWall, curves: list[list[SpaceCurve]], strategy: SurfaceParameters) -> list[Issue]:
     """Corners that the fronts have formed, and how sharply smooth ones turn."""
-    cornered = corner_notes(curves)
+    cornered = corner_notes([np.concatenate([front.turns[front.corners] for front in layer]) for layer in curves])
     if cornered and strategy.spacing != "smooth":
         return cornered
     sharp = [any(len(front.corners) for front in layer) for layer in curves]

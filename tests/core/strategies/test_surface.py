@@ -98,7 +98,8 @@ def test_iso_parameter_layers_gather_and_say_so():
     toolpath = planned(bend(), spacing="iso-parameter")
     assert len(toolpath.layers) == 18  # 19 with the one wholly past the end
     issue = codes(toolpath)["SPACING"]
-    assert issue.level == "warning" and "2.49" in issue.message
+    # 2.49 mm with the one wholly past the end, which is not deposited: see test_wall_comparison
+    assert issue.level == "warning" and "2.58" in issue.message and issue.layer == 17
     exact = codes(planned(bend()))["SPACING"]
     assert exact.level == "note"
 
@@ -229,3 +230,21 @@ def test_refusals():
     with pytest.raises(InputError) as caught:
         planned(bend(end=0.2))
     assert caught.value.code == "TOO_LOW"
+
+
+@pytest.mark.parametrize("options", [{}, {"end": "whole"}, {"spacing": "smooth"}, {"spacing": "iso-parameter"}], ids=str)
+def test_notes_tell_of_layers_that_are_deposited(options):
+    toolpath = planned(bend(), **options)
+    count = len(toolpath.layers)
+    assert all(issue.layer is None or issue.layer < count for issue in toolpath.issues)
+    told = codes(toolpath).get("CORNERS")
+    if told is None:
+        assert options.get("spacing") or options == {"end": "whole"}
+        return
+    turning = [0.0] * count
+    for layer, _, bead in toolpath:
+        into, out = bead.tangents[:, 0], bead.tangents[:, 1]
+        turning[layer] = max(turning[layer], float(np.degrees(np.arccos(np.clip((into * out).sum(axis=1), -1, 1)).max())))
+    cornered = [index for index, turn in enumerate(turning) if turn > 1e-3]
+    assert told.message.startswith(f"{len(cornered)} of {count} fronts have corners, first layer {cornered[0]}")
+    assert f"by {max(turning):.3g} deg" in told.message and told.layer == int(np.argmax(turning))
