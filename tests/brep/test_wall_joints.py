@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls whose curvature jumps from face to face: all lies on them, by the shape's own equation; moved, they give the same."""
+"""Walls whose curvature jumps from face to face: all lies on them, by their equation; moved, they give the same."""
 
 import numpy as np
 import Part

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.implicit import Round
+from freecad_am.core.geometry.outline import outline
+from freecad_am.core.geometry.space_curve import SpaceCurve
 from freecad_am.core.geometry.surface import Torus
 from freecad_am.core.slicing import constant_distance
 from freecad_am.core.slicing.curve_points import within_chord
@@ -58,3 +60,32 @@ def ring():
     torus = Torus(60.0, 15.0)
     v = 2.0 * np.pi * np.arange(360) / 360
     return on_polyline(torus, torus.point(np.full(360, 0.1), v))
+
+
+def test_what_the_points_outline_is_the_curve_where_its_curvature_jumps():
+    """A rounded rectangle: from the straight parts to the arcs the curvature jumps."""
+    half, radius = np.array([20.0, 10.0]), 8.0
+    angle = np.arange(0, 361, 3) * np.pi / 180.0
+    centre = np.sign(np.stack([np.cos(angle + 1e-9), np.sin(angle + 1e-9)], axis=1)) * half
+    flat, along = [], []
+    for k, a in enumerate(angle[:-1]):
+        ends = [centre[k]] if k % 30 else [centre[k - 1] if k else centre[-2], centre[k]]
+        for place in ends:  # both ends of a straight part have the same tangent
+            flat.append(place + radius * np.array([np.cos(a), np.sin(a)]))
+            along.append([-np.sin(a), np.cos(a)])
+    flat, along = (np.column_stack([one + one[:1], np.zeros(len(one) + 1)]) for one in (flat, along))
+    w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(flat, axis=0), axis=1))]
+    curve = SpaceCurve(w, flat, along, along, True)
+
+    def off(points):
+        out = np.abs(points[:, :2]) - half
+        return np.abs(np.where((out > 0).all(axis=1), np.linalg.norm(out, axis=1), out.max(axis=1)) - radius)
+
+    assert off(curve.at(curve.refined(7))[0]).max() < 1e-5
+    for start in (0.0, 1.7, 9.3):
+        places = within_chord(curve, start, start + curve.period, 0.01)
+        points, slope, _ = curve.at(places)
+        slope /= np.linalg.norm(slope, axis=1, keepdims=True)
+        drawn = outline(points, np.stack([slope, slope], axis=1))
+        segment = np.repeat(np.arange(len(places) - 1), 15)
+        assert off(drawn.at(segment, np.tile(np.arange(1, 16) / 16.0, len(places) - 1))[0]).max() < 1e-4

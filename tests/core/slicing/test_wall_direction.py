@@ -109,6 +109,20 @@ def test_a_sharp_jump_on_a_straight_open_bead():
     assert easy.directions is found and not easy.departure.any()
 
 
+def test_directions_beyond_the_level_stay_below_both_limits():
+    """Turned back to a cone beyond the level directions turn faster, and means of those on it lean over more."""
+    most, rate = np.radians(100.0), np.radians(3.0)
+    points = np.linspace(0.0, 100.0, 401)[:, None] * [1.0, 0.0, 0.0]
+    azimuth = np.where(points[:, 0] < 60.0, 0.0, 1.2)
+    build = np.stack([np.sin(1.9) * np.cos(azimuth), np.sin(1.9) * np.sin(azimuth), np.full(401, np.cos(1.9))], axis=1)
+    start, _ = wall_direction.capped(build, most)
+    found, _ = wall_direction.limited(points, start, False, rate, most=most)
+    assert wall_direction.turn_rates(points, found).max() <= rate
+    assert np.arccos(found[:, 2]).max() <= most + 1e-9
+    loose, _ = wall_direction.limited(points, start, False, rate)
+    assert np.arccos(loose[:, 2]).max() > most + 1e-3
+
+
 def test_a_limit_that_cannot_be_kept_is_refused():
     angle = np.linspace(0.0, 2.0 * np.pi, 101)
     circle = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)

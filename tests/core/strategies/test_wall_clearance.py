@@ -268,3 +268,29 @@ def test_a_plate_between_two_points_that_no_tilt_clears_is_an_error():
     found = kept_clear(path, ring, NOZZLE, BuildDirectionParameters(max_tilt=np.radians(5.0)))
     error = next(issue for issue in found.issues if issue.code == "CLEARANCE")
     assert (error.level, error.layer, error.bead) == ("error", 0, 0)
+
+
+def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilted_clear():
+    """A bend of the bead beside a post: what was asked turns at the limit already, the tilt would come on top."""
+    most = np.radians(4.0)
+    s = np.arange(0.0, 80.0, 0.5)
+    lean = np.clip(0.95 * most * (s - 35.0), 0.0, 0.6)
+    tool = np.stack([np.sin(lean), 0.0 * s, np.cos(lean)], axis=1)
+    points = np.stack([s, np.zeros_like(s), np.zeros_like(s)], axis=1)
+    post = box([46, 6, -20], [50, 12, 90], "post")
+    path = toolpath(bead(points, tool))
+    step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+
+    def fastest(build):
+        found = kept_clear(path, [post], NOZZLE, build)
+        axes = found.layers[0].beads[0].tool
+        solid = sampled(NOZZLE, left_out(NOZZLE) + COARSE, points, axes)
+        assert not ((solid > [46, 6, -20]) & (solid < [50, 12, 90])).all(axis=2).any()
+        return (np.linalg.norm(np.diff(axes, axis=0), axis=1) / step).max(), codes(found)
+
+    free, _ = fastest(BuildDirectionParameters(max_turn=np.inf, max_tilt=np.pi))
+    assert free > 1.05 * most
+    kept, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=np.pi))
+    assert kept <= most * (1.0 + 1e-9) and "TURN_PASSED" not in told
+    passed, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=0.61))  # no room, and that is told
+    assert passed <= most * (1.0 + 1e-9) or "TURN_PASSED" in told
