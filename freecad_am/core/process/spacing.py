@@ -18,6 +18,9 @@ from numpy.typing import NDArray
 
 from ..toolpath import Array, Bead, Layer, Toolpath
 
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
 CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
 SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
 SUDDEN = 3.0
@@ -112,25 +115,35 @@ def distance(points: Array, curve: Curve) -> Array:
     """(n,) distance from points (n, 3) to the curve, in their unit.
 
     The nearest vertex bounds the distance from above, so only segments whose middle is nearer than this bound plus half
-    the longest segment can hold the nearest point of the chords; all of those are tried, and the foot found is
-    moved along its cubic.
+    the longest segment can hold the nearest point of the chords; all of those are tried. Of all segments whose cubic may be
+    the nearest, as far as it bows from its chord, the foot is moved along the cubic: beside a corner that is not always the
+    one with the nearest chord.
     """
+    bow = _bow(curve)
     if len(points) * len(curve.start) <= _CHUNK:
-        return _to_cubic(points, _nearest_of_all(points, curve), curve)
+        return _to_cubic(points, *_nearest_of_all(points, curve, bow), curve)
     from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
 
     half = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max())
     middles = cKDTree(0.5 * (curve.start + curve.end))
     to_vertex = cKDTree(np.concatenate((curve.start, curve.end[-1:]))).query(points)[0]
-    radius: Array = (np.asarray(to_vertex) + half) * (1.0 + 1e-9)
-    segment = np.empty(len(points), dtype=np.intp)
+    radius: Array = (np.asarray(to_vertex) + half + 2.0 * float(bow.max())) * (1.0 + 1e-9)
+    found = np.empty(len(points))
     for some in np.array_split(np.arange(len(points)), _parts(middles, points, radius)):
-        segment[some] = _nearest_chord(middles, points[some], radius[some], curve)
-    return _to_cubic(points, segment, curve)
+        found[some] = _to_cubic(points[some], *_nearest_chords(middles, points[some], radius[some], curve, bow), curve)
+    return found
 
 
-def _nearest_of_all(points: Array, curve: Curve) -> NDArray[np.intp]:
-    """(n,) index of the segment whose chord is nearest to each point, every chord tried."""
+def _bow(curve: Curve) -> Array:
+    """(m,) how far the cubic of each segment may be from its chord, at most."""
+    chord = curve.end - curve.start
+    ends = np.linalg.norm(curve.start_slope - chord, axis=1) + np.linalg.norm(curve.end_slope - chord, axis=1)
+    bow: Array = 4.0 / 27.0 * ends
+    return bow
+
+
+def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Index, Mask]:
+    """Pairs (k,) of a point and a segment that may be nearest to it, rising, every chord tried, and whether the chord is."""
     centre = curve.start.mean(axis=0)
     start, along, at = curve.start - centre, curve.end - curve.start, points - centre
     length = (along * along).sum(axis=1)
@@ -138,8 +151,12 @@ def _nearest_of_all(points: Array, curve: Curve) -> NDArray[np.intp]:
     share = np.clip(forward / np.maximum(length, 1e-300), 0.0, 1.0)
     squared = (at * at).sum(axis=1)[:, None] - 2.0 * at @ start.T + (start * start).sum(axis=1)
     squared += share * (share * length - 2.0 * forward)
-    nearest: NDArray[np.intp] = squared.argmin(axis=1)
-    return nearest
+    nearest, row = squared.argmin(axis=1), np.arange(len(points))
+    apart = np.sqrt(np.maximum(squared, 0.0))
+    maybe = apart - bow <= (apart[row, nearest] + bow[nearest])[:, None]
+    maybe[row, nearest] = True
+    which, segment = np.nonzero(maybe)
+    return which, segment, segment == nearest[which]
 
 
 def _parts(middles: Any, points: Array, radius: Array) -> int:
@@ -148,8 +165,10 @@ def _parts(middles: Any, points: Array, radius: Array) -> int:
     return min(len(points), 1 + int(per_point * len(points) / _CHUNK))
 
 
-def _nearest_chord(middles: Any, points: Array, radius: Array, curve: Curve) -> NDArray[np.intp]:
-    """(n,) index of the segment whose chord is nearest to each point."""
+def _nearest_chords(
+    middles: Any, points: Array, radius: Array, curve: Curve, bow: Array
+) -> tuple[Index, Index, Mask]:
+    """The same as `_nearest_of_all`, of the segments within the radius (n,) about each point."""
     found = middles.query_ball_point(points, radius, return_sorted=False)
     count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
     segment = np.fromiter((i for some in found for i in some), dtype=np.intp, count=int(count.sum()))
@@ -157,11 +176,13 @@ def _nearest_chord(middles: Any, points: Array, radius: Array, curve: Curve) -> 
     along = curve.end[segment] - curve.start[segment]
     offset = points[which] - curve.start[segment]
     offset -= _share(offset, along)[:, None] * along
-    squared = np.einsum("ij,ij->i", offset, offset)
-    least = np.minimum.reduceat(squared, np.cumsum(count) - count)
-    hits = np.flatnonzero(squared == least[which])
+    apart = np.linalg.norm(offset, axis=1)
+    hits = np.flatnonzero(apart == np.minimum.reduceat(apart, np.cumsum(count) - count)[which])
     first = hits[np.unique(which[hits], return_index=True)[1]]
-    return segment[first]
+    own = np.zeros(len(which), dtype=bool)
+    own[first] = True
+    maybe = own | (apart - bow[segment] <= (apart[first] + bow[segment[first]])[which])
+    return which[maybe], segment[maybe], own[maybe]
 
 
 def _share(offset: Array, along: Array) -> Array:
@@ -170,11 +191,13 @@ def _share(offset: Array, along: Array) -> Array:
     return share
 
 
-def _to_cubic(points: Array, segment: NDArray[np.intp], curve: Curve) -> Array:
-    """(n,) distance to the cubic of the given segments, by Newton's steps from the foot on the chord."""
+def _to_cubic(points: Array, which: Index, segment: Index, own: Mask, curve: Curve) -> Array:
+    """(n,) the least distance to the cubics of the segments (k,) paired with the points numbered `which`, by Newton's steps
+    from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
+    points = points[which]
     p, q = curve.start[segment], curve.end[segment]
     a, b = curve.start_slope[segment], curve.end_slope[segment]
-    low, high = curve.low[segment], curve.high[segment]
+    low, high = np.where(own, curve.low[segment], 0.0), np.where(own, curve.high[segment], 1.0)
     d = q - p
     square, cube = 3.0 * d - 2.0 * a - b, a + b - 2.0 * d
     u = _share(points - p, d)
@@ -187,7 +210,8 @@ def _to_cubic(points: Array, segment: NDArray[np.intp], curve: Curve) -> Array:
         step = np.einsum("ij,ij->i", away, slope) / np.where(rate > 0.0, rate, np.inf)
         u = np.clip(u - step, low, high)
     v = u[:, None]
-    found: Array = np.linalg.norm(p + v * (a + v * (square + v * cube)) - points, axis=1)
+    apart = np.linalg.norm(p + v * (a + v * (square + v * cube)) - points, axis=1)
+    found: Array = np.minimum.reduceat(apart, np.flatnonzero(np.diff(which, prepend=-1)))
     return found
 
 

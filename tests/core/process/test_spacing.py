@@ -180,3 +180,30 @@ def test_known_tangents_keep_corners_however_slight_and_ellipses_exact():
     np.testing.assert_allclose(found, exact, atol=2e-6)
     guessed = spacing.distance(above, spacing.curve_of(Layer((plain,))))
     assert np.abs(guessed - exact).max() > 1e-4  # without tangents such a corner is rounded
+
+
+@pytest.mark.parametrize("copies", [1, 400])
+def test_between_a_long_and_a_short_segment_at_a_corner_the_curve_counts(copies):
+    """A valley of two arcs that meet at a corner, one of long segments, the other of short: a point over the corner's
+    bisector is as far from either, though the long chords run nearer to it."""
+    def arc(count):
+        angle = np.linspace(0.0, 0.4, count + 1)
+        return 10.0 * np.c_[np.sin(angle + 0.5) - np.sin(0.5), np.cos(0.5) - np.cos(angle + 0.5)], np.c_[
+            np.cos(angle + 0.5), np.sin(angle + 0.5)]
+
+    (right, onward), (left, back) = arc(120), arc(4)
+    points = np.concatenate([(left * [-1, 1])[::-1], right[1:]])
+    leaving = np.concatenate([(back * [1, -1])[:0:-1], onward])
+    arriving = leaving.copy()
+    arriving[4] = onward[0] * [1, -1]
+    flat = np.c_[points, np.zeros(len(points))]
+    plain = bead(flat, False)
+    tangents = np.stack([np.c_[arriving, 0 * points[:, 0]], np.c_[leaving, 0 * points[:, 0]]], axis=1)
+    low = Bead(plain.points, plain.build, plain.tool, plain.parameter, plain.speed, False, tangents=tangents)
+    height = np.tile(np.linspace(0.8, 2.0, 30), copies)
+    for side in (0.0, 1e-4, -1e-4):
+        above = np.c_[np.full_like(height, side), height, 0 * height]
+        # the centres of the arcs lie beside the valley, above it
+        away = np.hypot(np.abs(side) + 10.0 * np.sin(0.5), height - 10.0 * np.cos(0.5))
+        found = spacing.distance(above, spacing.curve_of(Layer((low,))))
+        np.testing.assert_allclose(found, 10.0 - away, atol=1e-6)
