@@ -42,14 +42,17 @@ class Outline:
 
 def outline(points: Array, tangents: Array) -> Outline:
     """The outline of points (n, 3) with unit tangents (n, 2, 3): arriving and leaving."""
+    return Outline(points, *derivatives(points, tangents[:-1, 1], tangents[1:, 0]))
+
+
+def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, Array]:
+    """Derivatives (n - 1, 3) at the two ends of the cubics through points (n, 3) that have unit tangents (n - 1, 3) there:
+    of the size at which the middle of a circle's arc is met."""
     chord = np.diff(points, axis=0)
     length = np.linalg.norm(chord, axis=1)
-    along = unit(chord)
-    leaving, arriving = tangents[:-1, 1], tangents[1:, 0]
-    # the size at which the middle of a circle's arc is met
-    cosine = 0.5 * ((leaving + arriving) * along).sum(axis=1)
+    cosine = 0.5 * ((leaving + arriving) * unit(chord)).sum(axis=1)
     size = (length / np.maximum(0.5 * (1.0 + cosine), 0.5))[:, None]
-    return Outline(points, size * leaving, size * arriving)
+    return size * leaving, size * arriving
 
 
 def estimated(points: Array, closed: bool) -> Outline:

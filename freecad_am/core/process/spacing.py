@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.outline import derivatives
 from ..toolpath import Array, Bead, Layer, Toolpath
 
 Index = NDArray[np.intp]
@@ -224,7 +225,7 @@ def _columns(points: Array, closed: bool, tangents: Array | None = None) -> tupl
         turn = np.arccos(np.clip(np.einsum("ij,ij->i", tangents[:, 0], tangents[:, 1]), -1.0, 1.0))
         smooth = turn < SMOOTH
         smooth[[0, -1]] &= closed
-        return _arcs(points, length, tangents[:-1, 1], tangents[1:, 0], smooth[:-1], smooth[1:])
+        return _arcs(points, tangents[:-1, 1], tangents[1:, 0], smooth[:-1], smooth[1:])
     chord = step / np.where(length > 0.0, length, 1.0)[:, None]
     before, after = np.roll(chord, 1, axis=0), chord
     smooth = ~_corners(before, after, closed)  # at the start of each segment
@@ -236,18 +237,15 @@ def _columns(points: Array, closed: bool, tangents: Array | None = None) -> tupl
     # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
     start = np.where(smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord))
     end = np.where(smooth_end[:, None], at_end, np.where(smooth[:, None], _mirrored(at_start, chord), chord))
-    return _arcs(points, length, start, end, smooth, smooth_end)
+    return _arcs(points, start, end, smooth, smooth_end)
 
 
 def _arcs(
-    points: Array, length: Array, start: Array, end: Array, smooth: NDArray[np.bool_], smooth_end: NDArray[np.bool_]
+    points: Array, start: Array, end: Array, smooth: NDArray[np.bool_], smooth_end: NDArray[np.bool_]
 ) -> tuple[Array, ...]:
     """The columns for segments with the unit tangents (n - 1, 3) at their ends, which go on smoothly or do not."""
-    # derivative of a cubic that meets the arc in its middle: chord / cos^2 of a quarter of the angle turned
-    cosine = np.sqrt(0.5 * (1.0 + np.clip(np.einsum("ij,ij->i", start, end), -1.0, 1.0)))
-    size = (length / (0.5 * (1.0 + cosine)))[:, None]
     return (
-        points[:-1], points[1:], start * size, end * size,
+        points[:-1], points[1:], *derivatives(points, start, end),
         np.where(smooth, -_BEYOND, 0.0), np.where(smooth_end, 1.0 + _BEYOND, 1.0),
     )
 

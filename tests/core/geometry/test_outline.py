@@ -27,6 +27,31 @@ def test_points_and_tangents_between_are_the_curves_own():
     assert np.abs(along - slope / np.linalg.norm(slope, axis=1, keepdims=True)).max() < 1e-4
 
 
+def test_on_a_clothoid_whose_curvature_falls_to_a_sixteenth():
+    """Bent by 0.8 - 0.25 s per mm: Fresnel's integrals by quadrature say how far each point of the outline is off it."""
+    s = np.linspace(0.0, 3.0, 13)
+    node, weight = np.polynomial.legendre.leggauss(40)
+
+    def heading(at):
+        return 0.8 * at - 0.125 * at * at
+
+    def clothoid(at):
+        turned = heading(0.5 * at[:, None] * (1.0 + node))
+        return 0.5 * at[:, None] * np.c_[np.cos(turned) @ weight, np.sin(turned) @ weight, 0 * at]
+
+    along = np.c_[np.cos(heading(s)), np.sin(heading(s)), 0 * s]
+    segment, share = np.repeat(np.arange(12), 9), np.tile(np.linspace(0.1, 0.9, 9), 12)
+    found, slope = outline(clothoid(s), np.repeat(along[:, None], 2, axis=1)).at(segment, share)
+    at = s[segment] + share * 0.25
+    for _ in range(10):  # to the nearest point, by steps along the tangent
+        there = np.c_[np.cos(heading(at)), np.sin(heading(at)), 0 * at]
+        at += ((found - clothoid(at)) * there).sum(axis=1)
+    there = np.c_[np.cos(heading(at)), np.sin(heading(at)), 0 * at]
+    chord_error = 0.8 * 0.25**2 / 8
+    assert np.linalg.norm(found - clothoid(at), axis=1).max() < chord_error / 3000
+    assert np.abs(slope - there).max() < 1e-4
+
+
 def test_a_corner_is_kept_and_both_its_sides_are_curves():
     """Two half circles that meet at right angles: the segments beside the corner are arcs, not chords."""
     t = np.linspace(0, np.pi / 2, 21)
