@@ -15,6 +15,9 @@ from ..core.geometry.told import place
 from ..core.issues import InputError
 
 ON_WALL = 1e-3  # mm
+WITHIN = 1e-5  # mm between nodes, at the THIRDS of each arc
+THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
+ROUNDS = 12
 SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are no corners
 
 
@@ -61,9 +64,21 @@ def _sampled(edge: Any, step: float) -> tuple[Array, Array]:
     t = np.linspace(low, high, count)
     if edge.Orientation == "Reversed":
         t = t[::-1]
+    for _ in range(ROUNDS):
+        points, along = _nodes(edge, t)
+        between = (t[:-1, None] + np.diff(t)[:, None] * THIRDS).ravel()
+        inner = np.array([tuple(edge.valueAt(one)) for one in between.tolist()])
+        off = FirstCurve(points, along, along, False).curve().nearest(inner)[0].reshape(-1, len(THIRDS)).max(axis=1)
+        bad = np.flatnonzero(off > WITHIN)
+        if not len(bad):
+            break
+        t = np.insert(t, bad + 1, 0.5 * (t[bad] + t[bad + 1]))
+    return _nodes(edge, t)
+
+
+def _nodes(edge: Any, t: Array) -> tuple[Array, Array]:
+    """Points and unit tangents (n, 3) at the parameters (n,), the tangents the way these run."""
     points = np.array([tuple(edge.valueAt(one)) for one in t.tolist()])
     along = np.array([tuple(edge.Curve.tangent(one)[0]) for one in t.tolist()])
     along /= np.linalg.norm(along, axis=1, keepdims=True)
-    if (points[1] - points[0]) @ along[0] < 0.0:
-        along = -along
-    return points, along
+    return points, -along if (points[1] - points[0]) @ along[0] < 0.0 else along
