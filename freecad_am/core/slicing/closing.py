@@ -156,7 +156,8 @@ class _Gaps(NamedTuple):
             deepest[label[self.cut[inside[self.cut]]]] = 0.0
             lines = fine.level_lines(level * height - depth, np.arange(len(fine.faces)))  # gaps on their left
             places, tree = np.flatnonzero(inside), cKDTree(fine.vertices[inside])
-            owner = np.array([label[places[tree.query(line.points[0])[1]]] for line in lines])
+            # a single point of a line may lie nearer to the gap next door: most of them tell
+            owner = np.array([np.bincount(label[places[tree.query(line.points)[1]]]).argmax() for line in lines])
             for gap in np.flatnonzero(deepest > self.covered * height):
                 members = label == gap
                 loops = _loops(fine, members, [line for line, own in zip(lines, owner) if own == gap])
