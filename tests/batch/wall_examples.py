@@ -65,8 +65,12 @@ EXAMPLES = (
     Example(
         "walls/half-shell-on-rod", "walls/half shell.step", 4.0, rod(150.0, 40.0, 30.0), has_cell=True, spacing_error=1e-3
     ),
-    # its first layer bridges 240 flats smoothly, up to 0.033 mm off them as the note says
-    Example("walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=0.036),
+    # its first layer bridges 240 flats smoothly, and these are up to 0.033 mm off the pipe; where such a curve forms its
+    # first corner, arcs between the points of a layer are 3e-4 mm off, of the 1e-3 mm that is promised there
+    Example(
+        "walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=0.036,
+        spacing_error=1e-3,
+    ),
     Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
 )
 

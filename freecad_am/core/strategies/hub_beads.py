@@ -25,7 +25,7 @@ from .hub_layers import period
 Mask = NDArray[np.bool_]
 
 ROLLED = 0.5  # share of the chord error between a bead's chords and the surface
-CLOSE = 1e-9  # mm; points nearer together are one
+CLOSE = 2e-3  # mm; points nearer together are one: no controller tells the time of such a move
 
 
 class Rolled(NamedTuple):
@@ -66,12 +66,24 @@ def rolled(
     return Rolled(bead) if model is None else _at_speed(bead, flat, curve.closed and not curve.turns, process, model)
 
 
+def _apart(flat: Array) -> Array:
+    """A polyline (n, 2) without points nearer than CLOSE, along it, to the one kept before; both ends stay."""
+    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(flat, axis=0), axis=1))]
+    kept = np.r_[True, np.diff(np.floor(way / CLOSE)) > 0.0]
+    kept &= (way < way[-1] - CLOSE) | (way == 0.0)
+    kept[0] = kept[-1] = True
+    chosen = flat[kept]
+    near = np.r_[False, np.linalg.norm(np.diff(chosen, axis=0), axis=1) < CLOSE]
+    near[-1] = False  # neighbours across a step of the count: the first of the two is enough
+    return chosen[~near] if len(chosen) - int(near.sum()) >= 2 else chosen[[0, -1]]
+
+
 def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
     """A polyline (n, 2) on the plane with so many points that its chords, rolled up, keep within the chord error.
 
     An edge is a geodesic: its curvature is that of the surface around the axis, by the square of its share of that way.
     """
-    flat = flat[np.r_[True, np.linalg.norm(np.diff(flat, axis=0), axis=1) > CLOSE]]
+    flat = _apart(flat)
     edge = np.diff(flat, axis=0)
     length = np.linalg.norm(edge, axis=1)
     theta, z = _unrolled(flat, surface)
