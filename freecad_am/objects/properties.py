@@ -19,7 +19,8 @@ READ_ONLY, HIDDEN, OUTPUT = 1, 4, 8
 
 _TYPES = {
     f.ANGLE: "App::PropertyAngle", f.SPEED: "App::PropertySpeed", f.RATIO: "App::PropertyFloat",
-    f.NUMBER: "App::PropertyFloat", f.TURN_RATE: "App::PropertyFloat", f.COUNT: "App::PropertyInteger", f.FLAG: "App::PropertyBool",
+    f.NUMBER: "App::PropertyFloat", f.TURN_RATE: "App::PropertyFloat", f.COUNT: "App::PropertyInteger",
+    f.FLAG: "App::PropertyBool",
     f.CHOICE: "App::PropertyEnumeration", f.TEXT: "App::PropertyString", f.POSE: "App::PropertyPlacement",
     TEXT_LIST: "App::PropertyStringList", MIXED: "App::PropertyString", LENGTH_OR_POSE: "App::PropertyString",
 }

@@ -226,7 +226,8 @@ def test_a_bead_longer_than_a_part_is_refused_with_what_it_needs():
 
 def test_a_bead_that_goes_on_through_layers_is_no_place_to_cut():
     through = program(
-        LayerStart(0), moves("rapid", np.zeros(6)), DepositOn(), moves("deposit", np.ones((20, 6)) * np.arange(1, 21)[:, None]),
+        LayerStart(0), moves("rapid", np.zeros(6)), DepositOn(),
+        moves("deposit", np.ones((20, 6)) * np.arange(1, 21)[:, None]),
         LayerStart(1), moves("deposit", np.ones((20, 6)) * np.arange(20, 0, -1)[:, None] * 1.01, layer=1), DepositOff(),
     )  # fmt: skip
     refusal(dataclasses.replace(through, max_points=30), code="BEAD_TOO_LONG")
