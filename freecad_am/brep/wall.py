@@ -63,13 +63,20 @@ def tubes(shape: Any, names: Sequence[str], label: str) -> tuple[list[tuple[str,
     return named, (made(first.Surface, low, high, whole), made(first.Surface, high, low, whole))
 
 
-def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
+def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any]:
+    """The faces of a shape by their names, Face1 and on. InputError NO_WALL without any, UNKNOWN_FACE when one of `names`
+    is none of them."""
     if shape is None or shape.isNull() or not shape.Faces:
         raise InputError("NO_WALL", label, "it has no faces; choose a part with the faces of the wall")
     known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
         if name not in known:
             raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(known)}")
+    return known
+
+
+def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
+    known = faces_by_name(shape, names, label)
     if names:
         return [(name, known[name]) for name in dict.fromkeys(names)]
     curved = [(name, face) for name, face in known.items() if face.Surface.TypeId != "Part::GeomPlane"]

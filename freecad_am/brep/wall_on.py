@@ -15,7 +15,7 @@ from .first_layer import find_wall
 from .kernel import FAULTS, told
 from .patch_wall import find_patch_wall
 from .substrate import Substrate, substrate_of
-from .wall import tubes
+from .wall import faces_by_name, tubes
 from .wall_checks import CREASE, refuse_tight_tube
 
 FLAT = "Part::GeomPlane"
@@ -79,27 +79,13 @@ def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
     return bool(((below > low - 1e-3) & (below < high + 1e-3)).all())
 
 
-def _starts_below(tube: SurfaceWall, carrier: Substrate) -> bool:
-    """Whether the tube also comes out on the other side: its lower end lies beyond the substrate's box, not in its bore."""
-    v = tube.period * np.arange(12) / 12
-    foot = tube.surface().point(np.zeros(12), v)
-    low, high = carrier.solid.vertices.min(axis=0) - 1e-3, carrier.solid.vertices.max(axis=0) + 1e-3
-    several = any(issue.code == "SEVERAL_LOOPS" for issue in tube.issues)
-    return several and bool(((foot < low) | (foot > high)).any())
-
-
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
     """The faces chosen: those named, else all of a shape without solids, else those of a solid that are not flat, if they
     hang together and no flat one joins them smoothly.
 
     Raises InputError NO_WALL, UNKNOWN_FACE.
     """
-    if shape is None or shape.isNull() or not shape.Faces:
-        raise InputError("NO_WALL", label, "it has no faces; choose a part with the faces of the wall")
-    known = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
-    for name in names:
-        if name not in known:
-            raise InputError("UNKNOWN_FACE", label, f"it has no {name}; its faces are Face1 to Face{len(known)}")
+    known = faces_by_name(shape, names, label)
     if names:
         return [(name, known[name]) for name in dict.fromkeys(names)]
     if not shape.Solids:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from .ground import Ground, distances
-from .mesh import Index, LevelLine, Mask
+from .mesh import Index, LevelLine, Mask, thinned
 from .patch_wall import FirstCurve, PatchWall, Rim
 from .refined import boundary
 from .solid_mesh import SHARP
@@ -56,7 +56,7 @@ def first_curves(wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim,
 
 
 def _curve(wall: PatchWall, ground: Ground, line: LevelLine, rims: tuple[Rim, ...]) -> tuple[FirstCurve | None, float]:
-    points = _thinned(line.points, line.closed, CLOSE * wall.mesh.typical_edge)
+    points = thinned(line.points, line.closed, CLOSE * wall.mesh.typical_edge)
     points, piece = _settled(wall, ground, points)
     if not line.closed:
         for end in (0, -1):
@@ -291,17 +291,6 @@ def _splined(points: Array, sharp: Mask, closed: bool) -> tuple[Array, Array, Ar
         into[0], out[-1] = (into[-1], out[0]) if closed else (out[0], into[-1])
     count = len(points)
     return points, _unit(into[:count]), _unit(out[:count])
-
-
-def _thinned(points: Array, closed: bool, least: float) -> Array:
-    """A chain without points nearer than `least` mm to the one before; ends stay."""
-    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    keep = np.r_[True, np.diff(np.floor(length / least)) > 0]
-    if not closed:
-        keep[-1] = True
-    elif length[-1] > least and np.linalg.norm(points[-1] - points[0]) < least:
-        keep[-1] = False
-    return points[keep]
 
 
 def _unit(vectors: Array) -> Array:

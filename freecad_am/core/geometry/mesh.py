@@ -158,3 +158,14 @@ def chains(following: Index) -> list[tuple[Index, bool]]:
     order = np.lexsort((-rank, label))
     parts = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
     return [(part, not open_[label[part[0]]]) for part in parts]
+
+
+def thinned(points: Array, closed: bool, least: float) -> Array:
+    """A chain of points (n, 3) without those nearer to the one before than `least` mm; the ends of an open one stay."""
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    keep = np.r_[True, np.diff(np.floor(length / least)) > 0]
+    if not closed:
+        keep[-1] = True
+    elif length[-1] > least and np.linalg.norm(points[-1] - points[0]) < least:
+        keep[-1] = False
+    return points[keep]

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.mesh import Mesh
+from ..geometry.mesh import Mesh, thinned
 from ..geometry.patch_wall import FirstCurve, Rim
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
@@ -111,7 +111,7 @@ def step(wall: FrontWall, rims: Rims, state: State, height: float, smoothing: Sm
     ends = rims.reached(state.fronts, height, spots, reach, SAME)
     fronts = []
     for line in cut_at_rims(mesh.level_lines(value, np.arange(len(mesh.faces))), ends, wall.mesh.longest_edge):
-        points = _thinned(line.points, line.closed, THIN * wall.mesh.typical_edge)
+        points = thinned(line.points, line.closed, THIN * wall.mesh.typical_edge)
         if len(points) < (4 if line.closed else 2):
             continue
         pieces = exact(wall, state.fronts, height, points, line.closed, line.rims, line.ends)
@@ -212,17 +212,6 @@ def _around(mesh: Mesh, spots: Array, reach: float) -> Index:
     found: Any = mesh.tree.query_ball_point(spots, 1.3 * reach)
     near: Index = np.unique(np.fromiter(chain.from_iterable(found), dtype=np.intp))
     return near
-
-
-def _thinned(points: Array, closed: bool, least: float) -> Array:
-    """A chain without the points nearer to the one before than `least` mm; ends stay."""
-    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    keep = np.r_[True, np.diff(np.floor(length / least)) > 0]
-    if not closed:
-        keep[-1] = True
-    elif length[-1] > least and np.linalg.norm(points[-1] - points[0]) < least:
-        keep[-1] = False
-    return points[keep]
 
 
 def _facing(wall: FrontWall, curve: SpaceCurve) -> SpaceCurve:
