@@ -25,10 +25,34 @@ class RoboticAMWorkbench(Gui.Workbench):
         self.appendToolbar("Robotic AM", names)
         self.appendMenu("Robotic AM", names)
 
+    def Activated(self):
+        """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed."""
+        from freecad_am.gui import menus
+
+        menus.show_tooltips(self.MenuText)
+
+    def ContextMenu(self, recipient):
+        """Called for a right click in the tree or the 3D view."""
+        from freecad_am.gui import menus
+
+        names = menus.for_selection()
+        if names:
+            self.appendContextMenu("", names)
+
     def GetClassName(self):
         """Workbenches written in Python say this."""
         return "Gui::PythonWorkbench"
 
 
+def robotic_am_preferences():
+    """Add the page of preferences, which are there before the workbench is opened."""
+    from freecad_am.gui import icons
+    from freecad_am.gui.preferences_hook import RoboticAMPreferences
+
+    Gui.addIconPath(icons.FOLDER)
+    Gui.addPreferencePage(RoboticAMPreferences, "Robotic AM")
+
+
 hooks.register("freecad_am.gui.views")
+robotic_am_preferences()
 Gui.addWorkbench(RoboticAMWorkbench())

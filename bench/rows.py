@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Row(NamedTuple):
-    """`ours` and `peer` in `unit`, medians; peer None where it is not installed. The peer must cost at least
+    """`ours` and `peer` in `unit`, medians or least times; peer None where it is not installed. The peer must cost at least
     `required` times what we do."""
 
     name: str

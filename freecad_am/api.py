@@ -21,26 +21,34 @@ step of undo. Errors are `core.issues.InputError` and `InfeasibleError`; a funct
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import math
 import os
-import re
-import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import FreeCAD as App
 
 from .core.issues import AmError, InputError, Issue
+from .core.kinematics import machine as machines
+from .core.kinematics.cell import ROTARY_TABLE
 from .core.parameters.build_direction import BuildDirectionParameters
 from .core.parameters.cell import CellParameters
+from .core.parameters.inspection import InspectionParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from .interop import export as interop
 from .objects import stage as stages
+from .objects import user_machines
 from .objects.cell import Cell
 from .objects.developable_feature import DevelopableFeature
 from .objects.feature import RevolutionFeature
+from .objects.inspection import Inspection, files_of_figures
+from .objects.job_group import grouped
 from .objects.joint_path import JointPath
+from .objects.naming import proposed_name
 from .objects.program import Program, files_of
 from .objects.progress import told_to
 from .objects.revival import revive
@@ -49,12 +57,10 @@ from .objects.surface_feature import SurfaceFeature
 from .objects.toolpath import Toolpath
 
 __all__ = (
-    "change", "export", "issues", "make_all", "make_cell", "make_developable_feature", "make_feature", "make_joint_path",
-    "make_program", "make_surface_feature", "make_toolpath", "open_part", "proposed_name", "recompute", "result",
-    "stages_of", "told_to",
+    "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
+    "make_developable_feature", "make_feature", "make_joint_path", "make_program", "make_surface_feature", "make_toolpath",
+    "make_trajectory", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
 )
-
-_NAME_LENGTH = 20
 
 
 def make_cell(doc: Any, label: str = "Cell", *, parameters: CellParameters | None = None, **values: Any) -> Any:
@@ -139,30 +145,57 @@ def make_program(
     return _make(doc, Program, "Program", label, links, [program], values)
 
 
-def make_all(doc: Any, source: Any, faces: Sequence[str] = (), *, name: str = "") -> tuple[Any, ...]:
-    """All stages of a part at their defaults, in one step: (cell, feature, toolpath, joint path[, program]).
+def inspect(
+    doc: Any, planned: Any, file: str, label: str = "Inspection", *, inspection: InspectionParameters | None = None,
+    **values: Any,
+) -> Any:
+    """Measured points (CSV, TXT, XYZ, ASC; vertices of STL, OBJ, PLY) against a feature, a toolpath, or an object with a
+    shape or mesh: laid onto it, with deviations, sphericity and circularity.
 
-    There is no program when the joint path is infeasible. `am.make_all(doc, doc.Revolve)`
+    `am.inspect(doc, doc.Feature, "cmm.csv", probe_radius=1.5, tolerance=0.3, heights="15 25 35")`
     """
+    return _make(doc, Inspection, "Inspection", label, {"Planned": planned, "File": file}, [inspection], values)
+
+
+def make_all(
+    doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", substrate: Any = None,
+    further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", post: str = "",
+    process: Mapping[str, Any] | None = None,
+) -> tuple[Any, ...]:
+    """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
+
+    kind: revolution, surface (a wall of the source's faces on the substrate) or developable (source and further solids on
+    the substrate, on its base_faces). The program is for the machine's controller, in the words of `post` where it reads
+    them; there is none when no post is known for it, or the joint path is infeasible. process: parameters of the toolpath
+    by key. `am.make_all(doc, doc.Revolve)`
+    """
+    chosen = _cell_of(machine)
     with _one_step(doc, "New job"):
-        cell = make_cell(doc)
-        feature = make_feature(doc, source, faces)
-        toolpath = make_toolpath(doc, feature, cell)
-        joint_path = make_joint_path(doc, toolpath, cell)
-        made = (cell, feature, toolpath, joint_path)
-        if joint_path.Status != "up to date":
-            return made
-        return (*made, make_program(doc, joint_path, name=name or proposed_name(source.Label)))
+        made = [make_cell(doc, parameters=chosen)]
+        if kind == "surface":
+            made.append(make_surface_feature(doc, source, faces, substrate))
+        elif kind == "developable":
+            made.append(make_developable_feature(doc, source, substrate, base_faces, faces=faces, further=further))
+        elif kind == "revolution":
+            made.append(make_feature(doc, source, faces))
+        else:
+            raise InputError("BAD_VALUE", "kind", f"{kind!r} is none of revolution, surface, developable")
+        made.append(make_toolpath(doc, made[1], made[0], **(process or {})))
+        made.append(make_joint_path(doc, made[2], made[0]))
+        posts = machines.load(chosen.machine, user_machines.folders()).posts
+        wanted = post or ProgramParameters().post
+        post = wanted if posts is None or wanted in posts else next(iter(posts), "")
+        if made[-1].Status == "up to date" and post:
+            made.append(make_program(doc, made[3], name=name or proposed_name(source.Label), post=post))
+        grouped(doc, f"Job {source.Label}", made)
+        return tuple(made)
 
 
-def proposed_name(text: str) -> str:
-    """A program name that controllers take, from a label: letters A to Z, digits and underscores.
-
-    `am.proposed_name("Hémisphère n° 1")` is "HEMISPHERE_N_1".
-    """
-    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().upper()
-    name = re.sub(r"[^A-Z0-9]+", "_", plain).strip("_")[:_NAME_LENGTH].rstrip("_")
-    return name if name[:1].isalpha() else f"P{name}"
+def _cell_of(machine: str) -> CellParameters:
+    """The parameters of a cell with a machine, '' for the default. InputError for an unknown one."""
+    chosen = CellParameters(machine=machine) if machine else CellParameters()
+    is_table = machines.load(chosen.machine, user_machines.folders()).is_table
+    return dataclasses.replace(chosen, setup=ROTARY_TABLE) if is_table else chosen
 
 
 def change(obj: Any, **values: Any) -> Any:
@@ -176,6 +209,8 @@ def change(obj: Any, **values: Any) -> Any:
         links = {link.key: link.name for link in proxy.links}
         if isinstance(proxy, Program):
             links["name"] = "ProgramName"
+        if isinstance(proxy, Inspection):
+            links["file"] = "File"
         if "source" in values:
             values["source"] = _with_faces(values["source"], values.pop("faces", ()))
         if "start_edges" in values:
@@ -217,7 +252,7 @@ def recompute(target: Any, force: bool = False) -> None:
 
 def result(obj: Any) -> Any:
     """What the core made: CellParameters, RevolvedWall or SurfaceWall, Toolpath, Planned (joint path and motion),
-    Written (files).
+    Written (files), Inspected (measured points).
 
     `am.result(doc.Toolpath).layers[0].beads[0].points`; read from the document, nothing is computed.
     """
@@ -240,8 +275,11 @@ def stages_of(doc: Any, kind: str = "") -> list[Any]:
 
 
 def export(program: Any, folder: str) -> list[str]:
-    """Write the files of a program into a folder, which is made; the paths. `am.export(doc.Program, "out")`"""
-    files = files_of(program)
+    """Write the files of a program, or the figures of an inspection, into a folder, which is made; the paths.
+
+    `am.export(doc.Program, "out")`
+    """
+    files = files_of_figures(program) if isinstance(_stage(program), Inspection) else files_of(program)
     paths = []
     try:
         os.makedirs(folder, exist_ok=True)
@@ -255,6 +293,30 @@ def export(program: Any, folder: str) -> list[str]:
     except OSError as error:
         raise InputError("NOT_WRITABLE", folder, f"{error.strerror}; choose a folder you can write to") from None
     return paths
+
+
+def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
+    """Write beads, and the rapid moves if wanted, of a toolpath, joint path or program as wires into a STEP or DXF file.
+
+    `am.export_wires(doc.JointPath, "path.step", rapids=True)`
+    """
+    return interop.write_wires(obj, path, rapids)
+
+
+def make_cam_path(obj: Any) -> Any:
+    """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not
+    follow changes. `am.make_cam_path(doc.JointPath)`"""
+    with _one_step(obj.Document, "CAM path"):
+        return interop.add_cam_path(obj)
+
+
+def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> Any:
+    """The same as a trajectory of the Robot workbench, thinned: within `tolerance` mm and, for the tool axis, `turn` deg.
+
+    `am.make_trajectory(doc.JointPath, tolerance=0.5)`
+    """
+    with _one_step(obj.Document, "Trajectory"):
+        return interop.add_trajectory(obj, tolerance, math.radians(turn))
 
 
 def open_part(doc: Any, path: str, object: str = "") -> Any:

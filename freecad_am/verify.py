@@ -17,7 +17,7 @@ from .core.geometry import frames
 from .core.issues import ERROR, NOTE, Issue
 from .core.kinematics.cell import ROTARY_TABLE, Cell
 from .core.motion import Motion
-from .core.program import Program, ReadMoves
+from .core.program import Program, ReadMoves, waits_otherwise
 from .kdl import chain as kdl_chain
 from .posts.catalogue import Post
 
@@ -32,6 +32,7 @@ BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 MILLISECOND, TENTH, LONGEST_MSEC = 0.001, 0.05, 32.0
 # rad: a rapid that turns no axis farther than this has no time to speak of
 STILL = 2e-5
+STRAYS = "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
 
 
 @dataclass(frozen=True)
@@ -67,8 +68,7 @@ def verify(
     motion: the rows that `program` was built of. chord_error: mm, how far the path may leave the straight line
     between two points of a bead. Raises InputError UNREADABLE_PROGRAM when the reader does not understand the files.
     """
-    read = post.read(files)
-    rows = np.flatnonzero(motion.moves)
+    read, rows = post.read(files), np.flatnonzero(motion.moves)
     if len(read.deposit) != len(rows):
         message = f"the text has {len(read.deposit)} moves, planned are {len(rows)}"
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
@@ -86,12 +86,10 @@ class _Planned:
 
     def __init__(self, motion: Motion, rows: NDArray[np.intp]) -> None:
         self.rows, self.motion = rows, motion
-        self.deposit = motion.deposit[rows]
+        self.deposit, self.joints = motion.deposit[rows], motion.joints[rows]
         self.position, self.tool = motion.position[rows], motion.tool[rows]
         self.duration, self.speed = motion.duration[rows], motion.speed[rows]
-        self.joints = motion.joints[rows]
-        ends = np.flatnonzero(self.deposit)
-        self.ends = ends[ends > 0]
+        self.ends = np.flatnonzero(self.deposit & (np.arange(len(rows)) > 0))
 
     def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
         """An error at the first wrong move, none when there is none; the message says how many there are."""
@@ -103,8 +101,14 @@ class _Planned:
 
 
 def _deposit_issues(planned: _Planned, read: ReadMoves, program: Program) -> list[Issue]:
+    """Whether the deposit is on in each move, how fast its wire runs, and what is waited for, where the text has to tell."""
     wanted = planned.deposit & (not program.dry_run)
-    return planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
+    wire = np.where(wanted, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan)
+    told = np.where(read.deposit, np.nan if read.wire is None else read.wire, np.nan)
+    wrong = (np.abs(told - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (np.isnan(told) != np.isnan(wire))
+    switched = planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
+    switched += planned.issue("VERIFY_COOLING", waits_otherwise(program, read), "a temperature is waited for otherwise")
+    return switched + planned.issue("VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one")
 
 
 def _time_issues(cell: Cell, planned: _Planned, read: ReadMoves) -> list[Issue]:
@@ -118,8 +122,8 @@ def _time_issues(cell: Cell, planned: _Planned, read: ReadMoves) -> list[Issue]:
         wanted = np.where(planned.deposit, step / planned.speed, planned.duration)
     given = np.full(len(timed), np.nan) if read.speed is None else read.speed
     by_speed = np.isfinite(given)
-    wrong = by_speed & ~(np.abs(given - planned.speed) <= read.speed_digits + 1e-9)
-    issues = planned.issue("VERIFY_SPEED", wrong, "the speed in the text is not the planned one")
+    off = by_speed & ~(np.abs(given - planned.speed) <= read.speed_digits + 1e-9)
+    issues = planned.issue("VERIFY_SPEED", off, "the speed in the text is not the planned one")
     timed &= ~by_speed
     allowed = np.where(wanted < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
     taken, coarse = read.duration, allowed > TENTH
@@ -142,8 +146,8 @@ def _time_issues(cell: Cell, planned: _Planned, read: ReadMoves) -> list[Issue]:
         off = np.where(planned.deposit & timed, taken - wanted, 0.0)
         rounded = np.where(planned.deposit & coarse, allowed, 0.0)
         excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(rounded, beads)
-        wrong = np.isin(np.arange(len(timed)), beads[excess])
-        issues += planned.issue("VERIFY_TIME", wrong, "the times of a bead do not add up to the planned one")
+        first = np.isin(np.arange(len(timed)), beads[excess])
+        issues += planned.issue("VERIFY_TIME", first, "the times of a bead do not add up to the planned one")
     return issues
 
 
@@ -179,8 +183,7 @@ def _verify_joints(
     path, flange = _joint_path(cell, shown, _digits(cell, read))
     issues += _joint_issues(cell, planned, read, endless) + _point_issues(planned, path)
     between, off = _between(cell, planned, shown, path, chord_error)
-    message = f"the path between two points leaves the straight line by {between:.3g} mm, more than the chord error"
-    issues += planned.issue("VERIFY_BETWEEN", off, message)
+    issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(between))
     solver_issues, solvers = _second_opinion(cell, planned, shown, flange)
     at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())
     return Verification(tuple(issues + solver_issues), at_points, between, float(path.bound.max()), solvers)
@@ -249,10 +252,9 @@ def _point_issues(planned: _Planned, path: _Path) -> list[Issue]:
     off = np.linalg.norm(path.position - planned.position, axis=1)
     tilted = np.linalg.norm(path.tool - planned.tool, axis=1)
     message = f"the text leads up to {off.max():.3g} mm away from the planned point, more than its digits explain"
-    tilt_message = f"the tool is tilted by up to {np.degrees(tilted.max()):.3g} deg, more than the digits explain"
-    return planned.issue("VERIFY_POINT", ~(off <= path.bound), message) + planned.issue(
-        "VERIFY_TOOL", ~(tilted <= path.tool_bound), tilt_message
-    )
+    found = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
+    message = f"the tool is tilted by up to {np.degrees(tilted.max()):.3g} deg, more than the digits explain"
+    return found + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
 
 
 def _between(cell: Cell, planned: _Planned, shown: Array, path: _Path, chord_error: float) -> tuple[float, Mask]:
@@ -315,11 +317,9 @@ def _verify_poses(
     if read.tool is not None and len(planned.ends):  # a tool that stays the same goes straight from point to point
         start, end = asked[planned.ends - 1] @ tools[planned.ends], asked[planned.ends] @ tools[planned.ends]
         ways = _straight(start, end) @ frames.inverse(tools[planned.ends])[:, None]
-        between, off = _off_segments(
-            planned, planned.ends, cell.tip_in_part(ways.reshape(-1, 4, 4))[0], told, chord_error
-        )
-        message = f"the path between two points leaves the straight line by {between:.3g} mm, more than the chord error"
-        issues += planned.issue("VERIFY_BETWEEN", off, message)
+        tips = cell.tip_in_part(ways.reshape(-1, 4, 4))[0]
+        between, off = _off_segments(planned, planned.ends, tips, told, chord_error)
+        issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(between))
     solver_issues, solvers = _second_opinion(cell, planned, joints, flange)
     at_points = float(np.linalg.norm(told.position - planned.position, axis=1).max())
     return Verification(tuple(issues + solver_issues), at_points, between, float(told.bound.max()), solvers)
@@ -390,7 +390,7 @@ def _text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[_Path, Ar
 
 
 def _straight(start: Array, end: Array) -> Array:
-    """(n, len(BETWEEN), 4, 4) the poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
+    """(n, len(BETWEEN), 4, 4) poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
     turn = np.swapaxes(start[:, :3, :3], 1, 2) @ end[:, :3, :3]
     axis = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
     sine = np.linalg.norm(axis, axis=1)

@@ -5,6 +5,7 @@ Arguments come by environment because FreeCAD opens every further word of its co
 status is pytest's; the script never returns to FreeCAD's main loop.
 """
 
+import io
 import os
 import shlex
 import sys
@@ -14,7 +15,8 @@ def run():
     status = 3
     try:
         # FreeCAD's window keeps stdout and stderr for its report view
-        sys.stdout = sys.__stdout__ or os.fdopen(1, "w")
+        # unbuffered, so that a run that crashes or hangs shows how far it came (FreeCAD 1.0 heeds no PYTHONUNBUFFERED)
+        sys.stdout = io.TextIOWrapper(io.FileIO(1, "w", closefd=False), errors="replace", write_through=True)
         sys.stderr = sys.__stderr__ or os.fdopen(2, "w")
         import pytest
 

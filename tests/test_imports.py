@@ -20,6 +20,7 @@ OURS = {
     "core/toolpath": {"core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
+    "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/strategies": {
         "core/issues", "core/parameters", "core/geometry", "core/filling", "core/toolpath", "core/slicing", "core/process",
     },
@@ -27,14 +28,19 @@ OURS = {
     "core/planning": {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/kinematics", "core/motion", "core/program",
     },
+    "core/simulation": {
+        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/kinematics", "core/motion",
+    },
     "posts": {"core/issues", "core/program"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "kdl"},
     "brep": {"core/issues", "core/geometry"},
     "objects": {"core", "brep", "posts", "verify", "kdl"},
-    "api": {"core", "brep", "objects", "posts"},
-    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "verify"},
-    "gui": {"core", "api", "objects", "posts", "brep"},
+    "interop": {"core", "objects"},
+    "api": {"core", "brep", "objects", "posts", "interop"},
+    "plots": {"core"},
+    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "verify", "plots"},
+    "gui": {"core", "api", "objects", "posts", "brep", "plots"},
 }
 # the foreign modules a part of the package may use besides the standard library
 FOREIGN = {
@@ -44,9 +50,11 @@ FOREIGN = {
     "kdl": {"numpy", "PyKDL"},
     "brep": {"numpy", "scipy", "FreeCAD", "Part", "Mesh", "MeshPart"},
     "objects": {"numpy", "FreeCAD", "Part"},
+    "interop": {"numpy", "FreeCAD", "Part", "Import", "Path", "Robot"},
     "api": {"numpy", "FreeCAD"},
-    "batch": {"numpy", "yaml", "matplotlib", "FreeCAD"},
-    "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy", "matplotlib"},
+    "plots": {"numpy", "matplotlib"},
+    "batch": {"numpy", "yaml", "FreeCAD"},
+    "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
 ALONE = {"core/geometry/region": {"shapely"}}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The headless commands: plan, export, batch, machines.
+"""The headless commands: plan, export, batch, inspect, machines.
 
 What a command needs is imported when it runs: starting is most of the time of a small job, and a slip on the
 command line should be told at once.
@@ -12,13 +12,16 @@ import sys
 from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
-COMMANDS = ("plan", "export", "batch", "machines")
+COMMANDS = ("plan", "export", "batch", "inspect", "machines")
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
-  export DOC.FCStd [-o DIR] [--object NAME ...]     recompute a saved document and write its programs
+  export DOC.FCStd [-o DIR] [--object NAME ...]     recompute a saved document and write its programs; with
+                                                    --wires step|dxf its paths as wires instead
   batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys
-  machines                                          list the machines known
+  inspect JOB.yaml|DOC.FCStd --measured FILE ...    compare measured points with what is planned; -o DIR,
+                                                    --set tolerance=0.3 ..., of a document --object NAME
+  machines [NAME --urdf | --dh | --modified-dh]     list the machines known, or write one as URDF or as a table
   demo | test | bench                               see the README
 """
 
@@ -31,12 +34,12 @@ def main(argv: list[str]) -> int:
         try:
             return _run(argv, session)
         except KeyboardInterrupt:
-            session.say("interrupted: nothing was written")
-            return INTERRUPTED
+            return _interrupted(session)
         except BrokenPipeError:
             return DONE  # nobody reads on, which is for the reader to decide
         except Exception as error:
-            return _failed(error, session)
+            # modules of FreeCAD 1.0 that are interrupted while they are imported raise something else, or end up empty
+            return _interrupted(session) if session.interrupted else _failed(error, session)
 
 
 def _run(argv: list[str], session: Any) -> int:
@@ -59,6 +62,11 @@ def _run(argv: list[str], session: Any) -> int:
     options = parser.parse_args(words)
     status: int = getattr(sys.modules[__name__], f"_{command}")(options, session)
     return status
+
+
+def _interrupted(session: Any) -> int:
+    session.say("interrupted: nothing was written")
+    return INTERRUPTED
 
 
 def _failed(error: Exception, session: Any) -> int:
@@ -88,6 +96,12 @@ def _parser(command: str) -> Any:
 
     parser = Parser(prog=f"freecad-am {command}", allow_abbrev=False, add_help=False)
     if command == "machines":
+        parser.add_argument("machine", metavar="NAME", nargs="?", help="a machine of the list, or a machine file")
+        forms = parser.add_mutually_exclusive_group()
+        forms.add_argument("--urdf", action="store_const", const="urdf", dest="form", help="write it as URDF, without looks")
+        forms.add_argument("--dh", action="store_const", const="dh", dest="form",
+                           help="write its table of Denavit and Hartenberg, in mm and degrees")
+        forms.add_argument("--modified-dh", action="store_const", const="modified-dh", dest="form", help="the same by Craig")
         return parser
     parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")
     if command == "plan":
@@ -96,6 +110,14 @@ def _parser(command: str) -> Any:
     elif command == "export":
         parser.add_argument("document", metavar="DOC.FCStd")
         parser.add_argument("--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label")
+        parser.add_argument("--wires", choices=("step", "dxf"), default="", help="write paths as wires instead of programs")
+    elif command == "inspect":
+        parser.add_argument("source", metavar="JOB.yaml|DOC.FCStd")
+        parser.add_argument("--measured", metavar="FILE", nargs="+", action="extend", required=True,
+                            help="points (csv, txt, xyz, asc) or scans (stl, obj, ply)")
+        parser.add_argument("--set", metavar="KEY=VALUE", nargs="+", action="extend", default=[], dest="settings",
+                            help="parameters of the inspection, such as tolerance=0.3 probe_radius=1.5 heights='15 25 35'")
+        parser.add_argument("--object", metavar="NAME", default="", help="Name or Label of what was measured, of a document")
     else:
         parser.add_argument("table", metavar="TABLE.csv")
         parser.add_argument("--job", metavar="JOB.yaml", required=True)
@@ -123,7 +145,7 @@ def _plan(options: Any, session: Any) -> int:
 def _export(options: Any, session: Any) -> int:
     from freecad_am.batch import export
 
-    paths = export.export(options.document, options.output, tuple(options.object), session)
+    paths = export.export(options.document, options.output, tuple(options.object), session, options.wires)
     session.out("".join(f"{path}\n" for path in paths))
     return DONE
 
@@ -134,10 +156,26 @@ def _batch(options: Any, session: Any) -> int:
     return rows.run(options.table, options.job, options.output, options.jobs, session)
 
 
-def _machines(_options: Any, session: Any) -> int:
-    from freecad_am.batch import machines
+def _inspect(options: Any, session: Any) -> int:
+    from freecad_am.batch import measured
 
-    session.out(machines.listing())
+    paths = measured.inspect(
+        options.source, tuple(options.measured), options.output, tuple(options.settings), options.object, session
+    )
+    session.out("".join(f"{path}\n" for path in paths))
+    return DONE
+
+
+def _machines(options: Any, session: Any) -> int:
+    from freecad_am.batch import machines
+    from freecad_am.core.issues import InputError
+
+    if options.form is None and options.machine is not None:
+        told = f"in what form is {options.machine!r} to be written? Use --urdf, --dh or --modified-dh"
+        raise InputError("USAGE", "freecad-am machines", told)
+    if options.form is not None and options.machine is None:
+        raise InputError("USAGE", "freecad-am machines", f"--{options.form} of what machine? Give its name")
+    session.out(machines.listing() if options.machine is None else machines.written(options.machine, options.form))
     return DONE
 
 

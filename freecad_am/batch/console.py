@@ -22,7 +22,7 @@ class Session:
     """
 
     def __init__(self) -> None:
-        self._interrupted = False
+        self.interrupted = False  # whether Ctrl-C was pressed
         self._progress = ""
 
     def __enter__(self) -> Session:
@@ -75,7 +75,7 @@ class Session:
 
     def check(self) -> None:
         """Raise KeyboardInterrupt where Ctrl-C was pressed while FreeCAD was working, which swallows it."""
-        if self._interrupted:
+        if self.interrupted:
             raise KeyboardInterrupt
 
     def _clear(self) -> None:
@@ -89,7 +89,7 @@ class Session:
             signal.signal(number, self._interrupt)
 
     def _interrupt(self, *_: Any) -> None:
-        self._interrupted = True
+        self.interrupted = True
         raise KeyboardInterrupt
 
 

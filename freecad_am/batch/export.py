@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writes the programs of a saved document, computed again from its shapes."""
+"""Writes the programs of a saved document, or its paths as wires, computed again from its shapes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,16 @@ from freecad_am.core.issues import InputError
 
 from . import outputs, paths
 
+WIRES = "wires"
+_PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 
-def export(path: str, folder: str | None, names: tuple[str, ...], session: Any) -> list[str]:
+
+def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, wires: str = "") -> list[str]:
     """The paths of the files written: the programs of the document, or of the objects called `names` (Name or Label).
 
     They go into program/ of `folder`, by default out/<document> beside the document, which itself is not changed.
-    Raises InputError and InfeasibleError; then nothing is written.
+    wires: 'step' or 'dxf' writes into wires/ instead, a file for each joint path, or for each toolpath, joint path or
+    program that is named. Raises InputError and InfeasibleError; then nothing is written.
     """
     label = os.path.basename(path)
     if not os.path.isfile(path):
@@ -33,28 +37,49 @@ def export(path: str, folder: str | None, names: tuple[str, ...], session: Any) 
         except (OSError, RuntimeError, ValueError, AttributeError):
             raise InputError("BAD_FILE", label, "it cannot be read as a FreeCAD document; save it again") from None
         try:
-            for name, content in _files(_programs(document, label, names), session).items():
-                files.write(f"{outputs.PROGRAMS}/{name}", content)
+            if wires:
+                _write_wires(_chosen(document, label, names, _PATHS, "NO_PATH"), wires, files, session)
+            else:
+                for name, content in _files(_chosen(document, label, names, _PROGRAMS, "NO_PROGRAM"), session).items():
+                    files.write(f"{outputs.PROGRAMS}/{name}", content)
         finally:
             FreeCAD.closeDocument(document.Name)
-        earlier = set() if names else outputs.earlier_programs(files.folder)
+        earlier = set() if names or wires else outputs.earlier_programs(files.folder)
         return [os.path.join(files.folder, name) for name in files.publish(earlier)]
 
 
-def _programs(document: Any, label: str, names: tuple[str, ...]) -> list[Any]:
+def _chosen(document: Any, label: str, names: tuple[str, ...], kinds: tuple[str, ...], code: str) -> list[Any]:
+    """The objects called `names` among those of some kinds, else all of the first kind that there is."""
     from freecad_am import api
 
-    programs = api.stages_of(document, "program")
-    known = ", ".join(obj.Label for obj in programs) or "none"
-    if not programs:
-        raise InputError("NO_PROGRAM", label, "the document has no programs; make one with the workbench")
+    of_kinds = [api.stages_of(document, kind) for kind in kinds]
+    every = [obj for objects in of_kinds for obj in objects]
+    if not every:
+        raise InputError(code, label, f"the document has no {kinds[0]}s; make one with the workbench")
+    known = ", ".join(obj.Label for obj in every)
     chosen = []
     for name in names:
-        found = [obj for obj in programs if obj.Name == name] or [obj for obj in programs if obj.Label == name]
+        found = [obj for obj in every if obj.Name == name] or [obj for obj in every if obj.Label == name]
         if len(found) != 1:
-            raise InputError("NO_OBJECT", label, f"{len(found)} programs are called {name!r}; there are {known}")
+            raise InputError("NO_OBJECT", label, f"{len(found)} {kinds[0]}s are called {name!r}; there are {known}")
         chosen += found
-    return chosen or programs
+    return chosen or next(objects for objects in of_kinds if objects)
+
+
+def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: Any) -> None:
+    """Raises InputError where two paths want the same file."""
+    from freecad_am import api
+
+    written: set[str] = set()
+    for obj in dict.fromkeys(paths):
+        session.progress(f"computing {obj.Label} ...")
+        api.recompute(obj)
+        session.check()
+        name = f"{WIRES}/{obj.Label.replace(os.sep, '-')}.{kind}"
+        if name in written:
+            raise InputError("SAME_NAME", obj.Label, f"two paths write {name}; give one another label")
+        written.add(name)
+        api.export_wires(obj, files.path(name), rapids=True)
 
 
 def _files(programs: list[Any], session: Any) -> dict[str, bytes]:

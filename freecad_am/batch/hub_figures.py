@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures of solids on a hub: layers laid flat, and how speeds and widths are spread over the length."""
+"""Pictures of solids on a hub: layers laid flat."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
 from freecad_am.core.process.bead_model import MINUTE
 from freecad_am.core.toolpath import Array, Bead, Layer, Toolpath
+from freecad_am.plots.look import shade
 
 from . import svg
 
-BINS = 40
 WIDE, EDGES = 388.0, 68.0  # of a picture, between and beside its frame
 PIECES = 6  # colours along a bead
 
@@ -56,9 +56,9 @@ def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
         if fast - slow > 1e-6 * fast:
             _coloured(plot, bead, line, slow, fast)
         else:
-            plot.curve(line[:, 0], line[:, 1], svg.colour(number / max(len(lines) - 1, 1)), f"bead {number}", 1.2)
+            plot.curve(line[:, 0], line[:, 1], shade(number / max(len(lines) - 1, 1)), f"bead {number}", 1.2)
     if fast - slow > 1e-6 * fast:
-        plot.legend([(f"{MINUTE * slow:.0f} mm/min", svg.colour(0.0)), (f"{MINUTE * fast:.0f} mm/min", svg.colour(1.0))])
+        plot.legend([(f"{MINUTE * slow:.0f} mm/min", shade(0.0)), (f"{MINUTE * fast:.0f} mm/min", shade(1.0))])
     return plot.text()
 
 
@@ -68,27 +68,4 @@ def _coloured(plot: svg.Plot, bead: Bead, line: Array, slow: float, fast: float)
     cuts = [0, *(np.flatnonzero(np.diff(level)) + 1).tolist(), len(level)]
     for first, last in zip(cuts, cuts[1:]):
         part = line[first : last + 1]
-        plot.curve(part[:, 0], part[:, 1], svg.colour(level[first] / PIECES), "", 1.4)
-
-
-def spread_plots(toolpath: Toolpath) -> list[str]:
-    """How travel speeds and bead widths are spread over the length; nothing without a bead model."""
-    beads = [bead for _, _, bead in toolpath if bead.width is not None]
-    if not beads:
-        return []
-    length = np.concatenate([np.linalg.norm(np.diff(bead.points, axis=0), axis=1) for bead in beads])
-    speed = MINUTE * np.concatenate([bead.speed[1:] for bead in beads])
-    width = np.concatenate([0.5 * (bead.width[1:] + bead.width[:-1]) for bead in beads if bead.width is not None])
-    return [
-        _histogram("Travel speed", speed, length, "mm/min"), _histogram("Predicted width of the bead", width, length, "mm"),
-    ]
-
-
-def _histogram(title: str, values: Array, length: Array, unit: str) -> str:
-    low, high = float(values.min()), float(values.max())
-    pad = max(0.05 * (high - low), 0.002 * high)
-    edges = np.linspace(low - pad, high + pad, BINS + 1)
-    share = np.histogram(values, edges, weights=length)[0] * (100.0 / length.sum())
-    plot = svg.Plot(title, (float(edges[0]), float(edges[-1])), (0.0, 1.05 * float(share.max())), unit, "% of the length")
-    plot.bars(edges, share)
-    return plot.text()
+        plot.curve(part[:, 0], part[:, 1], shade(level[first] / PIECES), "", 1.4)

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The table of the machines known."""
+"""The table of the machines known, and one of them in the words of other programs."""
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
+from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import machine
 
 from . import paths
@@ -16,3 +20,32 @@ def listing() -> str:
     known = machine.known(user_machines.folders())
     width = max((len(identity) for identity, _ in known), default=0)
     return "".join(f"{identity:<{width}}  {title}\n" for identity, title in known)
+
+
+def written(name: str, form: str) -> str:
+    """A machine, given by its id or file, as `urdf`, or as the table `dh` or `modified-dh`: figures in mm and degrees, one
+    line per row, between the pose before them and that after them (x y z and roll pitch yaw as URDF has them)."""
+    paths.require_freecad()
+    from freecad_am.objects import user_machines
+
+    found = machine.load(name, user_machines.folders())
+    if form == "urdf":
+        from freecad_am.core.kinematics import urdf_text
+
+        return urdf_text.text(found)
+    from freecad_am.core.kinematics import denavit_hartenberg
+
+    table = denavit_hartenberg.table_of(found.chain, form == "modified-dh")
+    joints = [[math.degrees(row.theta), row.d, row.a, math.degrees(row.alpha)] for row in table.rows]
+    lines = [f"before {_words(_pose(table.before))}", "axis theta d a alpha"]
+    lines += [f"{axis} {_words(row)}" for axis, row in zip(found.axes, joints)]
+    return "\n".join([*lines, f"after {_words(_pose(table.after))}", ""])
+
+
+def _pose(pose: Any) -> list[float]:
+    return [*pose[:3, 3].tolist(), *(math.degrees(-angle) for angle in frames.to_bryant(pose[:3, :3].T).tolist())]
+
+
+def _words(values: list[float]) -> str:
+    # the noise of their computation left out
+    return " ".join(f"{round(value, 10) + 0.0:.13g}" for value in values)

@@ -9,13 +9,13 @@ from html import escape
 from typing import Any
 
 from freecad_am.core.geometry.on_hub import SolidsOnHub
-from freecad_am.core.kinematics.limits import Limits
-from freecad_am.core.motion import Motion
 from freecad_am.core.process.spacing import local_distances
 from freecad_am.core.strategies.wall_comparison import Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.plots.source import Source
 
-from . import figures, hub_figures, view, wall_figures
+from . import hub_figures, view, wall_figures
+from .pictures import MISSING, Pictures
 
 _MOST_ISSUES = 200
 _WHOLE = (
@@ -40,7 +40,7 @@ _MOTION_PER_AXIS = (
     ("speed_ratio_max", "largest share of the speed limit"),
     ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"), ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
 )
-_STYLE = """
+STYLE = """
 :root{--ink:#1d2430;--soft:#667085;--line:#dfe3ea;--paper:#fff;--ground:#f3f5f8;--good:#1a7f4b;--bad:#b8322a;--warn:#9a6700}
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ef;--soft:#98a2b3;--line:#323a47;--paper:#1a202b;--ground:#11151c;
 --good:#4cc38a;--bad:#ff7a70;--warn:#e2b340}}
@@ -65,10 +65,10 @@ svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px sys
 svg .title{fill:var(--ink);font-size:13px;font-weight:600}
 svg .grid{stroke:var(--line)}
 svg .frame{fill:none;stroke:var(--soft);opacity:.5}
-svg .curve{fill:none;stroke-linejoin:round}svg .forbidden{fill:var(--bad);opacity:.13}
-svg .limit{stroke:var(--bad);stroke-dasharray:5 4}
+svg.plot path{stroke-linejoin:round}figure.wide{margin-top:10px}
+svg .curve{fill:none;stroke-linejoin:round}
 svg .asked{stroke:var(--soft);stroke-dasharray:5 4}
-svg .rule{fill:var(--bad)}svg .bar{fill:#3b6fd4}
+svg .rule{fill:var(--bad)}
 svg .near,svg .far{fill:none;stroke-width:2.1;stroke-linejoin:round}
 svg .far{stroke-width:1.2;opacity:.6}svg .direction{stroke:var(--ink);stroke-width:1.1;opacity:.6}
 svg .body{stroke-width:.6;stroke-linejoin:round}
@@ -80,42 +80,45 @@ svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-
 
 @dataclass(frozen=True)
 class Content:
-    """What the page shows besides the report itself; the fields of joints are None without a cell."""
+    """What the page shows besides the report itself. source: the job. spacing: of each layer, what lies below it, mm."""
 
     report: dict[str, Any]
-    toolpath: Toolpath
-    motion: Motion
+    source: Source
     spacing: tuple[Array, ...]
     platform_diameter: float | None = None
-    limits: Limits | None = None
-    speed_ratio: Array | None = None
-    condition: Array | None = None
-    threshold: Array | None = None
     compared: tuple[Compared | Refused, ...] = ()
     solids: SolidsOnHub | None = None
+
+    @property
+    def toolpath(self) -> Toolpath:
+        """As it is run."""
+        return self.source.toolpath
 
 
 def render(content: Content) -> str:
     """The page."""
     report = content.report
     name, status = escape(report["name"]), report["status"]
+    pictures = Pictures(content.source)
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
         f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"])}',
+        "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         f'<figure>{view.picture(content.toolpath, content.platform_diameter)}<figcaption>The beads, coloured by layer; '
         "short strokes show the build direction.</figcaption></figure>",
-        *_joints(content),
-        _process(content),
-        _on_hub(content),
+        *_joints(content, pictures),
+        _process(content, pictures),
+        _on_hub(content, pictures),
         _spacings(content),
         _comparison(report),
+        _totals(report["totals"]),
         _criteria(report),
         _pairs("Time taken", {stage: f"{seconds:.3f} s" for stage, seconds in report["timing_s"].items()}),
         _programs(report["programs"]),
     ]
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
-        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{_STYLE}</style></head>'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1"><style>{STYLE}</style></head>'
         f'<body><main>{"".join(sections)}</main></body></html>\n'
     )
 
@@ -133,6 +136,7 @@ def _cards(report: dict[str, Any]) -> str:
         (f"{counts['layers']:,}", "layers"), (f"{counts['beads']:,}", "beads"), (f"{counts['points']:,}", "points"),
         (f"{report['length_mm'] / 1000:.3f} m", "length of the beads"), (_clock(report["duration_s"]), "time of all moves"),
     ]
+    cards.append((f"{report['totals']['mass_g']:,.1f} g", f"deposit, {report['totals']['volume_cm3']:,.2f} cm\u00b3"))
     if spacing["mean"] is not None:
         cards.append((f"{spacing['mean']:.4f} mm", f"spacing, {spacing['min']:.4f} to {spacing['max']:.4f}"))
     if report["joints"] is not None and report["joints"]["condition_min"] is not None:
@@ -147,20 +151,19 @@ def _clock(seconds: float) -> str:
     return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s"
 
 
-def _joints(content: Content) -> list[str]:
-    if content.limits is None or content.speed_ratio is None:
+def _joints(content: Content, pictures: Pictures) -> list[str]:
+    if content.source.cell is None:
         return []
-    drawn = figures.joint_plots(content.motion, content.limits, content.report["machine"]["units"])
-    plots = "".join(f"<figure>{plot}</figure>" for plot in drawn)
-    names = content.limits.labels[: content.limits.axes]
-    sections = [f'<h2>Joints against their limits</h2><div class="grid">{plots}</div>', _joint_table(content)]
-    if content.motion.reachable.any():
-        plot = figures.speed_plot(content.motion, content.speed_ratio, names)
-        sections.append(f"<h2>Speed and condition</h2><figure>{plot}</figure>")
-    if content.condition is not None and content.threshold is not None:
-        plot = figures.condition_plot(content.motion, content.condition, content.threshold)
-        sections.append(f'<figure style="margin-top:10px">{plot}</figure>')
+    sections = ["<h2>Joints against their limits</h2>", _grid(pictures.angles()), _joint_table(content)]
+    if content.source.motion.reachable.any():
+        plots = "".join(f'<figure class="wide">{plot}</figure>' for plot in pictures.rates())
+        sections.append(f"<h2>Speed and condition</h2>{plots}" if plots else "")
     return sections
+
+
+def _grid(plots: Iterable[str]) -> str:
+    figures = "".join(f"<figure>{plot}</figure>" for plot in plots)
+    return f'<div class="grid">{figures}</div>' if figures else ""
 
 
 def _joint_table(content: Content) -> str:
@@ -186,19 +189,16 @@ def _in_units(word: str, report: dict[str, Any]) -> str:
     return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
 
 
-def _process(content: Content) -> str:
-    plots = [figures.travel_plot(content.motion)]
-    if content.spacing:
-        plots.insert(0, figures.spacing_plot(content.spacing, content.toolpath.layer_height))
-    return f'<h2>Layers and path</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
+def _process(content: Content, pictures: Pictures) -> str:
+    plots = pictures.process(content.spacing)
+    return f"<h2>Layers and path</h2>{_grid(plots)}" if plots else ""
 
 
-def _on_hub(content: Content) -> str:
+def _on_hub(content: Content, pictures: Pictures) -> str:
     """Layers of solids on a hub laid flat, and what the bead model makes of them."""
     if content.solids is None:
         return ""
-    plots = hub_figures.layer_plots(content.solids, content.toolpath) + hub_figures.spread_plots(content.toolpath)
-    return f'<h2>Layers laid flat</h2><div class="grid">{"".join(f"<figure>{plot}</figure>" for plot in plots)}</div>'
+    return f"<h2>Layers laid flat</h2>{_grid(hub_figures.layer_plots(content.solids, content.toolpath) + pictures.beads())}"
 
 
 def _spacings(content: Content) -> str:
@@ -211,7 +211,6 @@ def _spacings(content: Content) -> str:
     plots = wall_figures.distance_plots(done, height) if done else []
     plots += [wall_figures.step_plot(one, height) for one in done if one.method == "constant-distance"]
     plots.append(wall_figures.deposit_plot(toolpath, local_distances(toolpath)))
-    grid = "".join(f"<figure>{plot}</figure>" for plot in plots)
     both = wall_figures.both_paths(done)
     if both:
         both = (f'<figure style="margin-top:10px">{both}<figcaption>Both paths: along the lines up the wall, and at a '
@@ -223,7 +222,7 @@ def _spacings(content: Content) -> str:
     reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
     return (
         '<h2>What spacing costs</h2><p class="sub">Distance of each point to the nearest point of the layer below, around '
-        f'the wall; every curve is a layer, dark ones first.</p><div class="grid">{grid}</div>{both}{table}{reasons}'
+        f'the wall; every curve is a layer, dark ones first.</p>{_grid(plots)}{both}{table}{reasons}'
         f"{_spacing_motion(content.report)}"
     )
 
@@ -241,6 +240,17 @@ def _spacing_motion(report: dict[str, Any]) -> str:
         for key, word in _MOTION_PER_AXIS for number, row in enumerate(rows)
     ]
     return f"<h2>What spacing gains in motion</h2>{_table(whole)}{_table(axes)}"
+
+
+def _totals(sums: dict[str, float]) -> str:
+    """What the job takes and deposits."""
+    return _pairs("Time and material", {
+        "the whole job": _clock(sums["time_s"]), "depositing": _clock(sums["deposit_s"]),
+        "rapid moves": _clock(sums["rapid_s"]), "waits and lead times": _clock(sums["wait_s"]),
+        "length of the deposit": f"{sums['deposit_mm'] / 1000:.3f} m",
+        "length of rapid moves": f"{sums['rapid_mm'] / 1000:.3f} m",
+        "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3", "mass of the deposit": f"{sums['mass_g']:,.1f} g",
+    })
 
 
 def _criteria(report: dict[str, Any]) -> str:

@@ -17,6 +17,9 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
+from freecad_am.core.process import predicted
+from freecad_am.core.simulation import totals
+from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.toolpath import Array, Toolpath
 
 VERSION = 1
@@ -27,6 +30,8 @@ def build(
     issues: Sequence[Issue],
 ) -> dict[str, Any]:
     """The report of a toolpath alone; `add_joints` completes it. Lengths mm, times s; None where there is no value."""
+    times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
+    sums = totals.totals(motion, times, process, toolpath.layer_height)
     return {
         "version": VERSION,
         "name": name,
@@ -36,12 +41,14 @@ def build(
             "layers": len(toolpath.layers), "beads": toolpath.bead_count, "points": int(motion.deposit.sum())
         },
         "length_mm": toolpath.length,
-        "duration_s": motion.total_time + _standing(toolpath, process),
+        "duration_s": sums.time,
+        "totals": totals.as_dict(sums),
         "spacing_mm": spread(spacing),
         "joints": None,
         "comparison": [],
         "spacing_comparison": [],
         "process": _process(process),
+        "beads": predicted.beads(toolpath),
         "machine": None,
         "timing_s": {},
         "programs": [],
@@ -80,23 +87,6 @@ def speed_ratio(motion: Motion, cell: Cell) -> Array:
     return ratio
 
 
-def along_motion(planned: JointPath, motion: Motion) -> tuple[Array, Array]:
-    """Condition and its threshold at the deposit rows of a motion; NaN where a bead runs on over its own beginning."""
-    starts = np.flatnonzero(motion.point[motion.deposit] == 0)
-    condition = np.full(int(motion.deposit.sum()), np.nan)
-    threshold = condition.copy()
-    for start, path in zip(starts.tolist(), planned.beads):
-        condition[start : start + len(path.condition)] = path.condition
-        threshold[start : start + len(path.threshold)] = path.threshold
-    return condition, threshold
-
-
-def _standing(toolpath: Toolpath, process: ProcessParameters) -> float:
-    """Time the machine stands still on purpose, s; waits for inputs have no length."""
-    between = sum(max(process.between_layers.wait, layer.wait) for layer in toolpath.layers[1:])
-    return between + (process.lead_on + process.lead_off) * toolpath.bead_count
-
-
 def spread(spacing: Sequence[Array]) -> dict[str, float | None]:
     """Least, mean and largest of all values, None where there are none."""
     if not spacing:
@@ -108,7 +98,8 @@ def spread(spacing: Sequence[Array]) -> dict[str, float | None]:
 def _process(process: ProcessParameters) -> dict[str, Any]:
     return {
         "travel_speed_mm_s": process.travel_speed, "bead_width_mm": process.bead_width,
-        "wire": {"diameter_mm": process.wire.diameter, "feed_mm_s": process.wire.feed},
+        "wire": {"diameter_mm": process.wire.diameter, "feed_mm_s": process.wire.feed, "feed_mode": process.wire.feed_mode},
+        "density_g_cm3": process.density,
         "temperature": process.temperature, "gas": process.gas, "stand_off_mm": process.stand_off,
     }
 

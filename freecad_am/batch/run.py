@@ -87,10 +87,23 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
                 FreeCAD.closeDocument(document.Name)
             session.issues(stages.issues)
             return result
-    except InputError as error:
+    except InputError as found:
+        error = in_words_of_job(found)
         if error.where.split(".")[0].split("[")[0] in SECTIONS:
             raise job.tree.placed(error) from None
-        raise
+        raise error from None
+
+
+# what a job calls the links of a feature, which the window picks in a document
+_KEYS = {
+    "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
+    "Feature.StartEdges": "part.start_edges",
+}
+
+
+def in_words_of_job(error: InputError) -> InputError:
+    """An error about a link of the feature as one about a key of the job."""
+    return InputError(error.code, _KEYS[error.where], error.message) if error.where in _KEYS else error
 
 
 def check(job: Job) -> Any:
@@ -116,6 +129,13 @@ def check(job: Job) -> Any:
 
         program.check_controller(resolved.machine, job.program.post)
         post.refuse_setup(job.program.motion, job.cell.setup)
+        carried = program.on_table(resolved, job.program)
+        if job.program.post == "linuxcnc" and job.program.motion == "cartesian" and carried is not None:
+            post.refuse_tilt(carried)
+        if job.process.wire.feed_mode != "constant" and post.NO_WIRE and not job.program.dry_run:
+            from freecad_am.posts import refusals
+
+            raise refusals.wire_refused(post.NO_WIRE)
     return resolved
 
 
@@ -178,6 +198,7 @@ def _write(
     """Everything but the page, which is drawn last."""
     from freecad_am import api
     from freecad_am.core.process import spacing
+    from freecad_am.core.simulation import deposit
 
     from . import report, waypoints
 
@@ -186,7 +207,7 @@ def _write(
     if planned is not None:
         toolpath = planned.joint_path.toolpath(toolpath)
     axes = () if cell is None else cell.machine.axes
-    motion = waypoints.from_toolpath(toolpath, len(axes)) if planned is None else planned.motion
+    motion = deposit.alone(toolpath, len(axes)) if planned is None else planned.motion
     with stages.timed("waypoints", session):
         files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, () if cell is None else cell.machine.units))
     programs = {} if stages.program is None or has_errors(stages.issues) else api.result(stages.program).files
@@ -238,16 +259,18 @@ def _page(
     job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any, compared: Any,
     solids: Any,
 ) -> str:
-    from . import page, report
+    from freecad_am.core.simulation.margins import on_deposit
+    from freecad_am.plots.source import Source
 
-    if planned is None:
-        return page.render(page.Content(content, toolpath, motion, distances, compared=compared, solids=solids))
-    judged = bool(planned.joint_path.branch)  # machines with rotary axes have no condition
-    condition, threshold = report.along_motion(planned.joint_path, motion) if judged else (None, None)
-    return page.render(page.Content(
-        content, toolpath, motion, distances, job.cell.platform_diameter if job.cell else None, cell.limits,
-        report.speed_ratio(motion, cell), condition, threshold, compared, solids,
-    ))
+    from . import page
+
+    band = getattr(job.strategy, "band", None)
+    source = Source(toolpath, motion, job.process, band=band)
+    if planned is not None:
+        condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
+        source = Source(toolpath, motion, job.process, cell, condition, threshold, band)
+    platform = job.cell.platform_diameter if job.cell else None
+    return page.render(page.Content(content, source, distances, platform, compared, solids))
 
 
 def _save(document: Any, path: str) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drawing for the report: axes, curves, bars and colours as inline SVG; numbers in, text out."""
+"""Drawing for the report: axes and curves as inline SVG; numbers in, text out."""
 
 from __future__ import annotations
 
@@ -11,20 +11,7 @@ import numpy as np
 
 from freecad_am.core.toolpath import Array
 
-# anchors of a perceptually even scale from dark blue over green to yellow
-_SCALE = np.array([
-    (68, 1, 84), (72, 40, 120), (62, 74, 137), (49, 104, 142), (38, 130, 142),
-    (31, 158, 137), (53, 183, 121), (109, 205, 89), (180, 222, 44), (253, 231, 37),
-], dtype=float)
 _MOST_COLUMNS = 700
-
-
-def colour(share: float) -> str:
-    """A colour of the scale at 0 to 1, as #rrggbb."""
-    at = min(max(share, 0.0), 1.0) * (len(_SCALE) - 1)
-    low = min(int(at), len(_SCALE) - 2)
-    red, green, blue = (_SCALE[low] + (at - low) * (_SCALE[low + 1] - _SCALE[low])).round().astype(int)
-    return f"#{red:02x}{green:02x}{blue:02x}"
 
 
 def path_data(x: Array, y: Array, decimals: int = 1) -> str:
@@ -99,34 +86,13 @@ class Plot:
             f"{title}</path>"
         )
 
-    def band(self, low: float, high: float, name: str) -> None:
-        """A forbidden strip across the plot."""
-        top, bottom = (float(v) for v in self.to_y(np.array([min(high, self.y[1]), max(low, self.y[0])])))
-        if bottom > top:
-            inner = self.width - self.left - self.right
-            self.parts.append(
-                f'<rect class="forbidden" x="{self.left}" y="{top:.1f}" width="{inner}" height="{bottom - top:.1f}">'
-                f"<title>{escape(name)}</title></rect>"
-            )
-
-    def rule(self, y: float, name: str, kind: str = "limit") -> None:
+    def rule(self, y: float, name: str) -> None:
         """A horizontal line with a name at its right end."""
         if self.y[0] <= y <= self.y[1]:
             at = float(self.to_y(np.array([y]))[0])
             right = self.width - self.right
-            self.parts.append(f'<line class="{kind}" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>')
+            self.parts.append(f'<line class="asked" x1="{self.left}" x2="{right}" y1="{at:.1f}" y2="{at:.1f}"/>')
             self.parts.append(f'<text class="rule" x="{right - 4}" y="{at - 4:.1f}" text-anchor="end">{escape(name)}</text>')
-
-    def bars(self, edges: Array, heights: Array) -> None:
-        """A histogram."""
-        at, zero = self.to_x(edges), float(self.to_y(np.array([0.0]))[0])
-        for i, top in enumerate(self.to_y(heights).tolist()):
-            if heights[i] > 0:
-                wide = max(at[i + 1] - at[i] - 1.0, 0.8)
-                self.parts.append(
-                    f'<rect class="bar" x="{at[i] + 0.5:.1f}" y="{top:.1f}" width="{wide:.1f}" height="{zero - top:.1f}">'
-                    f"<title>{edges[i]:.4g} to {edges[i + 1]:.4g}: {heights[i]:.4g} %</title></rect>"
-                )
 
     def legend(self, names: list[tuple[str, str]]) -> None:
         """Names of curves with their colours, in the top right corner."""

@@ -10,6 +10,7 @@ from html import escape
 import numpy as np
 
 from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.plots.look import shade
 
 from . import svg
 
@@ -40,7 +41,7 @@ def picture(toolpath: Toolpath, platform_diameter: float | None = None) -> str:
     facing = _facing(beads, toolpath.family)
     # what lies farther away is drawn first; the far half of each layer lies behind the near half of all others
     far, near = (
-        [_half(points, step, scale, shift, svg.colour(layer / last), towards, side)
+        [_half(points, step, scale, shift, shade(layer / last), towards, side)
          for (layer, points, _), towards in zip(beads, facing, strict=True)]
         for side in (False, True)
     )
@@ -162,7 +163,7 @@ def _directions(
 
 def _scale_bar(last: int) -> str:
     x, top, height = WIDTH - MARGIN - 16, 120, HEIGHT - 240
-    stops = "".join(f'<stop offset="{i * 10}%" stop-color="{svg.colour(1 - i / 10)}"/>' for i in range(11))
+    stops = "".join(f'<stop offset="{i * 10}%" stop-color="{shade(1 - i / 10)}"/>' for i in range(11))
     return (
         f'<defs><linearGradient id="layers" x1="0" y1="0" x2="0" y2="1">{stops}</linearGradient></defs>'
         f'<rect x="{x}" y="{top}" width="14" height="{height}" rx="3" fill="url(#layers)"/>'

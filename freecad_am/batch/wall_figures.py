@@ -9,6 +9,7 @@ import numpy as np
 
 from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared
 from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.plots.look import shade
 
 from . import svg, view
 
@@ -34,7 +35,7 @@ def distance_plots(compared: Sequence[Compared], asked: float) -> list[str]:
             "local distance, mm",
         )
         _layers(plot, [360.0 * around for around in one.around], one.distance)
-        plot.rule(asked, f"asked: {asked:g}", "asked")
+        plot.rule(asked, f"asked: {asked:g}")
         plots.append(plot.text())
     return plots
 
@@ -68,7 +69,7 @@ def deposit_plot(toolpath: Toolpath, local: Sequence[Array]) -> str:
         "% of the length of the bead", "local distance, mm",
     )
     _layers(plot, places, values, names)
-    plot.rule(toolpath.layer_height, f"asked: {toolpath.layer_height:g}", "asked")
+    plot.rule(toolpath.layer_height, f"asked: {toolpath.layer_height:g}")
     return plot.text()
 
 
@@ -92,7 +93,7 @@ def _layers(plot: svg.Plot, x: Sequence[Array], y: Sequence[Array], layer: Seque
     kept |= {int(np.argmin([np.nanmin(one, initial=np.inf) for one in y]))}
     for i in sorted(kept):
         if np.isfinite(y[i]).any():
-            plot.curve(*svg.thinned(x[i], y[i], _COLUMNS), svg.colour(0.92 * numbers[i] / last), f"layer {numbers[i]}", 1.2)
+            plot.curve(*svg.thinned(x[i], y[i], _COLUMNS), shade(0.92 * numbers[i] / last), f"layer {numbers[i]}", 1.2)
 
 
 def _some(count: int, most: int) -> list[int]:

@@ -8,46 +8,28 @@ from collections.abc import Iterator
 import numpy as np
 
 from freecad_am.core.motion import Motion
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.toolpath import Array
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
+WIRE = "wire_feed_mm_s"
 _LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 20_000
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
     """The file in pieces. `axes` names the columns of `motion.joints`, `units` are what they are written in: 'mm' where an
-    axis slides, 'deg' where it turns and where left out."""
+    axis slides, 'deg' where it turns and where left out. Where the wire follows the travel speed, its own is the last
+    column."""
     units = units or ("deg",) * len(axes)
-    yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)))) + "\n"
+    last = [WIRE] if told_of_wire(motion) else []
+    yield ",".join((HEADER, *(f"{axis}_{unit}" for axis, unit in zip(axes, units, strict=True)), *last)) + "\n"
     for start in range(0, len(motion), _ROWS_AT_ONCE):
         yield _rows(motion, units, slice(start, start + _ROWS_AT_ONCE))
 
 
-def from_toolpath(toolpath: Toolpath, axes: int = 0) -> Motion:
-    """The deposit alone, for a job that has no joint path: no rapid rows, durations from length and speed.
-
-    `axes` columns of joints that no point has.
-    """
-    beads = list(toolpath)
-    sizes = [len(bead) for _, _, bead in beads]
-    position = np.concatenate([bead.points for _, _, bead in beads])
-    speed = np.concatenate([bead.speed for _, _, bead in beads])
-    point = np.concatenate([np.arange(size) for size in sizes])
-    step = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
-    return Motion(
-        deposit=np.ones(len(position), dtype=bool),
-        layer=np.repeat([layer for layer, _, _ in beads], sizes),
-        bead=np.repeat([number for _, number, _ in beads], sizes),
-        point=point,
-        position=position,
-        build=np.concatenate([bead.build for _, _, bead in beads]),
-        tool=np.concatenate([bead.tool for _, _, bead in beads]),
-        speed=speed,
-        width=np.concatenate([np.full(len(b), np.nan) if b.width is None else b.width for _, _, b in beads]),
-        joints=np.full((len(position), axes), np.nan),
-        duration=np.where(point > 0, step / speed, 0.0),
-    )
+def told_of_wire(motion: Motion) -> bool:
+    """Whether the wire follows the travel speed anywhere."""
+    return bool(np.isfinite(motion.wire).any())
 
 
 def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
@@ -59,9 +41,12 @@ def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
     slides = np.array([unit == "mm" for unit in units])
     angles = _columns(np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows])), _ANGLES)
     decimals = [_LENGTHS] * 3 + [_DIRECTIONS] * 6 + [_LENGTHS] * 2 + [_ANGLES] * len(angles)
+    wire: list[list[float]] = []
+    if told_of_wire(motion):
+        wire, decimals = _columns(motion.wire[rows, None], _LENGTHS), [*decimals, _LENGTHS]
     row = "%d,%d,%d,%s," + ",".join(f"%.{digits}f" for digits in decimals) + "\n"
     # one formatting per row of Python floats is three times as fast as numpy's own writer
-    lines = [row % values for values in zip(*counts, kinds, *lengths, *directions, *process, *angles)]
+    lines = [row % values for values in zip(*counts, kinds, *lengths, *directions, *process, *angles, *wire)]
     return "".join(lines).replace("nan", "")
 
 

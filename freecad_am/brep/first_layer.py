@@ -90,13 +90,19 @@ def _distance(point: Array, solid: Any) -> float:
 def _loops(tube: Tube, named: list[tuple[str, Any]], solid: Any) -> list[list[Any]]:
     """Closed loops of edges in which the wall, made TOUCH longer at its lower end, meets the solid."""
     wall = _longer(tube) or Part.Shell([face for _, face in named])
-    edges = solid.section(wall).Edges
-    loops = []
-    for chain in Part.sortEdges(edges) if edges else []:
-        wire = Part.Wire(chain)
-        if wire.isClosed():
-            loops.append(wire.OrderedEdges)
-    return loops
+    loops, whole = _closed(solid.section(wall).Edges)
+    if whole:
+        return loops
+    # of elementary surfaces OpenCASCADE 7.8 and later leave out a piece at times; of B-splines they do not
+    again, _ = _closed(solid.section(wall.toNurbs()).Edges)
+    return again if len(again) > len(loops) else loops
+
+
+def _closed(edges: list[Any]) -> tuple[list[list[Any]], bool]:
+    """The closed loops among edges, and whether there are no others."""
+    wires = [Part.Wire(chain) for chain in Part.sortEdges(edges)] if edges else []
+    loops = [wire.OrderedEdges for wire in wires if wire.isClosed()]
+    return loops, len(loops) == len(wires)
 
 
 def _longer(tube: Tube) -> Any:

@@ -9,17 +9,23 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import least_squares
 
-from ..core.geometry.developable import Developable
+from ..core.geometry.developable import TURN, Developable
 from ..core.geometry.mesh_repair import repaired
-from ..core.geometry.on_hub import Base, Seat, downwards, upright
+from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
 from ..core.geometry.solid_mesh import Array, SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
+from .axis import from_normals
 from .sheet import tessellated
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 SAME = 1e-6  # relative; surfaces of faces that differ less are one
+FITTED = 1e-3  # mm that a spline may be off the cylinder or cone it is taken for
+ALONG_EDGE = 361  # points of an edge, that may go round
+NARROWEST = math.radians(3.0)  # a gap narrower than this, as a keyway or between such points, is none
+KNOWN = ("Part::GeomPlane", "Part::GeomSphere", "Part::GeomToroid")
 
 
 class Bodies(NamedTuple):
@@ -75,7 +81,7 @@ def given(radius: float, height: float, point: Sequence[float], way: Sequence[fl
     """A base by its numbers: middle of its base circle and direction of its axis, towards the apex, in the part."""
     z = np.array(way, dtype=np.float64)
     base = Base("the base", Developable(radius, height), upright(np.array(point, dtype=np.float64), z / np.linalg.norm(z)))
-    return Seat(base, -math.inf, math.inf)
+    return Seat(base, (Stretch(-math.inf, math.inf),))
 
 
 def seats(faces: Sequence[tuple[str, Any]], chosen: bool) -> list[Seat]:
@@ -89,11 +95,9 @@ def seats(faces: Sequence[tuple[str, Any]], chosen: bool) -> list[Seat]:
         for k, other in enumerate(found):
             shift = _shift(other.base, seat.base)
             if shift is not None:
-                name = f"{other.base.name}, {name}"
-                found[k] = Seat(
-                    dataclasses.replace(other.base, name=name), min(other.low, seat.low + shift),
-                    max(other.high, seat.high + shift),
-                )
+                base = dataclasses.replace(other.base, name=f"{other.base.name}, {name}")
+                more = [face._replace(low=face.low + shift, high=face.high + shift) for face in seat.faces]
+                found[k] = Seat(base, (*other.faces, *more), chosen)
                 break
         else:
             found.append(seat)
@@ -101,34 +105,81 @@ def seats(faces: Sequence[tuple[str, Any]], chosen: bool) -> list[Seat]:
 
 
 def _seat(name: str, face: Any, chosen: bool) -> Seat | None:
-    kind = face.Surface.TypeId
-    if kind not in ("Part::GeomCylinder", "Part::GeomCone"):
+    round_one = _round(face)
+    if round_one is None:
         if chosen:
             raise InputError(
                 "NOT_DEVELOPABLE", name, "it is no cylinder and no cone; choose another face, or give strategy.base"
             )
         return None
-    surface = face.Surface
-    z = np.array(tuple(surface.Axis))
-    if kind == "Part::GeomCone":
-        origin = np.array(tuple(surface.Apex))
-    else:
-        origin = np.array(tuple(surface.Center))
-    points = np.array([tuple(point) for edge in face.Edges for point in edge.discretize(16)])
+    origin, z, radius, taper = round_one
+    points = np.array([tuple(point) for edge in face.Edges for point in edge.discretize(ALONG_EDGE)])
     along = (points - origin) @ z
-    if along.mean() > 0.0 if kind == "Part::GeomCone" else downwards(z):
+    if along.mean() > 0.0 if taper else downwards(z):
         z, along = -z, -along
     if _faces_inwards(face, origin, z):
         if chosen:
             raise InputError("INNER_FACE", name, "it is the inside of a bore; solids grow on the outside of a hub")
         return None
     low, high = float(along.min()), float(along.max())
+    shape = Developable(-low * math.tan(taper), -low) if taper else Developable(radius)
+    base = Base(name, shape, upright(origin + low * z, z))
+    x, y = base.inside(points)[:, :2].T
+    start, span = sector(np.arctan2(y, x)[np.hypot(x, y) > SAME * shape.radius])
+    whole = span > TURN - NARROWEST
+    return Seat(base, (Stretch(0.0, high - low) if whole else Stretch(0.0, high - low, start, span),), chosen)
+
+
+def _round(face: Any) -> tuple[Array, Array, float, float] | None:
+    """The apex of a cone, or a point of the axis of a cylinder, the unit axis, the cylinder's radius, the cone's half angle
+    (0 of a cylinder); None for other surfaces. Splines and swept surfaces that are a cylinder or cone within FITTED are
+    such."""
+    surface, kind = face.Surface, face.Surface.TypeId
+    if kind == "Part::GeomCone":
+        return np.array(tuple(surface.Apex)), np.array(tuple(surface.Axis)), 0.0, abs(float(surface.SemiAngle))
     if kind == "Part::GeomCylinder":
-        shape = Developable(float(surface.Radius))
-    else:
-        taper = abs(float(surface.SemiAngle))
-        shape = Developable(-low * math.tan(taper), -low)
-    return Seat(Base(name, shape, upright(origin + low * z, z)), 0.0, high - low)
+        return np.array(tuple(surface.Center)), np.array(tuple(surface.Axis)), float(surface.Radius), 0.0
+    axis = None if kind in KNOWN else from_normals([face])
+    if axis is None:
+        return None
+    origin, z = axis
+    u0, u1, v0, v1 = face.ParameterRange
+    places = [(u, v) for u in np.linspace(u0, u1, 25) for v in np.linspace(v0, v1, 25) if face.isPartOfDomain(u, v)]
+    points = np.array([tuple(surface.value(u, v)) for u, v in places]).reshape(-1, 3)
+    if len(points) < 9:
+        return None
+    origin, z = _best_axis(points, origin, z)
+    along, rho, slope, at_origin = _profile(points, origin, z)
+    if np.abs(rho - slope * along - at_origin).max() > FITTED or np.ptp(along) <= FITTED or rho.max() <= FITTED:
+        return None
+    if abs(slope) * np.ptp(along) <= FITTED:
+        return origin, z, float(rho.mean()), 0.0
+    return origin - at_origin / slope * z, z, 0.0, math.atan(abs(float(slope)))
+
+
+def _profile(points: Array, origin: Array, z: Array) -> tuple[Array, Array, float, float]:
+    """Heights and radii (n,) of points about an axis; slope and radius at its origin of the line through them."""
+    along = (points - origin) @ z
+    rho = np.linalg.norm(points - origin - along[:, None] * z, axis=1)
+    slope, at_origin = np.linalg.lstsq(np.c_[along, np.ones(len(along))], rho, rcond=None)[0]
+    return along, rho, float(slope), float(at_origin)
+
+
+def _best_axis(points: Array, origin: Array, z: Array) -> tuple[Array, Array]:
+    """The axis near one given about which points (n, 3) lie best on a cylinder or cone."""
+    middle = origin + ((points - origin) @ z).mean() * z
+    across = np.linalg.svd(z[None])[2][1:]
+    size = float(np.abs(points - middle).max())
+
+    def moved(by: Array) -> tuple[Array, Array]:
+        turned = z + by[2:] @ across
+        return middle + size * by[:2] @ across, turned / np.linalg.norm(turned)
+
+    def off(by: Array) -> Array:
+        along, rho, slope, at_origin = _profile(points, *moved(by))
+        return (rho - slope * along - at_origin) / size
+
+    return moved(least_squares(off, np.zeros(4), xtol=1e-14, ftol=1e-14, gtol=1e-14).x)
 
 
 def _faces_inwards(face: Any, origin: Array, z: Array) -> bool:

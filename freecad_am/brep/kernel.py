@@ -18,7 +18,8 @@ from ..core.geometry.surface import dot
 from ..core.geometry.told import place
 from ..core.issues import InputError
 
-FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError)
+# since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these
+FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
 SAMPLES = 720  # of an edge that may cross itself
 CROSSED = 1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
 

@@ -14,7 +14,7 @@ from ..core.geometry.contour import Piece
 from ..core.geometry.profile import Array
 from ..core.geometry.sampling import Curve, arc, line
 from .cylindrical import AxisFrame, as_array, edge_points, flattened, pieces_of, smooth_pieces
-from .lost_pole import has_lost_pole, restored
+from .lost_pole import edges_of, has_lost_pole, restored
 
 TOLERANCE = 1e-3  # mm a face may be off its own surface of revolution
 EDGE_TOLERANCE = 1e-2  # mm an edge may be off a parallel or a meridian
@@ -55,7 +55,7 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
     deviation = _deviation(face, frame, curves)
     if deviation > TOLERANCE:
         return Patch(name, (), deviation, "it is not of revolution")
-    edge = _edge_deviation(face, frame)
+    edge = _edge_deviation(face.Edges, frame)
     if edge > EDGE_TOLERANCE:
         return Patch(name, (), edge, "it is cut out or slanted: an edge runs neither around nor along it")
     turn = _turn(face, frame)
@@ -64,12 +64,16 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
 
 def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
     """The patch of a face whose file has lost its pole."""
-    curves = restored(face, frame)
-    edge = _edge_deviation(face, frame)
+    curves, edges = restored(face, frame), edges_of(face)
+    edge = _edge_deviation(edges, frame)
     if curves is None or edge > EDGE_TOLERANCE:
         what = "it has an edge but no area, so the file is damaged or it does not turn about the axis"
         return Patch(name, (), max(edge, 2.0 * TOLERANCE), what)
-    return Patch(name, tuple(Piece(name, points, tangents) for points, tangents in curves), 0.0)
+    points = np.vstack([edge_points(one, 181) for one in edges])
+    turn, off = _reach(frame, points), _distance(frame, points, curves)
+    return Patch(
+        name, tuple(Piece(name, samples, tangents, turn) for samples, tangents in curves), off, "it is not of revolution"
+    )
 
 
 def _ends_a_turn(face: Any, frame: AxisFrame) -> bool:
@@ -236,10 +240,10 @@ def _spread(face: Any, frame: AxisFrame) -> float:
     return float(max(min(np.ptp(radius), np.ptp(height)), 2.0 * TOLERANCE))
 
 
-def _edge_deviation(face: Any, frame: AxisFrame) -> float:
+def _edge_deviation(edges: list[Any], frame: AxisFrame) -> float:
     """Largest distance, mm, of an edge from the nearer of a parallel and a meridian."""
     worst = 0.0
-    for edge in face.Edges:
+    for edge in edges:
         if edge.Degenerated:
             continue
         p = frame.local(edge_points(edge, 9))
@@ -252,10 +256,7 @@ def _edge_deviation(face: Any, frame: AxisFrame) -> float:
 
 
 def _turn(face: Any, frame: AxisFrame) -> tuple[float, float] | None:
-    """Azimuths (start, end) rad of a part of a turn, None for a full one.
-
-    The widest stretch of azimuth without a point of the face is what the face leaves out.
-    """
+    """Azimuths (start, end) rad of a part of a turn, None for a full one."""
     u0, u1, v0, v1 = face.ParameterRange
     if face.Surface.TypeId in NATURAL and u1 - u0 > FULL:
         return None
@@ -265,7 +266,12 @@ def _turn(face: Any, frame: AxisFrame) -> tuple[float, float] | None:
         for u, v in ((u0 + t * (u1 - u0), 0.5 * (v0 + v1)), (0.5 * (u0 + u1), v0 + t * (v1 - v0))):
             if not flat:
                 kept.append(as_array([face.Surface.value(u, v)]))
-    radius, _, azimuth = frame.cylindrical(np.vstack(kept))
+    return _reach(frame, np.vstack(kept))
+
+
+def _reach(frame: AxisFrame, points: Array) -> tuple[float, float] | None:
+    """Azimuths (start, end) rad between which points lie: what they leave out is the widest stretch without any."""
+    radius, _, azimuth = frame.cylindrical(points)
     azimuth = np.sort(np.mod(azimuth[radius > 1e-3 * max(radius.max(), 1e-9)], 2.0 * np.pi))
     gaps = np.diff(np.r_[azimuth, azimuth[0] + 2.0 * np.pi])
     widest = int(np.argmax(gaps))

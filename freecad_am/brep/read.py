@@ -10,11 +10,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
+import FreeCAD  # before Part, which crashes the process without
 import Mesh
 import Part
 
 from ..core.issues import InputError
+from . import three_mf
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 MESHES = (".stl", ".obj", ".3mf")
@@ -51,8 +52,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Any:
-    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. InputErrors as `read_shape`; 3MF needs
-    FreeCAD 0.21."""
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. InputErrors as `read_shape`."""
     file = Path(path)
     where = file.name or str(path)
     if not file.is_file():
@@ -60,12 +60,14 @@ def read_mesh(path: str | os.PathLike[str]) -> Any:
     if file.stat().st_size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
     mesh = Mesh.Mesh()
+    if file.suffix.lower() == ".3mf":
+        points, corners = three_mf.triangles(file)
+        mesh.addFacets(([FreeCAD.Vector(*point) for point in points.tolist()], [tuple(row) for row in corners.tolist()]))
+        return mesh
     try:
         with _quiet():
             mesh.read(str(file))
     except Exception as error:
-        if "not supported" in str(error):  # 3MF before FreeCAD 0.21
-            raise InputError("UNSUPPORTED_FILE", where, f"this FreeCAD reads no {file.suffix}; export STL or OBJ") from error
         raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")

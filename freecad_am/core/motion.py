@@ -23,7 +23,8 @@ class Motion:
     deposit: (n,) bool. layer, bead, point: (n,) int from 0; a rapid row carries the bead it leads to. position,
     build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the segment that ends at the row. width: (n,) mm,
     NaN without a bead model. joints: (n, axes) unwrapped along the whole job, NaN where unreachable.
-    duration: (n,) s of the segment that ends at the row.
+    duration: (n,) s of the segment that ends at the row. wire: (n,) mm/s of the wire on that segment where it follows the
+    travel speed, else NaN, as when left out.
     """
 
     deposit: NDArray[np.bool_]
@@ -37,9 +38,12 @@ class Motion:
     width: Array
     joints: Array
     duration: Array
+    wire: Array = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
+        if self.wire is None:
+            object.__setattr__(self, "wire", np.full(n, np.nan))
         for field in fields(self):
             column = getattr(self, field.name)
             if len(column) != n:

@@ -30,7 +30,7 @@ class Moves:
     program's origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one
     (shoulder, elbow, wrist) per point. On a rotary table, which has no rotation about the tool and no configuration:
     position of the tip, and direction (n, 3), unit vectors from the deposit towards the torch, seen from the program's
-    origin, which turns with the part.
+    origin, which turns with the part. wire: (n,) mm/s of the wire on that move where the program has to tell it, else None.
     """
 
     kind: str
@@ -43,6 +43,7 @@ class Moves:
     rotation: Array | None = None
     configuration: tuple[tuple[str, str, str], ...] | None = None
     direction: Array | None = None
+    wire: Array | None = None
 
     def __len__(self) -> int:
         return len(self.joints)
@@ -50,9 +51,11 @@ class Moves:
 
 @dataclass(frozen=True)
 class DepositOn:
-    """Switch the deposit on and wait `lead` seconds before moving."""
+    """Switch the deposit on and wait `lead` seconds before moving. wire: mm/s of the wire it begins with, where the program
+    has to tell it."""
 
     lead: float = 0.0
+    wire: float | None = None
 
 
 @dataclass(frozen=True)
@@ -84,13 +87,24 @@ class WaitInput:
 
 
 @dataclass(frozen=True)
+class WaitBelow:
+    """Stand still until the analogue input, from 1, is below a value. layer, bead: what it is waited for, which no other one
+    is."""
+
+    number: int
+    below: float
+    layer: int
+    bead: int
+
+
+@dataclass(frozen=True)
 class Call:
     """Call another program of the controller, such as nozzle cleaning."""
 
     program: str
 
 
-Block = Moves | DepositOn | DepositOff | LayerStart | Wait | WaitInput | Call
+Block = Moves | DepositOn | DepositOff | LayerStart | Wait | WaitInput | WaitBelow | Call
 
 
 @dataclass(frozen=True)
@@ -100,7 +114,8 @@ class NcOptions:
     path_feed: speed of the linear axes wherever they move, in place of the time of each move. compress, smooth: block
     compressor; rounding, jerk limit and feed forward. tolerance: mm, largest rounding of corners. deposit_on, deposit_off:
     words that switch the deposit, empty for the numbered output. switch_kinematics: the controller knows a kinematics for
-    axes and one for the tip, and is told which.
+    axes and one for the tip, and is told which. wire_output: analogue output, from 1, of the wire's speed where moves tell
+    it; wire_gain: its value at 1 m/min.
     """
 
     path_feed: bool = False
@@ -110,6 +125,8 @@ class NcOptions:
     deposit_on: str = ""
     deposit_off: str = ""
     switch_kinematics: bool = True
+    wire_output: int = 1
+    wire_gain: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -153,6 +170,19 @@ class Program:
         """The moves alone, in order."""
         return tuple(block for block in self.blocks if isinstance(block, Moves))
 
+    @property
+    def awaited(self) -> Array:
+        """(n, 2) of all moves: which analogue input is waited for right before, and below what; 0 and NaN where none is."""
+        found: list[Array] = [np.zeros((0, 2))]
+        before = (0.0, np.nan)
+        for block in self.blocks:
+            if isinstance(block, WaitBelow):
+                before = float(block.number), block.below
+            elif isinstance(block, Moves) and len(block):
+                found.append(np.vstack([before, np.tile((0.0, np.nan), (len(block) - 1, 1))]))
+                before = (0.0, np.nan)
+        return np.concatenate(found)
+
 
 def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str, ...]) -> Array:
     """(n,) mm/s of the linear axes alone on moves that take `duration` (n,) s: V_s = |P1' P2''| V / |P1 P2| of Dai 2020,
@@ -184,6 +214,8 @@ class ReadMoves:
     Where the text holds its own frames: frame (4, 4), in the maker's base frame, is what `position` is seen in;
     tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. lever: (n,) how far out a tool
     stands on another one that carries it. All mm.
+    wire: (n,) value of the analogue output that the text sets, during each move, NaN before the first; None in texts that
+    set none. wire_digits: (n,) half of its last digit. awaited: (n, 2) as of a program; None: nothing is waited for.
     """
 
     joints: Array | None
@@ -206,3 +238,14 @@ class ReadMoves:
     linear_digits: float = 0.0
     duration_digits: Array | None = None
     shorter_way: NDArray[np.bool_] | None = None
+    wire: Array | None = None
+    wire_digits: Array | float = 0.0
+    awaited: Array | None = None
+
+
+def waits_otherwise(program: Program, read: ReadMoves) -> NDArray[np.bool_]:
+    """(n,) the moves before which a text waits for another analogue input than the program, or for another value."""
+    wanted = program.awaited
+    found = np.tile((0.0, np.nan), (len(wanted), 1)) if read.awaited is None else read.awaited
+    off = ~(np.abs(found[:, 1] - wanted[:, 1]) <= 1e-6) & (wanted[:, 0] > 0.0)
+    return np.asarray((found[:, 0] != wanted[:, 0]) | off)

@@ -8,6 +8,7 @@ file); angles in rad; speeds in mm/s.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -20,6 +21,8 @@ from .geometry.surroundings import Body
 from .issues import Issue
 
 Array = NDArray[np.float64]
+
+PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
 
 
 def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
@@ -39,9 +42,13 @@ class Bead:
     points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from the
     deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's polynomial: the
     unwrapped angle about the axis on parts of revolution, else the arc length, normalised to 2 pi. speed: (n,) mm/s
-    of the segment that ends at the point. width: (n,) mm, or None where no bead model was used. tangents: (n, 2, 3) unit
+    of the segment that ends at the point. width, height: (n,) mm as predicted, or None where no bead model was used.
+    wire_share: mm of wire to a mm of the bead where the wire follows the travel speed, else None. tangents: (n, 2, 3) unit
     vectors along which the bead arrives at and leaves each point, the same but at corners; None where a strategy does
-    not know them. closing: fills a gap between beads, nearer to them than a layer height.
+    not know them. closing: fills a gap between beads, nearer to them than a layer height. kind: what it is in the filling of
+    its layer: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the middle of contours, or of a region narrower than a
+    bead), 'closing' (where other beads left a gap); '' where a strategy has no fillings. ring: how many contours are outside
+    of it. returns: it is the first one of a layer on a solid that has one already.
     """
 
     points: Array
@@ -53,6 +60,11 @@ class Bead:
     width: Array | None = None
     tangents: Array | None = None
     closing: bool = False
+    height: Array | None = None
+    wire_share: float | None = None
+    kind: str = ""
+    ring: int = 0
+    returns: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -62,8 +74,9 @@ class Bead:
             object.__setattr__(self, name, _frozen(getattr(self, name), (n, 3), name))
         for name in ("parameter", "speed"):
             object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
-        if self.width is not None:
-            object.__setattr__(self, "width", _frozen(self.width, (n,), "width"))
+        for name in PREDICTED:
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.tangents is not None:
             object.__setattr__(self, "tangents", _frozen(self.tangents, (n, 2, 3), "tangents"))
         for name in ("build", "tool", *(("tangents",) if self.tangents is not None else ())):
@@ -83,6 +96,11 @@ class Bead:
         """Length of the polyline, mm."""
         return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
 
+    def _predicted(self, change: Callable[[Array], Array]) -> dict[str, Any]:
+        """Predicted width and height, changed alike."""
+        held = {name: getattr(self, name) for name in PREDICTED}
+        return {name: None if column is None else change(column) for name, column in held.items()}
+
     @cached_property
     def outline(self) -> Outline:
         """The curve that the points outline: by the tangents where they are known, else by the circles through
@@ -96,8 +114,8 @@ class Bead:
         return dataclasses.replace(
             self, points=self.points[::-1], build=self.build[::-1], tool=self.tool[::-1],
             parameter=self.parameter[::-1], speed=self.speed[::-1],
-            width=None if self.width is None else self.width[::-1],
             tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
+            **self._predicted(lambda column: column[::-1]),
         )
 
     def started_at(self, index: int) -> Bead:
@@ -113,8 +131,9 @@ class Bead:
         parameter = self.parameter[order] + np.where(np.arange(n + 1) >= n - index, turn, 0.0)
         return dataclasses.replace(
             self, points=self.points[order], build=self.build[order], tool=self.tool[order], parameter=parameter,
-            speed=self.speed[np.where(order == 0, n, order)], width=None if self.width is None else self.width[order],
+            speed=self.speed[np.where(order == 0, n, order)],
             tangents=None if self.tangents is None else self.tangents[order],
+            **self._predicted(lambda column: column[order]),
         )
 
     def halved(self, segments: NDArray[np.intp]) -> Bead:
@@ -133,7 +152,7 @@ class Bead:
         return dataclasses.replace(
             self, points=np.insert(self.points, at, points, axis=0), build=middle_direction(self.build),
             tool=middle_direction(self.tool), parameter=middle(self.parameter),
-            speed=np.insert(self.speed, at, self.speed[at]), width=None if self.width is None else middle(self.width),
+            speed=np.insert(self.speed, at, self.speed[at]), **self._predicted(middle),
             tangents=None if self.tangents is None else np.insert(self.tangents, at, tangents[:, None], axis=0),
         )
 
@@ -162,8 +181,8 @@ class Bead:
             self, points=np.concatenate([self.points, position]), build=directions(self.build), tool=directions(self.tool),
             parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
             speed=np.concatenate([self.speed, self.speed[1 : count + 1]]), closed=False,
-            width=None if self.width is None else np.concatenate([self.width, again(self.width)]),
             tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
+            **self._predicted(lambda column: np.concatenate([column, again(column)])),
         )
 
     def _tangents_run_on(self, count: int, last: Array) -> Array:
@@ -178,7 +197,30 @@ class Bead:
             entry.name: getattr(self, entry.name)[rows]
             for entry in dataclasses.fields(self) if isinstance(getattr(self, entry.name), np.ndarray)
         }
-        return dataclasses.replace(self, **columns, closed=False)
+        first = not rows.start
+        return dataclasses.replace(self, **columns, closed=False, returns=self.returns and first)
+
+
+@dataclass(frozen=True)
+class SpeedLaw:
+    """How beads answer to their travel speed v, mm/s. width, height: mm that they gain with each (mm/s)^(-1/3) of v^(-1/3),
+    at one wire feed; of beads with a wire share the section stays instead. slowest: mm/s, below it nothing was measured.
+    acceleration: mm/s^2, what the speed changes by at most."""
+
+    width: float
+    height: float
+    slowest: float
+    acceleration: float
+
+    def laid(self, bead: Bead, speed: Array) -> Bead:
+        """The bead at other speeds (n,) of its segments, as wide and as high as it gets there."""
+        root = np.cbrt(1.0 / speed[1:]) - np.cbrt(1.0 / bead.speed[1:])
+        more = 0.5 * (np.r_[root[:1], root] + np.r_[root, root[-1:]])
+        if bead.width is None or bead.height is None:
+            return dataclasses.replace(bead, speed=speed)
+        width = bead.width + self.width * more
+        height = bead.height + self.height * more if bead.wire_share is None else bead.height * bead.width / width
+        return dataclasses.replace(bead, speed=speed, width=width, height=height)
 
 
 @dataclass(frozen=True)
@@ -200,7 +242,8 @@ class Toolpath:
 
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error and
     layer_height: mm. overlap: how far closed beads run on past their seam, mm. issues: findings made on the way
-    (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle is kept clear of.
+    (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle is kept clear of. law: what a
+    bead model knows of beads at other speeds than theirs, None without one.
     """
 
     layers: tuple[Layer, ...]
@@ -211,6 +254,7 @@ class Toolpath:
     overlap: float = 0.0
     family: str = field(default="revolution")
     surroundings: tuple[Body, ...] = ()
+    law: SpeedLaw | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

@@ -65,7 +65,7 @@ class CellPanel(StagePanel):
         limits.addItems(names)
         limits.setEditText(text)
 
-    def accept(self) -> bool:
+    def _carry_out(self) -> bool:
         """Make or change the cell, after what was typed last is followed."""
         self.later.at_once()
-        return super().accept()
+        return super()._carry_out()

@@ -3,15 +3,21 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..objects import preferences
+
 Array = NDArray[np.float64]
 
 STEPS = 256
 WRONG = "#c0182b"  # of text that tells what is wrong
+
+# first hue and how far it turns, deg, and how strong the colours are
+_HUES = dict(zip(preferences.RAMPS, ((275.0, -170.0, 1.0), (305.0, 125.0, 0.9), (0.0, 0.0, 0.0)), strict=True))
 
 # Oklab (B. Ottosson, 2020): linear sRGB -> LMS, cube root, -> L a b
 _LMS = np.array([
@@ -27,20 +33,19 @@ _LAB = np.array([
 
 
 def ramp(share: Any) -> Array:
-    """(n, 3) colours 0..1 of shares (n,) 0..1: dark blue, teal, green, yellow."""
+    """(n, 3) colours 0..1 of shares (n,) 0..1: dark blue, teal, green, yellow, or as the preferences say."""
     places = np.clip(np.asarray(share, dtype=np.float64), 0.0, 1.0) * (STEPS - 1)
-    return _TABLE[np.rint(places).astype(int)]
+    return _table(preferences.ramp())[np.rint(places).astype(int)]
 
 
-def _table() -> Array:
+@cache
+def _table(name: str) -> Array:
     share = np.linspace(0.0, 1.0, STEPS)
     lightness = 0.42 + 0.47 * share
-    hue = np.radians(275.0 - 170.0 * share)
-    chroma = 0.17 - 0.02 * np.sin(np.pi * share)
+    first, turn, strong = _HUES[name]
+    hue = np.radians(first + turn * share)
+    chroma = strong * (0.17 - 0.02 * np.sin(np.pi * share))
     lab = np.stack([lightness, chroma * np.cos(hue), chroma * np.sin(hue)], axis=-1)
     linear = (lab @ np.linalg.inv(_LAB).T) ** 3 @ np.linalg.inv(_LMS).T
     linear = np.clip(linear, 0.0, 1.0)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-
-
-_TABLE = _table()

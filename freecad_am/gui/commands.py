@@ -8,21 +8,25 @@ from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
-from PySide import QtGui
 
-from . import icons
+from . import icons, needs
+from .texts import tr
 
 _PREFIX = "RoboticAM_"
 
 
 class Tool:
-    """One command. `icon` is also the object it makes; `action` opens what the tool opens."""
+    """One command. `icon` is also the object it makes; `action` opens what the tool opens; `need` tells what a document
+    lacks for it; `beside`: whether it acts beside a task panel that is open."""
 
     name = ""  # without prefix
     lacking = ""
 
-    def __init__(self, icon: str, text: str, help: str, action: Callable[[], None]) -> None:
-        self.icon, self.text, self.help, self.action = icon, text, help, action
+    def __init__(
+        self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
+        beside: bool = False,
+    ) -> None:
+        self.icon, self.text, self.help, self.action, self.need, self.beside = icon, text, help, action, need, beside
 
     def GetResources(self) -> dict[str, str]:
         """Texts and icon; the macro interface makes the step of undo, not the command.
@@ -35,61 +39,129 @@ class Tool:
         }
 
     def IsActive(self) -> bool:
-        """There is a document, and no task panel is open; the tooltip says which of them is missing."""
-        lacking = ""
-        if App.ActiveDocument is None:
-            lacking = "First open a part, or make a document."
-        elif Gui.Control.activeDialog():
-            lacking = "First close the task panel that is open."
+        """Whether it can act; the tooltip says what is missing when it cannot."""
+        lacking = self.missing()
         if lacking != self.lacking and self._explain(f"{self.help}. {lacking}" if lacking else self.help):
             self.lacking = lacking
         return not lacking
 
+    def missing(self) -> str:
+        """What to do first, '' when it can act now."""
+        try:
+            if App.ActiveDocument is not None and not self.beside and Gui.Control.activeDialog():
+                return tr("First close the task panel that is open.")
+            return self.need(App.ActiveDocument)
+        except (ReferenceError, RuntimeError):  # the document is being closed
+            return tr("First open a part, or make a document.")
+
     def _explain(self, text: str) -> bool:
         """Tell in the tooltip what is missing, which FreeCAD sets once; False while there is no button yet."""
-        name = _PREFIX + self.name
-        actions = [
-            action for action in Gui.getMainWindow().findChildren(QtGui.QAction)
-            if name in (action.objectName(), action.data())  # where it stands differs between versions
-        ]
+        command = Gui.Command.get(_PREFIX + self.name)
+        actions = [] if command is None else command.getAction()
         for action in actions:
             action.setToolTip(text)
             action.setStatusTip(text)
         return bool(actions)
 
     def Activated(self, index: int = 0) -> None:
-        """The tool was clicked."""
-        self.action()
+        """The tool was clicked, or called by a macro or a shortcut at a moment when it cannot act."""
+        lacking = self.missing()
+        if lacking:
+            App.Console.PrintWarning(f"{self.text}: {lacking}\n")
+        else:
+            self.action()
+
+
+# In the order of the work; between groups stands a separator. A tool that is in none comes last.
+GROUPS = (
+    ("NewJob",),
+    ("Cell", "Feature", "WallOnPart", "SolidsOnHub"),
+    ("Toolpath", "JointPath", "SpinMap"),
+    ("Path", "Simulate"),
+    ("Program", "Plots", "Inspect", "ExportPath"),
+    ("NewMachine",),
+)
 
 
 def register() -> list[str]:
-    """Add all commands to FreeCAD; their names in the order of the toolbar."""
+    """Add all commands to FreeCAD; their names in the order of the toolbar, with separators."""
     tools = {
-        "NewJob": Tool("new_job", "New Job", "Makes all stages for the selected shape, from cell to program", _new_job),
+        "NewJob": Tool(
+            "new_job", tr("New Job…"), tr("Makes all stages for the selected shape, from cell to program"), _new_job,
+            needs.part,
+        ),
         "Cell": Tool("cell", "Cell…", "Adds a cell: machine, set-up, platform and nozzle", _cell),
-        "Feature": Tool("feature", "Feature…", "Takes the selected shape of revolution to be deposited", _feature),
+        "Feature": Tool(
+            "feature", "Feature…", "Takes the selected shape of revolution to be deposited", _feature, needs.faces
+        ),
         "WallOnPart": Tool(
             "wall_on_part", "Wall on Part…",
-            "Takes the selected faces as a wall to be deposited on the other object that is selected", _wall,
+            "Takes the selected faces as a wall to be deposited on the other object that is selected", _wall, needs.faces,
         ),
         "SolidsOnHub": Tool(
             "solids_on_hub", "Solids on Hub…",
-            "Takes the selected solids to be deposited on the cylinder or cone that is selected last", _hub,
+            "Takes the selected solids to be deposited on the cylinder or cone that is selected last", _hub, needs.part,
         ),
-        "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath),
-        "JointPath": Tool("joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path),
-        "Program": Tool("program", "Program…", "Writes the controller's program of a joint path", _program),
+        "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath, needs.feature),
+        "JointPath": Tool(
+            "joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path,
+            needs.toolpath_and_cell,
+        ),
+        "SpinMap": Tool(
+            "spin_map", tr("Free Rotation Map…"), tr("Shows the path against the rotation about the tool; the curve can be "
+                                                     "drawn by hand"), _spin_map, needs.joint_path, True,
+        ),
+        "Path": Tool(
+            "path", "Path", "Shows a toolpath or joint path layer by layer and point by point", _path, needs.path, True
+        ),
+        "Simulate": Tool(
+            "simulate", "Simulate…", "Plays a joint path or program with its machine", _simulate, needs.joint_path, True
+        ),
+        "ExportPath": Tool(
+            "export_path", tr("Export Path…"),
+            tr("Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it"), _export_path,
+            needs.path,
+        ),
+        "Program": Tool("program", "Program…", "Writes the controller's program of a joint path", _program, needs.feasible),
+        "NewMachine": Tool(
+            "new_machine", tr("New Machine…"),
+            tr("Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses"),
+            _new_machine, needs.nothing, True,
+        ),
+        "Inspect": Tool(
+            "inspect", tr("Inspect…"), tr("Compares measured points with what was planned"), _inspect, needs.part
+        ),
+        "Plots": Tool(
+            "plots", tr("Plots…"), tr("Plots joints against limits, distances between layers and deposit rates"), _plots,
+            needs.path, True,
+        ),
     }
     for name, tool in tools.items():
         tool.name = name
         Gui.addCommand(_PREFIX + name, tool)
-    return [_PREFIX + name for name in tools]
+    return _in_order(list(tools))
+
+
+def _in_order(names: list[str]) -> list[str]:
+    """Commands and separators of a toolbar that has these tools."""
+    known = {name for group in GROUPS for name in group}
+    found: list[str] = []
+    for group in (*GROUPS, tuple(name for name in names if name not in known)):
+        there = [_PREFIX + name for name in group if name in names]
+        found += ["Separator"] * bool(found and there) + there
+    return found
 
 
 def _new_job() -> None:
     from . import job_panel, stage_panel
 
     stage_panel.show(job_panel.JobPanel())
+
+
+def _export_path() -> None:
+    from . import export_panel, stage_panel
+
+    stage_panel.show(export_panel.ExportPanel())
 
 
 def _open(proxy: Any, title: str) -> None:
@@ -134,6 +206,24 @@ def _joint_path() -> None:
     _open(JointPath, "Joint path")
 
 
+def _spin_map() -> None:
+    from .spin_map import tool
+
+    tool.spin_map()
+
+
+def _path() -> None:
+    from .path import dock
+
+    dock.show()
+
+
+def _simulate() -> None:
+    from .simulation import tool
+
+    tool.simulate()
+
+
 def _program() -> None:
     from ..objects.program import Program
     from . import inputs, stage_panel, suggestions
@@ -144,6 +234,24 @@ def _program() -> None:
     if post:
         panel.places["program_post"][0].widget.setEditText(post)
     stage_panel.show(panel)
+
+
+def _new_machine() -> None:
+    from .machine_wizard import wizard
+
+    wizard.show()
+
+
+def _inspect() -> None:
+    from .inspection import panel
+
+    panel.show()
+
+
+def _plots() -> None:
+    from .plots import dock
+
+    dock.show()
 
 
 def _part_name() -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from typing import Any
 
@@ -10,8 +11,11 @@ from PySide import QtGui
 
 from ..core.issues import InputError
 from ..core.parameters import field as f
+from ..objects import preferences
+from ..objects.expressions import FOLLOW, is_expression
 from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row
-from .quantity import QuantityField
+from .quantity import PlainQuantity, QuantityField
+from .texts import tr
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
@@ -20,7 +24,8 @@ _LARGEST = 2_147_483_647
 
 
 class Field:
-    """A widget and how to read it. `value` raises InputError naming the field for what cannot be read."""
+    """A widget and how to read it. `value` raises InputError naming the field for what cannot be read; it is a text that
+    starts with `=` for an expression."""
 
     def __init__(self, row: Row, widget: Any, read: Callable[[], Any]) -> None:
         self.row = row
@@ -38,8 +43,22 @@ class Field:
 
     @property
     def changed(self) -> bool:
-        """True when it holds something else than at first."""
+        """True when it holds something else than at first, or than what was applied last."""
         return bool(self.read() != self.shown)
+
+    def differs_from(self, value: Any) -> None:
+        """What it holds differs from this inner value, which a stage would have without it."""
+        self.shown = self.row.outer(value)
+
+    def applied(self) -> None:
+        """What it holds is what the document has now."""
+        self.shown = self.read()
+
+    @property
+    def heading(self) -> str:
+        """Its label, with the unit where what is shown has none."""
+        bare = self.row.unit and self.row.form not in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
+        return f"{self.label} ({self.row.unit})" if bare else self.label
 
 
 def label_of(row: Row) -> str:
@@ -50,13 +69,44 @@ def label_of(row: Row) -> str:
     return "RZ" if text == "rz" else text[0].upper() + text[1:]
 
 
-def make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None = None) -> Field:
-    """The field of a row that shows an inner value; `suggestions` are texts to choose from."""
+def make(
+    row: Row, value: Any, suggestions: Callable[[], list[str]] | None = None, expression: str = "", section: str = ""
+) -> Field:
+    """The field of a row that shows an inner value, or the expression it follows; `suggestions` are texts to choose from.
+    The section, of a job file, is for its help."""
+    field = _make(row, value, suggestions, expression)
+    for widget in (field.widget, *field.widget.findChildren(QtGui.QWidget)):
+        widget.setWhatsThis(whats_this(row, section))
+    return field
+
+
+def whats_this(row: Row, section: str) -> str:
+    """The help of a field: what it is, what it may be, what it is by default, and its name in jobs and macros."""
+    spec, default = row.spec, row.text(row.default)
+    unit = row.unit if row.form in (f.RATIO, f.TURN_RATE) else ""
+    lines = [spec.help]
+    if spec.choices or spec.words:
+        lines.append(tr("Words: {}.").format(", ".join((*spec.choices, *spec.words))))
+    allowed = f.range_text(spec) if spec.low is not None or spec.high is not None else ""
+    if allowed:
+        lines.append(tr("Allowed: {}.").format(allowed))
+    if row.form in FOLLOW:
+        lines.append(tr("It may follow an expression: {}.").format("=Spreadsheet.height / 2"))
+    if default:
+        lines.append(tr("By default: {}.").format(f"{default} {unit}".strip() if unit not in default else default))
+    job = ".".join(map(str, (section, *row.path))) if section else ""
+    lines.append(tr("In a job file: {}; in macros: {}.").format(job, row.key))
+    return "<b>{}</b><p>{}</p>".format(label_of(row), "<br>".join(map(html.escape, lines)))
+
+
+def _make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None, expression: str) -> Field:
     shown = row.outer(value)
     if row.form == f.POSE:
         return _pose(row, shown)
+    if row.form == f.SPEED:
+        return _speed(row, shown, expression)
     if row.form in _QUANTITIES:
-        quantity = QuantityField(shown, row.unit, label_of(row))
+        quantity = QuantityField(shown, row.unit, label_of(row), expression)
         return Field(row, quantity.box, quantity.read)
     if row.form == f.CHOICE:
         return _choice(row, shown)
@@ -68,13 +118,27 @@ def make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None = Non
         spin = QtGui.QSpinBox()
         spin.setRange(-_LARGEST, _LARGEST)  # what is out of range is told by the core, not cut off here
         spin.setValue(shown)
-        return Field(row, spin, spin.value)
+        return Field(row, spin, spin.value) if not expression else _text(row, value, expression)
     if suggestions is not None:
         return _suggested(row, shown, suggestions())
-    return _text(row, value)
+    return _text(row, value, expression)
 
 
-def _text(row: Row, value: Any) -> Field:
+def _speed(row: Row, shown: float, expression: str) -> Field:
+    """A speed in the unit that the user prefers; what is read is in mm/s all the same."""
+    unit = preferences.speed_unit()
+    factor = preferences.SPEED_UNITS[unit]
+    made = QuantityField if factor == 1.0 else PlainQuantity
+    quantity = made(round(shown * factor, 9), unit, label_of(row), expression)
+
+    def read() -> float | str:
+        value = quantity.read()
+        return value if isinstance(value, str) else round(value / factor, 9)
+
+    return Field(row, quantity.box, read)
+
+
+def _text(row: Row, value: Any, expression: str = "") -> Field:
     edit = QtGui.QLineEdit()
     if row.form == TEXT_LIST:
         edit.setText(" ".join(value))
@@ -83,12 +147,16 @@ def _text(row: Row, value: Any) -> Field:
     words = " or ".join((row.unit and f"a quantity in {row.unit}", *row.spec.words)).removeprefix(" or ")
     if words or row.spec.optional:
         edit.setPlaceholderText(words + (" (empty: none)" if row.spec.optional else ""))
+    if expression:
+        edit.setText(expression)
     if row.form == f.NUMBER:
         return Field(row, edit, lambda: _number(edit.text(), label_of(row)))
     return Field(row, edit, lambda: edit.text().strip())
 
 
-def _number(text: str, name: str) -> float:
+def _number(text: str, name: str) -> float | str:
+    if is_expression(text):
+        return text.strip()
     try:
         return float(text)
     except ValueError:

@@ -44,6 +44,9 @@ class Fold:
         """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
         name = QtGui.QLabel(label)
         name.setToolTip(widget.toolTip())
+        for one in (widget, *widget.findChildren(QtGui.QWidget), name):
+            if not one.whatsThis():
+                one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
         note = QtGui.QLabel()
         note.setObjectName(f"{widget.objectName()}Note")
         note.setWordWrap(True)

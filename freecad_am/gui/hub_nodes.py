@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,23 +31,43 @@ class HubNodes(WallNodes):
         self.root.addChild(unpickable())
         self.root.addChild(self.outline.node)
 
-    def set_solids(self, solids: SolidsOnHub | None) -> list[list[list[Array]]]:
-        """Draw solids, none for None; the contours of each solid of each group, (k, 3), the first point repeated.
+    def set_solids(self, solids: SolidsOnHub) -> None:
+        """Draw solids. InputError OPEN_MESH."""
+        self.set(drawing(solids))
 
-        InputError OPEN_MESH.
-        """
-        groups = () if solids is None else solids.groups
-        contours = [first_contours(group, solids.chord_error) for group in groups] if solids is not None else []
-        self.set_first([contour for group in contours for solid in group for contour in solid])
-        bases = [_base(group, [contour for solid in some for contour in solid]) for group, some in zip(groups, contours)]
-        lines = [line for _, _, some in bases for line in some]
-        self.outline.set(np.concatenate([np.zeros((0, 3)), *lines]), [len(line) for line in lines])
-        counts = np.cumsum([0, *(len(points) for points, _, _ in bases)])
-        self.faces.set(
-            np.concatenate([np.zeros((0, 3)), *(points for points, _, _ in bases)]),
-            np.concatenate([np.zeros((0, 3), int), *(corners + k for (_, corners, _), k in zip(bases, counts))]),
-        )
-        return contours
+    def set(self, drawn: Drawing) -> None:
+        """Draw what `drawing` has made."""
+        self.set_first([contour for group in drawn.contours for solid in group for contour in solid])
+        self.outline.set(np.concatenate([np.zeros((0, 3)), *drawn.lines]), [len(line) for line in drawn.lines])
+        self.faces.set(drawn.points, drawn.corners)
+
+
+class Drawing(NamedTuple):
+    """The contours of each solid of each group, (k, 3), the first point repeated; points (n, 3) and triangles (m, 3) of the
+    bases, and lines (k, 3) along their ends and up them."""
+
+    contours: list[list[list[Array]]]
+    points: Array
+    corners: Array
+    lines: list[Array]
+
+
+NOTHING = Drawing([], np.zeros((0, 3)), np.zeros((0, 3), int), [])
+
+
+def drawing(solids: SolidsOnHub) -> Drawing:
+    """What is drawn of solids, made without the window. InputError OPEN_MESH."""
+    contours = [first_contours(group, solids.chord_error) for group in solids.groups]
+    bases = [
+        _base(group, [contour for solid in some for contour in solid]) for group, some in zip(solids.groups, contours)
+    ]
+    counts = np.cumsum([0, *(len(points) for points, _, _ in bases)])
+    return Drawing(
+        contours,
+        np.concatenate([np.zeros((0, 3)), *(points for points, _, _ in bases)]),
+        np.concatenate([np.zeros((0, 3), int), *(corners + k for (_, corners, _), k in zip(bases, counts))]),
+        [line for _, _, some in bases for line in some],
+    )
 
 
 def first_contours(group: Group, chord_error: float) -> list[list[Array]]:

@@ -3,17 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from ..core.issues import InputError, Issue
+from ..core.issues import AmError, Issue
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.shapes import FIXTURES
 from ..objects.stage import Link, Outcome
 from . import picking, recorded
-from .hub_nodes import HubNodes
+from .hub_nodes import NOTHING, Drawing, HubNodes, drawing
 from .lines import Array
 from .pick_field import PickField
 from .pick_panel import PickPanel
@@ -30,7 +30,7 @@ HUB = Link(
 _PLACES = {"Source": "Solids", "Further": "Solids", "Substrate": "Hub", "BaseFaces": "Hub", "Fixtures": "Fixtures"}
 COARSE = 0.3  # mm
 _SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
-_OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_max_turn", "build_direction_plane")
+_OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_plane")
 _NO_BASE = ("NO_HUB", "NO_BASE")
 
 
@@ -42,7 +42,7 @@ class HubPanel(PickPanel):
 
     stage, icon, function, draft = DevelopableFeature, "solids_on_hub", "make_developable_feature", "Solids"
     nodes: HubNodes
-    kept: tuple[Any, Outcome] | None = None  # what was computed last, and what of
+    kept: tuple[Any, Outcome, Drawing] | None = None  # what was computed last: what of, what, and what is drawn of it
 
     def __init__(self, obj: Any = None) -> None:
         solids, hub, fixtures = ((), None, ()) if obj is None else _present(obj)
@@ -114,32 +114,40 @@ class HubPanel(PickPanel):
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
         found = super()._values()
-        if 0.0 < found["ChordError"] < COARSE:
+        if 0.0 < getattr(found["ChordError"], "Value", found["ChordError"]) < COARSE:
             found["ChordError"] = COARSE
         return found
 
-    def _made(self, draft: Draft) -> Outcome:
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
         """Computed anew only where solids or hub are others."""
         draft.check()
-        key = (self._inputs(), [getattr(draft.obj, name) for name in _SHAPING])
-        if self.kept is None or self.kept[0] != key:
-            self.kept = (key, draft.outcome())
-        return self.kept[1]
+        key = (self._inputs(), [str(getattr(draft.obj, name)) for name in _SHAPING])
+        kept, work = self.kept, draft.prepare()
+        if kept is not None and kept[0] == key:
+            return lambda: kept[1:]
+
+        def both() -> tuple[Outcome, Drawing]:
+            made = work()
+            drawn = drawing(made.value)
+            self.kept = (key, made, drawn)
+            return made, drawn
+
+        return both
 
     def _link_places(self) -> dict[str, str]:
         return _PLACES
 
-    def _place(self, error: InputError) -> None:
-        super()._place(error)
+    def _placed(self, error: AmError) -> tuple[str, str]:
         if error.code in _NO_BASE:
-            for place in self.notes:
-                self._tell(place, "")
-            self._say("No preview: see the field marked.", False)
-            self._tell(self.hub.label, error.message[:1].upper() + error.message[1:])
+            return self.hub.label, error.message[:1].upper() + error.message[1:]
+        return super()._placed(error)
 
-    def _draw(self, made: Outcome | None) -> str:
-        contours = self.nodes.set_solids(None if made is None else made.value)
-        return "" if made is None else _told(made, contours)
+    def _draw(self, made: Outcome, drawing: Drawing) -> str:
+        self.nodes.set(drawing)
+        return _told(made, drawing.contours)
+
+    def _draw_without(self) -> None:
+        self.nodes.set(NOTHING)
 
 
 def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:

@@ -28,6 +28,9 @@ class Input:
         """Arguments by keyword as Python texts."""
         raise NotImplementedError
 
+    def applied(self) -> None:
+        """What is entered is what the document has now."""
+
 
 class StageChoice(Input):
     """One of the stages of a kind in the active document; the present one, else the selected one, else the last."""
@@ -151,6 +154,9 @@ class ObjectsChoice(ShapeChoice):
         text = ", ".join(obj.Label for obj in self.objects)
         self.text.setText(text)
         self.text.setToolTip(text)
+
+    def applied(self) -> None:
+        self.told = self.told or bool(self.objects)
 
     def arguments(self) -> dict[str, str]:
         if not self.objects and not self.told:

@@ -1,74 +1,299 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a new job: the shape and the name, everything else at its default."""
+"""The panel of a new job: what is selected, how that is understood, machine and name; everything else at its default."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import FreeCAD as App
-from PySide import QtGui
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
 
 from .. import api
 from ..core.issues import AmError
-from ..objects.feature import RevolutionFeature
-from . import icons, inputs, recorded
+from ..core.parameters.cell import CellParameters
+from ..objects import preferences
+from ..objects.progress import Cancelled
+from ..objects.staleness import UP_TO_DATE
+from . import guess, icons, inputs, picking, recorded, suggestions
+from .busy import carry_out
 from .colours import WRONG
 from .fold import Fold
+from .guess import Guess
+from .later import Background
+from .picking import Pick
 from .stage_panel import CLOSED
+from .texts import tr
+from .worker import Worker
+
+_TOLD = 15000  # ms that the next step is told on the status bar
 
 
 class JobPanel:
-    """OK makes all stages in one step."""
+    """Follows the selection as long as it is open; OK makes all stages in one step."""
+
+    is_open = True
 
     def __init__(self) -> None:
         self.document = App.ActiveDocument
+        self.kinds = {
+            guess.REVOLUTION: tr("Part of revolution"), guess.SURFACE: tr("Wall on a part"),
+            guess.DEVELOPABLE: tr("Solids on a hub"),
+        }
+        self.picks: list[Pick] = []
+        self.guess = Guess("", "")
+        self.asked = ""  # the family the user chose, '' for the one that is proposed
+        self.proposed = ""
+        self._lay_out()
+        self.background = Background(self.form)
+        self.form.destroyed.connect(self.close)
+        Gui.Selection.addObserver(self)
+        self._take()
+
+    def _lay_out(self) -> None:
         self.form = QtGui.QWidget()
         self.form.setObjectName("RoboticAM_NewJob")
-        self.form.setWindowTitle("New job")
+        self.form.setWindowTitle(tr("New job"))
         self.form.setWindowIcon(QtGui.QIcon(icons.path("new_job")))
         column = QtGui.QVBoxLayout(self.form)
-        self.error = QtGui.QLabel()
-        self.error.setObjectName("error")
-        self.error.setWordWrap(True)
+        self.error, self.reason = QtGui.QLabel(), QtGui.QLabel()
+        for label, name in ((self.error, "error"), (self.reason, "reason")):
+            label.setObjectName(name)
+            label.setWordWrap(True)
+            label.hide()
         self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
-        self.source = inputs.ShapeChoice(RevolutionFeature.links[0], None, take_now=True)
-        name = "" if self.source.present is None else api.proposed_name(self.source.present[0].Label)
-        self.name = inputs.NameChoice(name)
-        fold = Fold("Inputs", True)
-        for choice in (self.source, self.name):
-            fold.add(choice.label, choice.widget)
-        hint = QtGui.QLabel("Cell, feature, toolpath, joint path and program are made with their defaults; "
-                            "double-click one in the tree to change it.")
+        self.kind = QtGui.QComboBox()
+        self.kind.setObjectName("Kind")
+        self.kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
+        for key, text in self.kinds.items():
+            self.kind.addItem(text, key)
+        self.kind.activated.connect(self._choose)
+        self.part = _shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
+        self.ground = _shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
+        self.machine = QtGui.QComboBox()
+        self.machine.setObjectName("Machine")
+        self.machine.setToolTip(tr("The machine that deposits; the program is written for its controller"))
+        self.machine.setEditable(True)
+        self.machine.setMinimumContentsLength(12)
+        self.machine.addItems(suggestions.of("cell", "machine")())
+        self.machine.setEditText(_machine_before(self.document))
+        self.name = inputs.NameChoice("")
+        self.fold = Fold(tr("Inputs"), True)
+        for text, widget in (
+            (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
+            (tr("Machine"), self.machine), (tr("Name"), self.name.widget),
+        ):
+            self.fold.add(text, widget)
+        hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
+                               "double-click one in the tree to change it."))
         hint.setWordWrap(True)
-        for widget in (self.error, fold.widget, hint):
+        for widget in (self.error, self.fold.widget, self.reason, hint):
             column.addWidget(widget)
         column.addStretch(1)
-        self.source.text.textChanged.connect(self._propose)
-        self.say(self.source.missing)
 
-    def _propose(self, *_: Any) -> None:
-        """A shape was chosen now: its name, unless one was typed."""
-        self.say("")
-        if not self.name.widget.text():
-            self.name.widget.setText(api.proposed_name(self.source.present[0].Label))
+    # ---- the selection
+
+    def addSelection(self, *_: Any) -> None:
+        """Something was selected, or is no more; called by FreeCAD, which must first be done with it."""
+        QtCore.QTimer.singleShot(0, self._take)
+
+    setSelection = removeSelection = clearSelection = addSelection
+
+    def _take(self) -> None:
+        """Take what is selected now; nothing selected leaves what there is."""
+        if not self.is_open:
+            return
+        try:
+            picks, wrong = picking.selected(self.document), picking.refused(self.document)
+        except (ReferenceError, RuntimeError, NameError):  # the document is closed
+            self.close()
+            return
+        if picks and picks != self.picks:
+            self.picks, self.asked = picks, ""
+            self._understand()
+        elif not self.picks:
+            self._show()
+        self.say(wrong if not picks else "")
+
+    def _choose(self, *_: Any) -> None:
+        """A family was chosen."""
+        self.asked = self.kind.currentData()
+        if self.picks:
+            self._understand()
+
+    def _understand(self) -> None:
+        """Find out what the picks mean, beside the window where it may take long."""
+        self.background.cancel()
+        try:
+            found = self._meaning()
+        except AmError as error:
+            self.guess = Guess(self.asked, "", missing=str(error))
+            self._show()
+            return
+        if isinstance(found, Guess):
+            self._understood(found)
+        else:
+            self.guess = Guess(guess.REVOLUTION, tr("looking at the shape"), (picking.with_faces(self.picks[0]),))
+            self._show()
+            self.background.start(found, self._look)
+
+    def _meaning(self) -> Any:
+        if self.asked:
+            return guess.as_kind(self.asked, self.picks, tr("as you chose"))
+        return guess.of_one(self.picks[0]) if len(self.picks) == 1 else guess.of_several(self.picks)
+
+    def _look(self, worker: Worker) -> None:
+        try:
+            self._understood(worker.result())
+        except AmError as error:
+            self._understood(Guess(guess.REVOLUTION, "", missing=str(error)))
+        except Cancelled:
+            pass
+
+    def _understood(self, found: Guess) -> None:
+        self.guess = found
+        self._show()
+
+    def _show(self) -> None:
+        """Show how the selection is understood, and what is missing."""
+        found = self.guess
+        if found.kind:
+            self.kind.setCurrentIndex(self.kind.findData(found.kind))
+        for widget, picks in ((self.part, found.parts), (self.ground, () if found.ground is None else (found.ground,))):
+            text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in picks)
+            widget.setText(text)
+            widget.setCursorPosition(0)
+            widget.setToolTip(text or widget.whatsThis())
+        self.fold.enable(self.ground, found.kind != guess.REVOLUTION)
+        missing = found.missing if self.picks else tr(
+            "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
+        )
+        reason = tr("{}: {}.").format(self.kinds[found.kind], found.reason) if found.reason else ""
+        self.reason.setText("\n".join(filter(None, (reason, missing))))
+        self.reason.setStyleSheet(f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}")
+        self.reason.setVisible(bool(self.reason.text()))
+        parts = found.parts
+        if parts and self.name.widget.text() in ("", self.proposed):
+            self.proposed = api.proposed_name(parts[0].obj.Label)
+            self.name.widget.setText(self.proposed)
 
     def say(self, text: str) -> None:
         """Show what is wrong."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
+    # ---- called by FreeCAD
+
     def accept(self) -> bool:
         """Make all stages; True closes the panel, an error is shown in it."""
         try:
-            recorded.make(self.document, "make_all", {**self.source.arguments(), **self.name.arguments()})
+            self._wait()
+            if self.guess.missing or not self.guess.parts:
+                self.say(self.guess.missing or self.reason.text())
+                return False
+            before = {obj.Name for obj in self.document.Objects}
+            recorded.make(self.document, "make_all", self._arguments())
         except AmError as error:
             self.say(str(error))
+        except Cancelled:
+            self.say(tr("Cancelled: the document is as it was."))
         except ReferenceError:
             self.say(CLOSED)
         else:
+            self.close()
+            _tell_next([obj for obj in api.stages_of(self.document) if obj.Name not in before])
             return True
         return False
 
+    def _wait(self) -> None:
+        """Wait for what is still to be found out about the selection."""
+        worker = self.background.worker
+        if worker is not None:
+            carry_out(worker.ended.wait, tr("New job"))
+            self.background.at_once()
+
+    def _arguments(self) -> dict[str, str]:
+        found = self.guess
+        first = found.parts[0]
+        told = {"source": recorded.reference(first.obj)}
+        if found.kind != guess.REVOLUTION:
+            told["kind"] = repr(found.kind)
+        if found.kind == guess.DEVELOPABLE:
+            told.update(_of_hub(found))
+        else:
+            told["faces"] = repr(list(first.names))
+            if found.ground is not None:
+                told["substrate"] = recorded.reference(found.ground.obj)
+        machine = self.machine.currentText().strip()
+        if machine != CellParameters().machine:
+            told["machine"] = repr(machine)
+        if preferences.post():
+            told["post"] = repr(preferences.post())
+        if preferences.process():
+            told["process"] = repr(preferences.process())
+        return {**told, **self.name.arguments()}
+
     def reject(self) -> Any:
         """Nothing was done."""
+        self.close()
         return True
+
+    def close(self, *_: Any) -> None:
+        """Look at the selection no more; once or more often."""
+        if self.is_open:
+            self.is_open = False
+            Gui.Selection.removeObserver(self)
+            self.background.cancel()
+
+
+def _of_hub(found: Guess) -> dict[str, str]:
+    """Solids and hub, which may be one, as a macro says it."""
+    first, *further = (pick.obj for pick in found.parts)
+    told, ground = {}, found.ground
+    if further:
+        told["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
+    if ground is not None and ground.obj == first:
+        told["faces"] = repr(list(ground.names))
+    elif ground is not None:
+        told["substrate"] = recorded.reference(ground.obj)
+        told["base_faces"] = repr(list(ground.names))
+    return told
+
+
+def _shown(name: str, help: str) -> Any:
+    line = QtGui.QLineEdit()
+    line.setObjectName(name)
+    line.setReadOnly(True)
+    line.setToolTip(help)
+    line.setWhatsThis(help)
+    line.setPlaceholderText(tr("click it") if name == "Source" else tr("click it with Ctrl"))
+    return line
+
+
+def _machine_before(document: Any) -> str:
+    """The machine of the last cell of a document, else the one by default."""
+    cells = api.stages_of(document, "cell")
+    return str(cells[-1].Machine) if cells else preferences.machine()
+
+
+def _tell_next(stages: list[Any]) -> None:
+    """Show the whole result, and tell what came of it and what can be done next."""
+    wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
+    if wrong is not None:
+        text = tr("{} is {}: {}. Double-click a stage in the tree to change it.").format(
+            wrong.Label, wrong.Status, wrong.Message.rstrip("."))
+    elif stages[-1].Proxy.kind == "program":
+        text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
+    else:
+        text = tr("The joint path is ready; there is no post for this machine's controller yet. Simulate… plays it.")
+    Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
+    App.Console.PrintMessage(text + "\n")
+    _show_whole()
+
+
+def _show_whole() -> None:
+    """Fit the view; one that is still as FreeCAD opens it, straight from above, is turned so that heights are seen."""
+    view = Gui.activeDocument().activeView()
+    if hasattr(view, "getCameraOrientation") and view.getCameraOrientation().isIdentity():
+        view.viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")

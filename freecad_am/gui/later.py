@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a panel does once nothing has been typed for a moment."""
+"""What a panel does once nothing has been typed for a moment, and what it computes beside the window."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from typing import Any
 
 from PySide import QtCore
 
+from .worker import Worker
+
 WAIT = 300  # ms
+LOOK_EVERY = 30  # ms
 
 
 class Later:
@@ -35,3 +38,41 @@ class Later:
     def _act(self) -> None:
         with contextlib.suppress(RuntimeError):  # FreeCAD has taken fields of a closed panel away before the timer
             self.act()
+
+
+class Background:
+    """Carries out work for a panel while the window goes on; what is begun anew ends what went on."""
+
+    def __init__(self, form: Any) -> None:
+        self.worker: Worker | None = None
+        self.show: Callable[[Worker], None] | None = None
+        self.timer = QtCore.QTimer(form)
+        self.timer.setInterval(LOOK_EVERY)
+        self.timer.timeout.connect(self._look)
+
+    def start(self, work: Callable[[], Any], show: Callable[[Worker], None]) -> None:
+        """Begin work that touches no document; `show` gets the worker once it has ended, unless it was cancelled."""
+        self.cancel()
+        self.worker, self.show = Worker(work), show
+        self.timer.start()
+
+    def cancel(self) -> None:
+        """End what goes on, if anything does; once or more often."""
+        if self.worker is not None:
+            self.worker.cancel()
+            self.worker = None
+        with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
+            self.timer.stop()
+
+    def at_once(self) -> None:
+        """Show what has ended, without waiting for the next look."""
+        self._look()
+
+    def _look(self) -> None:
+        worker = self.worker
+        if worker is None or not worker.ended.is_set() or self.show is None:
+            return
+        self.worker = None
+        self.timer.stop()
+        with contextlib.suppress(RuntimeError):  # fields of a closed panel
+            self.show(worker)

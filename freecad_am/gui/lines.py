@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Sequence
 from typing import Any
 
@@ -103,11 +104,20 @@ class Faces:
         fill(self.triangles.coordIndex, np.column_stack([corners, np.full(len(corners), -1, dtype=np.int32)]).ravel())
 
 
+_KINDS = {coin.SoMFVec3f: np.float32, coin.SoMFColor: np.float32, coin.SoMFInt32: np.int32, coin.SoMFUInt32: np.uint32}
+
+
 def fill(field: Any, values: Any) -> None:
-    """Put an array into a multiple-value field, which keeps no more than it."""
-    field.setNum(len(values))
-    if len(values):
-        field.setValues(0, len(values), np.ascontiguousarray(values))
+    """Put an array into a multiple-value field of vectors, colours or whole numbers, which keeps no more than it.
+
+    Straight into the field's memory: pivy's own way takes an array for a Python list, number by number.
+    """
+    array = np.ascontiguousarray(values, dtype=_KINDS[type(field)])
+    field.setNum(len(array))
+    if array.size:
+        first = field.startEditing()
+        ctypes.memmove(int(getattr(first, "this", first)), array.ctypes.data, array.nbytes)
+        field.finishEditing()
 
 
 def unshaded() -> Any:

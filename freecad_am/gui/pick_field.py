@@ -115,6 +115,9 @@ class PickField(Input):
             return None
         return (self.picks[0].obj, list(self.picks[0].names)) if self.element else self.picks[0].obj
 
+    def applied(self) -> None:
+        self.told = self.told or bool(self.picks)
+
     def arguments(self) -> dict[str, str]:
         references = [recorded.reference(pick.obj) for pick in self.picks]
         if not references and not self.told:

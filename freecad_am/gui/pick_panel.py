@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import contextlib
-from time import monotonic
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -12,26 +12,29 @@ import FreeCADGui as Gui
 from PySide import QtCore
 
 from ..core.issues import AmError, InputError
+from ..objects import expressions
 from ..objects.stage import Outcome, Stage
 from . import picking
 from .colours import WRONG
+from .later import Background
 from .pick_field import PickField
 from .preview import Draft, Preview
 from .stage_panel import StagePanel
+from .texts import tr
 from .wall_nodes import WallNodes
+from .worker import Worker
 
-LOOK_EVERY = 250  # ms; what has not changed between two looks is previewed,
-LONGEST_WAIT = 1.5  # s; and where that takes long, not before as long has passed, but for this
+LOOK_EVERY = 200  # ms; what has not changed between two looks is previewed
+TOLD_AFTER = 400  # ms; when a preview takes longer, that is said
 
 
 class PickPanel(StagePanel):
     """Makes a feature of what is selected, or changes one. The document is left alone before OK."""
 
     stage: type[Stage]
-    draft = ""  # the name in errors of what is not made yet
     is_open = True
     armed: PickField | None = None  # the one that waits for clicks
-    changed_at = took = 0.0  # s; when the entries last changed, and how long the last preview took
+    refused: Any = None  # the entries that OK or Apply did not take
 
     def __init__(self, title: str, picks: list[PickField], obj: Any, nodes: WallNodes) -> None:
         self.picks, self.nodes = picks, nodes
@@ -50,6 +53,7 @@ class PickPanel(StagePanel):
         self.timer.setInterval(LOOK_EVERY)
         self.timer.timeout.connect(self._look)
         self.timer.start()
+        self.background = Background(self.form)
         self.form.destroyed.connect(self.close)
         self._arm_missing()
         self.say(unclear)
@@ -83,12 +87,17 @@ class PickPanel(StagePanel):
         """The label of the input that each link is entered by."""
         return {field.link.name: field.label for field in self.picks}
 
-    def _made(self, draft: Draft) -> Outcome:
-        """What is entered makes. Raises AmError."""
-        return draft.outcome()
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
+        """The work, which leaves the document alone, that makes what is entered, and what is drawn of it. Both raise
+        AmError."""
+        raise NotImplementedError
 
-    def _draw(self, made: Outcome | None) -> str:
-        """Draw what was computed, or what can be without; what to tell about it."""
+    def _draw(self, made: Outcome, drawing: Any) -> str:
+        """Draw what was computed; what to tell about it."""
+        raise NotImplementedError
+
+    def _draw_without(self) -> None:
+        """Draw what can be drawn where nothing can be computed."""
         raise NotImplementedError
 
     # ---- picking
@@ -127,11 +136,11 @@ class PickPanel(StagePanel):
         for pick in picks:
             following = self._following(field)
             if field.take(pick):
-                self._tell(field.label, "")
+                self.tell(field.label, "")
             elif following is not None and following.take(pick):
                 field = following
             else:
-                self._tell(field.label, self._refusal(field, pick))
+                self.tell(field.label, self._refusal(field, pick))
         if picks:
             self._taken(field)
             Gui.Selection.clearSelection()
@@ -145,13 +154,12 @@ class PickPanel(StagePanel):
     def _look(self) -> None:
         """Preview what is entered once it no longer changes."""
         try:
-            now, time = self._entered(), monotonic()
+            now = self._entered()
             if now != self.seen:
-                self.seen, self.changed_at = now, time
-            elif now != self.shown and time - self.changed_at >= min(self.took, LONGEST_WAIT):
+                self.seen = now
+            elif now != self.shown:
                 self.shown = now
                 self._renew()
-                self.took = monotonic() - time
         except ReferenceError:
             self.close()
 
@@ -165,54 +173,77 @@ class PickPanel(StagePanel):
         return self._inputs(), texts
 
     def _renew(self) -> None:
-        for place in self.notes:
-            self._tell(place, "")
+        """Begin to compute what is entered, in place of what was before."""
+        self.background.cancel()
+        refused = self.marked if self.shown == self.refused else set()
+        for place in set(self.notes) - self.following - refused:
+            self.tell(place, "")
         lacking = self._lacking()
         if lacking is not None:
             verb, them = ("are", "them") if lacking.several else ("is", "it")
             self._say(f"{lacking.label} {verb} missing: click {them} in the tree or the 3D view.", False)
-            self._draw(None)
+            self._draw_without()
             return
         try:
             draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
-            self._say(self._draw(self._made(draft)), False)
-            return
-        except InputError as error:
-            self._place(error)
+            self.background.start(self._work(draft), self._show_result)
         except AmError as error:
-            self._say(str(error), True)
+            self._refuse(error)
+            return
+        worker = self.background.worker
+        QtCore.QTimer.singleShot(TOLD_AFTER, lambda: self._say_waiting(worker))
+
+    def _say_waiting(self, worker: Worker | None) -> None:
+        if worker is not None and self.background.worker is worker:
+            with contextlib.suppress(RuntimeError):
+                self._say(tr("The preview is being computed."), False)
+
+    def _show_result(self, worker: Worker) -> None:
+        """Show what was computed, or what is wrong."""
+        try:
+            made, drawing = worker.result()
+            self._say(self._draw(made, drawing), False)
+        except AmError as error:
+            self._refuse(error)
+        except ReferenceError:
+            self.close()
         except Exception as error:  # of OpenCASCADE; OK would tell it too
             self._say(f"{type(error).__name__}: {error}", True)
-        self._draw(None)
+            self._draw_without()
+
+    def _refuse(self, error: AmError) -> None:
+        place, text = self._placed(error)
+        if place:
+            self._say("No preview: see the field marked.", False)
+            self._unfolded(place)
+            self.tell(place, text)
+        else:
+            self._say(str(error), True)
+        self._draw_without()
 
     def _values(self) -> dict[str, Any]:
         found = {}
         for place, (field, _, _) in self.places.items():
             try:
-                found[field.row.name] = field.value
+                value = field.value
+                if expressions.is_expression(value) and field.row.form in expressions.FOLLOW:
+                    value = self._evaluated(field, value)
+                found[field.row.name] = value
             except InputError as error:
                 raise InputError(error.code, place, error.message) from None
         return found
 
-    def _place(self, error: InputError) -> None:
-        """Tell an error under the field it belongs to."""
-        self._say("No preview: see the field marked.", False)
-        for place, (field, _, fold) in self.places.items():
-            if error.where.replace(".", "_") == place or error.where == f"{self.draft}.{field.row.name}":
-                fold.heading.setChecked(True)
-                self._tell(place, error.message)
-                return
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        place, text = super()._placed(error)
+        if place:
+            return place, text
+        names = [self.draft, *self._names()]
         named = [(pick.obj.Label, field.label) for field in self.picks for pick in field.picks]
-        named += [(f"{self.draft}.{link}", place) for link, place in self._link_places().items()]
+        named += [(f"{name}.{link}", place) for link, place in self._link_places().items() for name in names]
         for label, place in sorted(named, key=lambda pair: -len(pair[0])):
             if error.where == label or error.where.startswith(f"{label} "):
-                self._tell(place, f"{error.where.removeprefix(label)} {error.message}".strip())
-                return
-        self._say(str(error), True)
-
-    def _tell(self, place: str, text: str) -> None:
-        self.notes[place].setText(text)
-        self.notes[place].setVisible(bool(text))
+                return place, f"{error.where.removeprefix(label)} {error.message}".strip()
+        return "", str(error)
 
     def _say(self, text: str, wrong: bool) -> None:
         self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
@@ -228,6 +259,22 @@ class PickPanel(StagePanel):
             self.close()
         return done
 
+    def apply(self) -> bool:
+        """Make or change the feature; the preview goes on standing for what it draws."""
+        done = super().apply()
+        if done:
+            self._show_own(False)
+        return done
+
+    def _carry_out(self) -> bool:
+        self.background.cancel()
+        done = super()._carry_out()
+        if not done:
+            self.seen = self.shown = None  # what was being previewed is begun again
+            with contextlib.suppress(ReferenceError):
+                self.refused = self._entered()
+        return done
+
     def reject(self) -> bool:
         """Nothing was done; what was previewed goes."""
         self.close()
@@ -238,6 +285,7 @@ class PickPanel(StagePanel):
         if not self.is_open:
             return
         self.is_open = False
+        self.background.cancel()
         Gui.Selection.removeObserver(self)
         self.preview.remove()
         with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer

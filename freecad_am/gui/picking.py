@@ -10,8 +10,10 @@ from typing import Any
 import FreeCADGui as Gui
 
 from ..core.issues import InputError
+from ..objects.job_group import is_group
 from ..objects.shapes import global_shape
 from ..objects.stage import stage_of
+from .texts import tr
 
 FACE, EDGE = "Face", "Edge"
 _GROUPS = ("App::Part", "App::DocumentObjectGroup")
@@ -32,10 +34,19 @@ def selected(document: Any) -> list[Pick]:
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
             obj, name = resolved(entry.Object, path)
+            obj = _alone(obj)
             if usable(obj):
                 before = found.get(obj.Name, Pick(obj)).names
                 found[obj.Name] = Pick(obj, (*before, name) if name and name not in before else before)
     return list(found.values())
+
+
+def _alone(obj: Any) -> Any:
+    """What a group holds, where that is one thing with a shape; else the object itself."""
+    if not any(obj.isDerivedFrom(kind) for kind in _GROUPS):
+        return obj
+    held = [one for one in obj.Group if usable(one)]
+    return held[0] if len(held) == 1 else obj
 
 
 def usable(obj: Any) -> bool:
@@ -105,3 +116,17 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     wall = (faced or walls or [None])[0]
     others = [pick for pick in picks if pick is not wall]
     return wall, Pick(others[0].obj) if len(others) == 1 else None, ""
+
+
+def refused(document: Any) -> str:
+    """Why nothing that is selected in a document can be deposited; '' where nothing is selected."""
+    for entry in Gui.Selection.getSelectionEx(document.Name, 0):
+        obj, _ = resolved(entry.Object, (entry.SubElementNames or ("",))[0])
+        if usable(obj):
+            continue
+        if stage_of(obj) is not None or is_group(obj):
+            return tr("{} belongs to a job; select the part itself.").format(obj.Label)
+        if obj.isDerivedFrom("App::Link") and obj.getLinkedObject() in (None, obj):
+            return tr("{} links to nothing: what it showed is gone or was not loaded.").format(obj.Label)
+        return tr("{} has no shape; select a body, solid, face, link or sketch.").format(obj.Label)
+    return ""

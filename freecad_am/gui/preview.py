@@ -9,7 +9,7 @@ from typing import Any
 
 import FreeCADGui as Gui
 
-from ..objects.stage import Outcome, Stage
+from ..objects.stage import Stage, Work
 
 NAME = "RoboticAM_Preview"
 _VIEW = "Gui::View3DInventor"
@@ -32,9 +32,9 @@ class Draft:
         for section in self.stage.sections:
             self.stage.parameters(self.obj, section.cls)
 
-    def outcome(self) -> Outcome:
-        """What the stage would compute. Raises what it raises."""
-        return self.stage.compute(self.obj)
+    def prepare(self) -> Work:
+        """The work that computes what the stage would, without the document. Raises what it raises, as does the work."""
+        return self.stage.prepare(self.obj)
 
 
 class Preview:

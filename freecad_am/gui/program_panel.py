@@ -12,11 +12,12 @@ from PySide import QtCore, QtGui
 
 from .. import api
 from ..core.issues import AmError
+from ..objects import preferences
 from ..objects.staleness import UP_TO_DATE
 from . import icons
 from .colours import WRONG
-
-_PREFERENCES = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
+from .simulation import told
+from .simulation.run import run_of
 
 
 class ProgramWindow:
@@ -34,6 +35,9 @@ class ProgramWindow:
         self.state = QtGui.QLabel()
         self.state.setObjectName("state")
         self.state.setWordWrap(True)
+        self.sums = QtGui.QLabel()
+        self.sums.setObjectName("sums")
+        self.sums.setWordWrap(True)
         self.choice = QtGui.QComboBox()
         self.choice.setObjectName("file")
         self.text = QtGui.QPlainTextEdit()
@@ -66,6 +70,10 @@ class ProgramWindow:
         fits = self.obj.Status == UP_TO_DATE
         warning = "" if fits or not names else "This text is of an earlier plan; do not run it. "
         self.state.setText(f"{warning}Status: {self.obj.Status}. {self.obj.Message}".rstrip(" "))
+        try:
+            self.sums.setText("  ·  ".join(f"{name}: {value}" for name, value in told.totals(run_of(self.obj))))
+        except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
+            self.sums.setText("")
         self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
         self.text.setStyleSheet("" if fits else "QPlainTextEdit { color: gray; }")
         self._show()
@@ -77,6 +85,7 @@ class ProgramWindow:
         row.addWidget(_button("Close", "close", "Closes this window", lambda *_: self.window.close()))
         column.addLayout(row)
         column.addWidget(self.text, 1)
+        column.addWidget(self.sums)
         column.addWidget(self.state)
 
     def _show(self, *_: Any) -> None:
@@ -123,8 +132,7 @@ def _of(obj: Any) -> ProgramWindow | None:
 
 def export(obj: Any, window: Any = None) -> str:
     """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it."""
-    preferences = App.ParamGet(_PREFERENCES)
-    first = preferences.GetString("ExportFolder", "") or os.path.dirname(obj.Document.FileName)
+    first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
     folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), "Export program", first)
     if not folder:
         return f"Status: {obj.Status}"
@@ -133,7 +141,7 @@ def export(obj: Any, window: Any = None) -> str:
     except AmError as error:
         App.Console.PrintError(error.line() + "\n")
         return str(error)
-    preferences.SetString("ExportFolder", folder)
+    preferences.keep("ExportFolder", folder)
     text = f"{len(paths)} files written to {folder}"
     Gui.getMainWindow().statusBar().showMessage(text, 5000)
     return text

@@ -1,30 +1,39 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A number with a unit in FreeCAD's own field, read so that nothing typed becomes another number unseen.
 
+A text that starts with `=` is an expression, which the number follows; FreeCAD's own way to enter one would change the
+document before OK.
+
 FreeCAD's field leaves out the characters it groups digits by ('1,5' is 15 where decimals have a point), takes other
 units ('3 deg' is 3 mm), and on leaving goes back to the last text it could read ('1.2.3' becomes 1.23).
 """
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
-from PySide import QtGui
+from PySide import QtCore, QtGui
 
 from ..core.issues import InputError
+from ..objects.expressions import MARK, is_expression
+from .texts import tr
 
 _DIGITS = 10
 _LEAST_WIDTH = 70
+_SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
 
 
 class QuantityField:
     """The field `box` that shows a number in a unit."""
 
-    def __init__(self, shown: float, unit: str, name: str) -> None:
-        self.shown, self.unit, self.name = shown, unit, name
+    def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
+        """shown: the number in the unit; expression: what it follows, '' where it follows nothing."""
+        self.shown: float | str = shown
+        self.unit, self.name = unit, name
         self.box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
         self.box.setProperty("unit", unit)
         quantity = App.Units.Quantity(f"{shown!r} {unit}")
@@ -35,17 +44,32 @@ class QuantityField:
         self.box.setMinimumWidth(_LEAST_WIDTH)
         self.line = self.box.findChild(QtGui.QLineEdit)
         self.line.setCursorPosition(0)
-        self.first_text = self.line.text()
         self.typed: str | None = None
+        self.plain = self.line.text()  # what the field goes back to by itself
+        if expression:
+            self.shown = self.typed = expression
+            self.line.setText(expression)
+            self.line.setCursorPosition(0)
+        self.first_text = self.line.text()
+        self._add_mark()
         self.line.textEdited.connect(self._keep)
         self.line.textChanged.connect(self._forget)
         self.box.editingFinished.connect(self._restore)
 
-    def read(self) -> float:
-        """The number in the field's unit. InputError 'BAD_VALUE' for what is not one."""
+    def _add_mark(self) -> None:
+        self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
+        self.mark.setToolTip(tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK))
+        self.mark.triggered.connect(self._begin)
+        self._show_mark()
+        self.line.textChanged.connect(self._show_mark)
+
+    def read(self) -> float | str:
+        """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""
         text = self.line.text() if self.typed is None else self.typed
         if text == self.first_text:
             return self.shown
+        if is_expression(text):
+            return text.strip()
         number = self._number(text)
         return float(self.box.property("rawValue")) if self.typed is None else number
 
@@ -75,13 +99,57 @@ class QuantityField:
         self.typed = text
 
     def _forget(self, text: str) -> None:
-        if text != self.typed and self.box.hasFocus():  # by the arrows or the wheel
+        if is_expression(self.typed) and text == self.plain:
+            QtCore.QTimer.singleShot(0, self._restore)
+        elif text != self.typed and self.box.hasFocus():  # by the arrows or the wheel
             self.typed = None
 
     def _restore(self, *_: Any) -> None:
-        if self.typed is None:
-            return
-        try:
-            self._number(self.typed)
-        except InputError:
-            self.line.setText(self.typed)  # what is refused stays to be seen
+        with contextlib.suppress(RuntimeError):  # the panel is closed
+            if self.typed is None or self.line.text() == self.typed:
+                return
+            try:
+                if not is_expression(self.typed):
+                    self._number(self.typed)
+                    return
+            except InputError:
+                pass
+            self.line.setText(self.typed)  # an expression, or what is refused, stays to be seen
+            self.line.setCursorPosition(0)
+
+    # ---- expressions
+
+    def _begin(self, *_: Any) -> None:
+        """Begin an expression, or mark the one there is, to be typed over."""
+        if not is_expression(self.line.text()):
+            self.typed = MARK
+            self.line.setText(MARK)
+        self.line.setFocus()
+        self.line.setSelection(len(MARK), len(self.line.text()))
+
+    def _show_mark(self, *_: Any) -> None:
+        self.mark.setIcon(QtGui.QIcon(_SET if is_expression(self.line.text()) else _UNSET))
+
+
+class PlainQuantity(QuantityField):
+    """The same in a plain line, for units other than those that FreeCAD shows in its own field."""
+
+    def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
+        self.shown: float | str = expression or shown
+        self.unit, self.name = unit, name
+        self.dimension = App.Units.Quantity(f"1 {unit}").Unit
+        self.box = self.line = QtGui.QLineEdit()
+        self.line.setMinimumWidth(_LEAST_WIDTH)
+        plain = f"{shown:.{_DIGITS}g} {unit}".replace(".", str(self.box.locale().decimalPoint()))
+        self.line.setText(expression or plain)
+        self.line.setCursorPosition(0)
+        self.typed = None  # only a field of FreeCAD changes what was typed
+        self.first_text = self.line.text()
+        self._add_mark()
+
+    def read(self) -> float | str:
+        """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""
+        text = str(self.line.text())
+        if text == self.first_text:
+            return self.shown
+        return text.strip() if is_expression(text) else self._number(text)

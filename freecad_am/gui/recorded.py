@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import FreeCAD as App
@@ -22,16 +23,23 @@ def make(document: Any, function: str, arguments: dict[str, str]) -> None:
 
 def change(obj: Any, arguments: dict[str, str]) -> None:
     """Change parameters and inputs of a stage. Raises what `api.change` raises, ReferenceError when it is gone."""
+    act(obj, "change", arguments)
+
+
+def act(obj: Any, function: str, arguments: dict[str, str]) -> None:
+    """Call a function on a stage. Raises what it raises, ReferenceError when the stage is gone."""
     first = reference(obj)
-    _run(obj.Document, "change", first, arguments)
+    _run(obj.Document, function, first, arguments)
 
 
 def reference(obj: Any) -> str:
     """The object as Python text. ReferenceError when it is no longer there."""
-    try:
+    # removed, but kept to be brought back by undo: FreeCAD 0.20 raises, later ones have no name for it
+    name = None
+    with contextlib.suppress(RuntimeError):
         name = obj.Name
-    except RuntimeError:  # removed, but kept to be brought back by undo
-        raise ReferenceError("it is no longer part of a document") from None
+    if name is None:
+        raise ReferenceError("it is no longer part of a document")
     return f"{_document(obj.Document)}.getObject({name!r})"
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The task panel of a stage, made from its parameters: OK is one call of the macro interface."""
+"""The task panel of a stage, made from its parameters: OK and Apply are one call of the macro interface each."""
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,20 +12,29 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..core.issues import AmError, InputError
+from ..objects import expressions, preferences
+from ..objects.progress import Cancelled
 from ..objects.rows import rows
 from ..objects.stage import Stage, issues_of
 from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
+from .later import Later
+from .texts import tr
 
 MOST_ISSUES = 6
+ROOM_IN_BUTTON = 26  # pixels beside its text
 CLOSED = "The document or object of this panel is gone; cancel and open the panel again."
 
 
 class StagePanel:
-    """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK."""
+    """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK or Apply.
+
+    What is wrong is told under the field it belongs to, else at the top.
+    """
 
     icon = function = ""  # where they are not called as the stage's kind is
+    draft = ""  # the name in errors of what is not made yet
 
     def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
         self.proxy, self.choices, self.obj = proxy, choices, obj
@@ -36,12 +46,15 @@ class StagePanel:
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
         self.error = self._note("error", WRONG)
+        self.marked: set[str] = set()  # places with an error of OK or Apply
+        self.following: set[str] = set()  # those with what an expression gives
+        self.heading: Any = None
         self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
         if choices:
-            heading = Fold("Inputs", obj is None)
+            self.heading = Fold("Inputs", obj is None)
             for choice in choices:
-                self.notes[choice.label] = heading.add(choice.label, choice.widget)
-            self.column.addWidget(heading.widget)
+                self.notes[choice.label] = self.heading.add(choice.label, choice.widget)
+            self.column.addWidget(self.heading.widget)
         self.first_inputs = self._inputs()
         # by the name that errors give a parameter: its field, how the panel calls it, where it is
         self.places: dict[str, tuple[fields.Field, str, Fold]] = {}
@@ -50,6 +63,12 @@ class StagePanel:
         self.findings = self._note("findings", "palette(text)")
         self.column.addStretch(1)
         self._show_findings()
+        self.later_expressions = Later(self.form, self._show_expressions)
+        for field, _, _ in self.places.values():
+            line = field.widget if isinstance(field.widget, QtGui.QLineEdit) else field.widget.findChild(QtGui.QLineEdit)
+            if line is not None and field.row.form in expressions.FOLLOW:
+                line.textChanged.connect(self.later_expressions.ask)
+        self._show_expressions()
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
             self.say(missing[0])
@@ -75,10 +94,13 @@ class StagePanel:
             title = f"{section.group}: advanced" if row.spec.advanced else title
             if title not in folds:
                 folds[title] = Fold(title, title == section.group)
-            value = row.default if current is None else current[row.key]
-            field = fields.make(row, value, suggestions.of(section.prefix, row.key))
+            value = preferences.proposed(section.prefix, row) if current is None else current[row.key]
+            follows = "" if self.obj is None else expressions.of(self.obj, row)
+            field = fields.make(row, value, suggestions.of(section.prefix, row.key), follows, section.prefix)
+            if current is None and value != row.default:
+                field.differs_from(row.default)
             self._mark_driven(field)
-            self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(field.label, field.widget)
+            self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(field.heading, field.widget)
             name = field.label if title == section.group or row.spec.advanced else f"{title}, {field.label.lower()}"
             self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
@@ -94,9 +116,10 @@ class StagePanel:
         return found
 
     def _mark_driven(self, field: fields.Field) -> None:
+        """What the window cannot let follow an expression may do so all the same, from a macro: it is not changed here."""
         driven = dict(self.obj.ExpressionEngine) if self.obj is not None else {}
         expression = driven.get(field.row.name)
-        if expression:
+        if expression and field.row.form not in expressions.FOLLOW:
             field.widget.setEnabled(False)
             field.widget.setToolTip(f"Driven by the expression {expression}")
 
@@ -119,11 +142,128 @@ class StagePanel:
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
+    # ---- what is wrong
+
+    def tell(self, place: str, text: str, wrong: bool = True) -> None:
+        """Something about a field, under it; '' for nothing any more."""
+        note = self.notes[place]
+        note.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
+        note.setText(text)
+        note.setVisible(bool(text))
+
+    def _tell_error(self, error: AmError) -> None:
+        """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
+        place, text = self._placed(error)
+        if not place:
+            self.say(str(error))
+            return
+        self.marked.add(place)
+        self.tell(place, text)
+        widget = self._unfolded(place)
+        widget.setFocus()
+        QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(place)))
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        """The place among the notes that an error belongs to, '' for none, and what to say there."""
+        place, names = error.where.replace(".", "_"), self._names()
+        for known, (field, _, _) in self.places.items():
+            if known == place or error.where in [f"{name}.{field.row.name}" for name in names]:
+                return known, error.message
+        for choice in self.choices:
+            own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
+            missing = error.code == "NO_INPUT" and error.message.startswith(f"{own} is missing")
+            if missing or error.where in [f"{name}.{own}" for name in names]:
+                return choice.label, error.message
+        return "", str(error)
+
+    def _names(self) -> list[str]:
+        """What errors call the stage: by its label, while it is made and where it is but previewed."""
+        return [self.draft, self.proxy.kind.capitalize(), *([] if self.obj is None else [self.obj.Label])]
+
+    def _unfolded(self, place: str) -> Any:
+        """The widget of a place, its part of the panel unfolded."""
+        if place in self.places:
+            field, _, fold = self.places[place]
+            fold.heading.setChecked(True)
+            return field.widget
+        self.heading.heading.setChecked(True)
+        return next(choice.widget for choice in self.choices if choice.label == place)
+
+    def _show_expressions(self) -> None:
+        """Under each field with an expression what that gives now."""
+        for place, (field, _, _) in self.places.items():
+            if field.row.form not in expressions.FOLLOW:
+                continue
+            with contextlib.suppress(InputError, ReferenceError):
+                text = self._given(field)
+                if text is not None:
+                    self.tell(place, text[0], text[1])
+                    self.following.add(place)
+                elif place in self.following:
+                    self.following.discard(place)
+                    self.tell(place, "")
+
+    def _given(self, field: fields.Field) -> tuple[str, bool] | None:
+        """What the expression in a field gives, or what is wrong with it; None where there is none."""
+        value = field.value
+        if not expressions.is_expression(value):
+            return None
+        try:
+            found = self._evaluated(field, value)
+        except InputError as error:
+            return error.message, True
+        return f"= {getattr(found, 'UserString', found)}", False
+
+    def _evaluated(self, field: fields.Field, value: str) -> Any:
+        """An expression's value now, in the unit that a plain entry would have."""
+        around = self.obj if self.obj is not None else next(iter(self.document.Objects), None)
+        found = expressions.evaluated(value, around, field.label)
+        field.row.inner(found, field.label)  # refuses another dimension
+        return found
+
     # ---- called by FreeCAD
+
+    def getStandardButtons(self) -> int:
+        """OK, Apply and Cancel."""
+        buttons = QtGui.QDialogButtonBox
+        return sum(_number(button) for button in (buttons.Ok, buttons.Apply, buttons.Cancel))
+
+    def modifyStandardButtons(self, box: Any) -> None:
+        """Let three buttons be as narrow as two: the task panel would be cut off on the right."""
+        QtCore.QTimer.singleShot(0, lambda: _narrow(box))  # once they have their texts
+
+    def clicked(self, button: Any) -> None:
+        """One of them was clicked; OK and Cancel have functions of their own."""
+        if _number(button) == _number(QtGui.QDialogButtonBox.Apply):
+            self.apply()
 
     def accept(self) -> bool:
         """Make or change the stage; True closes the panel, an error is shown in it."""
+        return self._carry_out()
+
+    def apply(self) -> bool:
+        """Make or change the stage and keep the panel open, as that of the stage; a step of undo of its own."""
+        before = set() if self.obj is not None else {obj.Name for obj in self.document.Objects}
+        if not self._carry_out():
+            return False
+        if self.obj is None:
+            made = [obj for obj in self.document.Objects if obj.Name not in before and type(obj.Proxy) is self.proxy]
+            self.obj = made[-1]
+            self.form.setWindowTitle(self.obj.Label)
+        for field, _, _ in self.places.values():
+            field.applied()
+        for choice in self.choices:
+            choice.applied()
+        self.first_inputs = self._inputs()
+        self._show_findings()
+        return True
+
+    def _carry_out(self) -> bool:
+        """Do what is entered, in one step of undo; False where it is refused, which is told."""
         self.say("")
+        for place in self.marked:
+            self.tell(place, "")
+        self.marked.clear()
         try:
             chosen = self._inputs()
             changed = self._changed()
@@ -133,7 +273,9 @@ class StagePanel:
             elif changed or chosen != self.first_inputs:
                 recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
         except AmError as error:
-            self.say(self._told(error))
+            self._tell_error(error)
+        except Cancelled:
+            self.say(tr("Cancelled: the document is as it was."))
         except ReferenceError:
             self.say(CLOSED)
         else:
@@ -151,18 +293,28 @@ class StagePanel:
                 raise InputError(error.code, place, error.message) from None
         return found
 
-    def _told(self, error: AmError) -> str:
-        """The error with the name the panel gives the field, which is unfolded."""
-        place = error.where.replace(".", "_")
-        if place not in self.places:
-            return str(error)
-        _, name, fold = self.places[place]
-        fold.heading.setChecked(True)
-        return f"{name}: {error.message}"
-
     def reject(self) -> bool:
-        """Nothing was done, so nothing is taken back."""
+        """Nothing was done since the last Apply, so nothing is taken back."""
         return True
+
+
+def _narrow(box: Any) -> None:
+    with contextlib.suppress(RuntimeError):  # the panel is closed again
+        for button in box.buttons():
+            button.setIcon(QtGui.QIcon())
+            button.setFixedWidth(button.fontMetrics().boundingRect(button.text()).width() + ROOM_IN_BUTTON)
+
+
+def _number(button: Any) -> int:
+    return int(getattr(button, "value", button))  # an enumeration of Qt 6
+
+
+def _bring_into_sight(form: Any, widget: Any) -> None:
+    """Scroll the task panel to something in it."""
+    with contextlib.suppress(RuntimeError):  # the panel is gone by now
+        for area in Gui.getMainWindow().findChildren(QtGui.QScrollArea):
+            if widget is not None and area.isVisible() and area.isAncestorOf(form):
+                area.ensureWidgetVisible(widget)
 
 
 def show(panel: Any) -> None:
@@ -188,6 +340,7 @@ def edit(obj: Any) -> None:
 def _own_panel(proxy: type[Stage]) -> Any:
     """The panel of a stage that has one of its own, else None."""
     from . import cell_panel, hub_panel, toolpath_panel, wall_panel
+    from .inspection.panel import InspectionPanel
 
-    own = (hub_panel.HubPanel, wall_panel.WallPanel, cell_panel.CellPanel, toolpath_panel.ToolpathPanel)
+    own = (hub_panel.HubPanel, wall_panel.WallPanel, cell_panel.CellPanel, toolpath_panel.ToolpathPanel, InspectionPanel)
     return next((panel for panel in own if panel.stage is proxy), None)

@@ -10,7 +10,7 @@ from ..core.issues import InputError
 from ..core.kinematics import machine
 from ..core.parameters.program import ProgramParameters
 from ..core.process import bead_table
-from ..objects import user_machines
+from ..objects import preferences, user_machines
 from ..posts import catalogue
 
 
@@ -39,4 +39,5 @@ def post_for(document: Any) -> str:
         posts = machine.load(paths[-1].Cell.Machine, user_machines.folders()).posts
     except InputError:
         return ""
-    return posts[0] if posts and ProgramParameters().post not in posts else ""
+    wanted = preferences.post() or ProgramParameters().post
+    return posts[0] if posts and wanted not in posts else ""

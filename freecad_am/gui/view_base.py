@@ -9,6 +9,7 @@ import FreeCAD as App
 from pivy import coin
 
 from ..core.issues import InputError
+from ..objects.job_group import is_group
 from . import icons
 
 MODE = "Drawing"
@@ -87,7 +88,8 @@ class StageView:
         if name in ("Key", "ResultLayout", "ResultData") and obj.Key != self.drawn:
             self.refresh()
         elif name == "Status":
-            obj.ViewObject.signalChangeIcon()
+            for shown in (obj, *filter(is_group, obj.InList)):
+                shown.ViewObject.signalChangeIcon()
 
     def onChanged(self, vobj: Any, name: str) -> None:
         """A view property has changed."""
@@ -114,6 +116,12 @@ class StageView:
         """Open the panel."""
         self.edit(vobj.Object)
         return True
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """Entries of the context menu in the tree."""
+        from . import context_menu
+
+        context_menu.of_stage(menu, vobj.Object)
 
     def dumps(self) -> None:
         """Nothing is kept."""

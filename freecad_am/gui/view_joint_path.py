@@ -1,39 +1,138 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joint path in the 3D view: rapid moves, and points that something is wrong with."""
+"""The joint path in the 3D view: the beads coloured by how near the machine comes to what it cannot do, the rapid moves,
+and points that something is wrong with."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.issues import ERROR
+from ..core.issues import ERROR, InputError
+from ..core.kinematics import machine as machines
+from ..core.parameters.strategy import RevolutionParameters
+from ..core.simulation.margins import from_next, margins, speed_ratios
+from ..objects import user_machines
 from ..objects.stage import issues_of
-from .lines import DASHED, Lines, Points
-from .view_base import StageView
+from .lines import DASHED, Array, Lines, Points
+from .path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
+from .path.path_view import OPTIONS, TUBES, PathView
+from .path.rows import Rows
+from .view_toolpath import band_of, width_of
 
 
-class JointPathView(StageView):
-    """Draws the rapid moves as dashed lines, and a red point wherever a finding forbids a program."""
+class JointPathView(PathView):
+    """Draws the beads as they are run, rapid moves as thin dashed lines, and a red point wherever the machine does not reach
+    or a finding forbids a program."""
 
     icon = "joint_path"
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {
+        "Colouring": ("App::PropertyEnumeration", JOINT_KINDS, "What the colours of the beads tell."), **OPTIONS,
+        "ShowRapids": ("App::PropertyBool", True, "Show the rapid moves as thin dashed lines."),
+    }
+    source_hidden = True
+
+    def __init__(self, vobj: Any) -> None:
+        super().__init__(vobj)
+        self.source_hidden = False
 
     def scene(self, root: Any) -> None:
-        self.rapids = Lines(1.0, (0.72, 0.72, 0.75), DASHED)
-        self.wrong = Points(7.0, (0.9, 0.1, 0.2))
+        super().scene(root)
+        self.rapids = Lines(1.0, (0.45, 0.45, 0.5), DASHED)
+        self.wrong = Points(7.0, UNREACHABLE)
         root.addChild(self.rapids.node)
         root.addChild(self.wrong.node)
 
+    def rows_of(self, obj: Any, value: Any) -> Rows:
+        paths = value.joint_path.beads
+        height = _layer_height(obj) if obj.ViewObject.Look == TUBES else None  # lines do without the toolpath
+        return Rows.of([path.bead for path in paths], [path.layer for path in paths], width_of(_linked(obj)),
+                       lambda: _known_layer_height(obj) if height is None else height)
+
     def draw(self, obj: Any, value: Any) -> None:
         motion = value.motion
-        rapid = np.flatnonzero(~motion.deposit[1:]) + 1
-        ends = np.stack([motion.position[rapid - 1], motion.position[rapid]], axis=1)
-        self.rapids.set(ends, np.full(len(rapid), 2))
-        wrong = np.zeros(len(motion), dtype=bool)
+        self.motion, self.at = motion, np.flatnonzero(motion.deposit)  # the row of the motion of each point
+        self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
+        wrong = motion.deposit & ~motion.reachable
         for issue in issues_of(obj):
             if issue.level == ERROR and issue.layer is not None:
                 here = motion.deposit & (motion.layer == issue.layer)
                 for column, index in ((motion.bead, issue.bead), (motion.point, issue.point)):
                     here &= True if index is None else column == index
                 wrong |= here
-        self.wrong.set(motion.position[wrong])
+        self.bad = np.flatnonzero(wrong)
+        super().draw(obj, value)
+        if not self.source_hidden:  # the beads lie where those of the toolpath do
+            self.source_hidden = True
+            obj.Toolpath.ViewObject.Visibility = False
+
+    def limited(self, first: int, end: int) -> None:
+        low = 0 if first == 0 else int(self.at[first - 1]) + 1  # with what leads to the first bead
+        high = len(self.motion) if end >= len(self.at) else int(self.at[max(end - 1, 0)]) + 1
+        rapid = self.rapid[(self.rapid >= low) & (self.rapid < high)]
+        self.rapids.set(np.stack([self.motion.position[rapid - 1], self.motion.position[rapid]], axis=1),
+                        np.full(len(rapid), 2))
+        self.wrong.set(self.motion.position[self.bad[(self.bad >= low) & (self.bad < high)]])
+
+    def style(self, vobj: Any) -> None:
+        super().style(vobj)
+        self.rapids.show(vobj.ShowRapids)
+
+    def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
+        value = obj.Proxy.value(obj)
+        if kind == CONDITION:
+            return by_machine(np.concatenate([path.condition for path in value.joint_path.beads]), kind)
+        if kind in (MARGIN, RATIO):
+            try:
+                return by_machine(_of_machine(obj, value, kind), kind)
+            except InputError as error:
+                return unknown(len(self.at), kind, error.message)
+        return coloured(value.joint_path.toolpath(_toolpath_of(obj)), kind, band_of(obj.Toolpath))
+
+    def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
+        return () if obj.Toolpath is None else (band_of(obj.Toolpath),)
+
+
+def _linked(obj: Any) -> Any:
+    """The toolpath object of a joint path. InputError where it was deleted."""
+    if obj.Toolpath is None:
+        raise InputError("NO_INPUT", obj.Label, "its toolpath is gone; choose another, or delete the joint path too")
+    return obj.Toolpath
+
+
+def _toolpath_of(obj: Any) -> Any:
+    """The toolpath of a joint path. InputError where it was deleted, or where undo has not yet brought it back."""
+    return _linked(obj).Proxy.value(obj.Toolpath)
+
+
+def _layer_height(obj: Any) -> float:
+    """Of the toolpath, which is not read for it. InputError as `_toolpath_of`."""
+    return float(_linked(obj).Proxy.picked(obj.Toolpath, ("layer_height",))[0])
+
+
+def _known_layer_height(obj: Any) -> float:
+    """Of the toolpath, where a joint path that is drawn has one, else as high as layers mostly are."""
+    try:
+        return _layer_height(obj)
+    except InputError:
+        return RevolutionParameters().layer_height
+
+
+def _of_machine(obj: Any, planned: Any, kind: str) -> Array:
+    """(n,) the smallest share left to a limit, or the largest share used of a joint speed. InputError of the machine."""
+    if obj.Cell is None:
+        raise InputError("NO_INPUT", obj.Label, "its cell is gone")
+    machine = machines.load(obj.Cell.Machine, tuple(user_machines.folders()))
+    motion, limits = planned.motion, machine.limits(planned.joint_path.limits)
+    if motion.joints.shape[1] != limits.axes:
+        raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
+    if kind == MARGIN:
+        coupled = motion.joints @ limits.coefficients.T
+        share = margins(
+            np.concatenate([motion.joints, coupled], axis=1), np.concatenate([limits.lower, limits.coupled_lower]),
+            np.concatenate([limits.upper, limits.coupled_upper]),
+        ).min(axis=1)
+    else:
+        ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
+        share = from_next(motion.deposit, motion.point, ratio)
+    return share[motion.deposit]

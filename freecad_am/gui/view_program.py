@@ -20,6 +20,9 @@ class ProgramView(StageView):
 
         show(obj)
 
+    def refresh(self) -> None:
+        """Nothing is drawn, and so nothing read."""
+
     def updateData(self, obj: Any, name: str) -> None:
         """A property of the object has changed."""
         super().updateData(obj, name)
@@ -30,12 +33,8 @@ class ProgramView(StageView):
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
         """Entries of the context menu in the tree."""
-        from . import program_panel, stage_panel
+        super().setupContextMenu(vobj, menu)
+        from .path import dock
 
-        for text, name, act in (
-            ("Edit parameters…", "RoboticAM_EditProgram", stage_panel.edit),
-            ("Export files…", "RoboticAM_ExportProgram", program_panel.export),
-        ):
-            action = menu.addAction(text)
-            action.setObjectName(name)
-            action.triggered.connect(lambda *_, act=act: act(vobj.Object))
+        if vobj.Object.JointPath is not None:
+            dock.add_action(menu, vobj.Object.JointPath)

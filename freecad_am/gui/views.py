@@ -10,7 +10,11 @@ import FreeCADGui as Gui
 from PySide import QtCore
 
 from ..objects.developable_feature import DevelopableFeature
+from ..objects.job_group import is_group
 from ..objects.stage import Stage
+from . import view_job
+from .busy import carry_out
+from .inspection.view import InspectionView
 from .view_base import MODE, StageView
 from .view_cell import CellView
 from .view_feature import FeatureView
@@ -19,9 +23,11 @@ from .view_joint_path import JointPathView
 from .view_program import ProgramView
 from .view_toolpath import ToolpathView
 
+__all__ = ("attach", "carry_out", "view_of")  # what `objects.hooks` calls, and what tests ask
+
 VIEWS: dict[str, type[StageView]] = {
     "cell": CellView, "feature": FeatureView, "toolpath": ToolpathView, "joint path": JointPathView,
-    "program": ProgramView,
+    "program": ProgramView, "inspection": InspectionView,
 }
 
 _to_be_seen: set[str] = set()
@@ -35,6 +41,9 @@ def view_of(stage: Stage) -> type[StageView]:
 def attach(obj: Any) -> None:
     """Show an object: with a new view provider when it has none (new, or made without a window), else redrawn."""
     vobj = obj.ViewObject
+    if is_group(obj):
+        view_job.attach(obj)
+        return
     if not getattr(vobj, "Proxy", None):
         if obj.Document.Restoring and obj.Document.Name not in _to_be_seen:
             _to_be_seen.add(obj.Document.Name)

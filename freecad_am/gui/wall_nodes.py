@@ -17,6 +17,7 @@ COLOUR = (0.96, 0.47, 0.0)
 TINT = (1.0, 0.62, 0.2)
 _COARSE = 0.004  # chord error of the tinted faces as a share of their size
 _NOTHING = np.zeros((0, 3))
+NONE = (_NOTHING, np.zeros((0, 3), dtype=np.int32))  # points and triangles
 
 
 class WallNodes:
@@ -56,7 +57,11 @@ class WallNodes:
 
     def set_faces(self, source: Any, names: Sequence[str]) -> None:
         """Tint faces of an object, all where none are named; nothing where it has none such now."""
-        self.faces.set(*_triangles(source, names))
+        try:
+            found = triangles_of(global_shape(source), names)
+        except InputError:  # the shape is not read yet
+            found = NONE
+        self.faces.set(*found)
 
 
 def unpickable() -> Any:
@@ -74,13 +79,13 @@ def first_curves(wall: Any) -> list[Array]:
     return [np.concatenate([one.points, one.points[:1]]) if one.closed else one.points for one in first]
 
 
-def _triangles(source: Any, names: Sequence[str]) -> tuple[Array, Array]:
+def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:
+    """Points (n, 3) and triangles (m, 3) of faces of a shape, all where none are named; NONE where it has none such."""
     try:
-        shape = global_shape(source)
         faces = [shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names] or shape.Faces
-    except (InputError, ValueError, IndexError, RuntimeError):  # the shape has changed, or is not read yet
-        return _NOTHING, np.zeros((0, 3), dtype=np.int32)
-    points, corners, count = [_NOTHING], [np.zeros((0, 3), dtype=np.int32)], 0
+    except (ValueError, IndexError, RuntimeError):  # the shape has changed
+        return NONE
+    points, corners, count = [_NOTHING], [NONE[1]], 0
     for face in faces:
         vertices, triangles = face.tessellate(max(1e-3, _COARSE * face.BoundBox.DiagonalLength))
         points.append(np.array([tuple(vertex) for vertex in vertices]).reshape(-1, 3))

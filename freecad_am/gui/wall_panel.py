@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from ..core.issues import Issue
+from ..objects.shapes import taken
 from ..objects.stage import Outcome
 from ..objects.surface_feature import SurfaceFeature
 from . import picking
 from .pick_field import PickField
 from .pick_panel import PickPanel
-from .wall_nodes import WallNodes, first_curves
+from .preview import Draft
+from .wall_nodes import WallNodes, first_curves, triangles_of
 
 _NAMES = {"Source": "Wall", "Substrate": "Substrate"}
 _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
@@ -67,14 +70,28 @@ class WallPanel(PickPanel):
     def _links(self) -> dict[str, Any]:
         return {field.link.name: field.value() for field in self.picks}
 
-    def _draw(self, made: Outcome | None) -> str:
-        wall = self._field("Source").picks
-        curves = [] if made is None else first_curves(made.value)
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
+        work, shape = draft.prepare(), taken(draft.obj.Source[0]).shape
+
+        def both() -> tuple[Outcome, Any]:
+            made = work()
+            return made, triangles_of(shape.copy(False), made.value.faces)
+
+        return both
+
+    def _draw(self, made: Outcome, drawing: Any) -> str:
+        curves = first_curves(made.value)
         self.nodes.set_first(curves)
+        self.nodes.faces.show(True)
+        self.nodes.faces.set(*drawing)
+        return _told(curves, made.issues)
+
+    def _draw_without(self) -> None:
+        wall = self._field("Source").picks
+        self.nodes.set_first([])
         self.nodes.faces.show(bool(wall))
         if wall:
-            self.nodes.set_faces(wall[0].obj, wall[0].names if made is None else made.value.faces)
-        return "" if made is None else _told(curves, made.issues)
+            self.nodes.set_faces(wall[0].obj, wall[0].names)
 
 
 def _label(link: Any) -> str:

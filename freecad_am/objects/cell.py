@@ -11,7 +11,7 @@ import numpy as np
 from ..core.kinematics import cell as cells
 from ..core.parameters.cell import CellParameters
 from . import user_machines
-from .stage import Outcome, Section, Stage
+from .stage import Outcome, Section, Stage, Work
 
 
 class Cell(Stage):
@@ -21,10 +21,14 @@ class Cell(Stage):
     sections = (Section(CellParameters, "cell", "Cell"),)
     figures = (("MachineTitle", "App::PropertyString", "Maker and model of the machine."),)
 
-    def compute(self, obj: Any) -> Outcome:
-        parameters = self.parameters(obj, CellParameters)
-        resolved = cells.resolve(parameters, np.eye(4), folders=user_machines.folders())
-        return Outcome(parameters, figures=(("MachineTitle", resolved.machine.title),))
+    def prepare(self, obj: Any) -> Work:
+        parameters, folders = self.parameters(obj, CellParameters), user_machines.folders()
+
+        def work() -> Outcome:
+            resolved = cells.resolve(parameters, np.eye(4), folders=folders)
+            return Outcome(parameters, figures=(("MachineTitle", resolved.machine.title),))
+
+        return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         path = user_machines.file_of(obj.Machine)

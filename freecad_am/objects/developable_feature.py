@@ -16,8 +16,8 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import DevelopableParameters
 from ..core.slicing.standing import hub_among, on_hub
 from .feature import source_of
-from .shapes import FIXTURES, body_of, fingerprint, fixtures_of, global_shape
-from .stage import Link, Outcome, Section, Stage
+from .shapes import FIXTURES, Taken, bodies, fingerprint, fixtures_of, taken
+from .stage import Link, Outcome, Section, Stage, Work
 
 
 class DevelopableFeature(Stage):
@@ -52,16 +52,21 @@ class DevelopableFeature(Stage):
         ("Solids", "App::PropertyInteger", "Number of solids."),
     )
 
-    def compute(self, obj: Any) -> Outcome:
+    def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, DevelopableParameters)
         self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
-        solids = _solids(obj, strategy)
-        substrate = () if obj.Substrate is None else (body_of(obj.Substrate),)
-        solids = dataclasses.replace(solids, surroundings=(*substrate, *solids.surroundings, *fixtures_of(obj)))
-        bases = [group.base.name for group in solids.groups]
-        count = sum(len(group.bodies) for group in solids.groups)
-        return Outcome(solids, solids.issues, (("Bases", bases), ("Solids", count)))
+        given, fixtures = _Given.of(obj), fixtures_of(obj)
+
+        def work() -> Outcome:
+            solids = _solids(given, strategy)
+            substrate = () if given.substrate is None else (given.substrate.body(),)
+            solids = dataclasses.replace(solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures)))
+            bases = [group.base.name for group in solids.groups]
+            count = sum(len(group.bodies) for group in solids.groups)
+            return Outcome(solids, solids.issues, (("Bases", bases), ("Solids", count)))
+
+        return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         source, faces = source_of(obj)
@@ -74,68 +79,85 @@ class DevelopableFeature(Stage):
         ]
 
 
-def _solids(obj: Any, strategy: DevelopableParameters) -> SolidsOnHub:
-    source, faces = source_of(obj)
-    objects = [source, *obj.Further]
-    found = [_bodies(one, strategy.chord_error) for one in objects]
-    bodies = [body for one in found for body in one.bodies]
+@dataclasses.dataclass(frozen=True)
+class _Given:
+    """What a feature is made from: the objects to deposit, faces of the first one, the hub, the owner and names of its
+    faces; and the feature's name in errors."""
+
+    label: str
+    objects: tuple[Taken, ...]
+    faces: tuple[str, ...]
+    substrate: Taken | None
+    base_faces: tuple[Taken, tuple[str, ...]] | None
+
+    @classmethod
+    def of(cls, obj: Any) -> _Given:
+        """As the document has it. InputError NO_INPUT, BAD_FACES, NO_SHAPE."""
+        source, faces = source_of(obj)
+        base = (taken(obj.BaseFaces[0]), tuple(obj.BaseFaces[1])) if obj.BaseFaces else None
+        return cls(
+            obj.Label, tuple(taken(one) for one in (source, *obj.Further)), faces,
+            None if obj.Substrate is None else taken(obj.Substrate), base,
+        )
+
+
+def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
+    found = [_bodies(one, strategy.chord_error) for one in of.objects]
+    solid = [body for one in found for body in one.bodies]
     issues = tuple(issue for one in found for issue in one.issues)
-    bases, hub = _bases(obj, faces, objects, bodies, strategy)
-    rest = [body for body in bodies if body is not hub]
-    solids = on_hub(rest, bases, SHARE * strategy.chord_error, source.Label, issues)
+    bases, hub = _bases(of, solid, strategy)
+    rest = [body for body in solid if body is not hub]
+    named = "" if of.substrate is None else of.substrate.label
+    solids = on_hub(rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named)
     return solids if hub is None else dataclasses.replace(solids, surroundings=(hub,))
 
 
-def _bases(
-    obj: Any, faces: Sequence[str], objects: Sequence[Any], bodies: Sequence[Body], strategy: DevelopableParameters
-) -> tuple[list[Seat], Body | None]:
+def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) -> tuple[list[Seat], Body | None]:
     """The bases that solids may stand on, and the hub where it is one of the solids."""
     base = strategy.base
     if base.radius != "auto":
         height = math.inf if base.height == "inf" else float(base.height)
         return [given(float(base.radius), height, *base.line())], None
-    if obj.BaseFaces:
-        return seats(_named_faces(*obj.BaseFaces, f"{obj.Label}.BaseFaces"), True), None
-    if faces:
-        return seats(_named_faces(objects[0], faces, f"{obj.Label}.Source"), True), None
-    if obj.Substrate is not None:
-        return seats(_faces(obj.Substrate), False), None
-    owned = [_faces(one, solid) for one in objects for solid in _parts(one)]
-    if len(bodies) < 2 or len(owned) != len(bodies):
+    if of.base_faces is not None:
+        return seats(_named_faces(*of.base_faces, f"{of.label}.BaseFaces"), True), None
+    if of.faces:
+        return seats(_named_faces(of.objects[0], of.faces, f"{of.label}.Source"), True), None
+    if of.substrate is not None:
+        return seats(_faces(of.substrate), False), None
+    owned = [_faces(one, solid) for one in of.objects for solid in _parts(one)]
+    if len(solids) < 2 or len(owned) != len(solids):
         raise InputError(
-            "NO_HUB", obj.Label, "the hub is not known; choose it as substrate, choose faces of it, or give strategy.base"
+            "NO_HUB", of.label, "the hub is not known; choose it as substrate, choose faces of it, or give strategy.base"
         )
     own = [seats(some, False) for some in owned]
-    hub = hub_among(bodies, own, SHARE * strategy.chord_error, obj.Label)
-    return own[hub], bodies[hub]
+    hub = hub_among(solids, own, SHARE * strategy.chord_error, of.label)
+    return own[hub], solids[hub]
 
 
-def _bodies(source: Any, chord_error: float) -> Bodies:
-    if getattr(source, "Mesh", None) is not None:
-        return bodies_of(body_of(source), source.Label, chord_error)
-    return bodies_of(global_shape(source), source.Label, chord_error)
+def _bodies(source: Taken, chord_error: float) -> Bodies:
+    return bodies_of(source.body() if source.shape is None else source.shape, source.label, chord_error)
 
 
-def _parts(source: Any) -> list[Any]:
+def _parts(source: Taken) -> list[Any]:
     """The solids of an object; nothing of a mesh."""
-    return [] if getattr(source, "Mesh", None) is not None else list(global_shape(source).Solids)
+    return [] if source.shape is None else list(source.shape.Solids)
 
 
-def _faces(source: Any, solid: Any = None) -> list[tuple[str, Any]]:
+def _faces(source: Taken, solid: Any = None) -> list[tuple[str, Any]]:
     """All faces with names. InputError NO_BASE for a mesh, which has no exact ones."""
-    if getattr(source, "Mesh", None) is not None:
+    if source.shape is None:
         raise InputError(
-            "NO_BASE", source.Label, "a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate"
+            "NO_BASE", source.label, "a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate"
         )
-    shape = global_shape(source) if solid is None else solid
-    return [(f"{source.Label} Face{number + 1}", face) for number, face in enumerate(shape.Faces)]
+    shape = source.shape if solid is None else solid
+    return [(f"{source.label} Face{number + 1}", face) for number, face in enumerate(shape.Faces)]
 
 
-def _named_faces(owner: Any, names: Sequence[str], where: str) -> list[tuple[str, Any]]:
+def _named_faces(owner: Taken, names: Sequence[str], where: str) -> list[tuple[str, Any]]:
     known = {f"Face{number + 1}": entry for number, entry in enumerate(_faces(owner))}
     short = [name.rsplit(".", maxsplit=1)[-1] for name in names if name]
     wrong = [name for name in short if name not in known]
     if wrong or not short:
-        told = ", ".join(wrong) or owner.Label
-        raise InputError("BAD_FACES", where, f"{told} is no face of {owner.Label}; choose faces of the hub")
+        told = ", ".join(wrong) or owner.label
+        raise InputError("BAD_FACES", where, f"{told} is no face of {owner.label}; choose faces of the hub")
     return [known[name] for name in short]

@@ -12,8 +12,8 @@ from ..brep.revolution import find_wall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
-from .shapes import FIXTURES, digits, fingerprint, fixtures_of, global_shape, shape_fingerprint
-from .stage import Link, Outcome, Section, Stage
+from .shapes import FIXTURES, bodies, digits, fingerprint, fixtures_of, global_shape, shape_fingerprint
+from .stage import Link, Outcome, Section, Stage, Work
 
 
 class RevolutionFeature(Stage):
@@ -38,14 +38,19 @@ class RevolutionFeature(Stage):
         ("WallLength", "App::PropertyLength", "Length of the meridian."),
     )
 
-    def compute(self, obj: Any) -> Outcome:
+    def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, RevolutionParameters)
         self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
-        wall = find_wall(global_shape(source), faces, strategy.wall, axis_of(obj), source.Label)
-        figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
-        return Outcome(dataclasses.replace(wall, surroundings=fixtures_of(obj)), wall.issues, figures)
+        shape, axis, label, fixtures = global_shape(source), axis_of(obj), source.Label, fixtures_of(obj)
+
+        def work() -> Outcome:
+            wall = find_wall(shape, faces, strategy.wall, axis, label)
+            figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
+            return Outcome(dataclasses.replace(wall, surroundings=bodies(fixtures)), wall.issues, figures)
+
+        return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         source, faces = source_of(obj)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the GUI hooks in: objects never import it, they only say that they are there.
+"""Where the GUI hooks in: objects never import it, they only say that they are there, or that there is long work.
 
 InitGui names the module; it is imported when the first object of ours appears.
 """
@@ -7,15 +7,21 @@ InitGui names the module; it is imported when the first object of ours appears.
 from __future__ import annotations
 
 import importlib
-from typing import Any
+import threading
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import FreeCAD as App
 
+T = TypeVar("T")
+
 _module: str | None = None
+_carrying = False
 
 
 def register(module: str) -> None:
-    """Name the module whose function `attach(obj)` gives an object its view provider and draws what is stored."""
+    """Name the module with the functions `attach(obj)`, which gives an object its view provider and draws what is
+    stored, and `carry_out(work, title)`, which does long work while the window stays alive."""
     global _module
     _module = module
 
@@ -24,3 +30,24 @@ def attach(obj: Any) -> None:
     """Show the object where there is a window: when it is made, and when a document (also a headless one) opens."""
     if App.GuiUp and _module and getattr(obj, "ViewObject", None) is not None:
         importlib.import_module(_module).attach(obj)
+
+
+def carry_out(work: Callable[[], T], title: str) -> T:
+    """What `work` returns or raises. It must touch no document: in the window it is done in another thread.
+
+    Raises Cancelled when the user cancels it.
+    """
+    global _carrying
+    if not (App.GuiUp and _module) or threading.current_thread() is not threading.main_thread():
+        return work()
+    _carrying = True
+    try:
+        found: T = importlib.import_module(_module).carry_out(work, title)
+        return found
+    finally:
+        _carrying = False
+
+
+def carrying() -> bool:
+    """Whether the window is waiting for work: what events bring about meanwhile must not start another one."""
+    return _carrying

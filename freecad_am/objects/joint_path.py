@@ -8,15 +8,22 @@ from typing import Any
 
 import numpy as np
 
+from ..core.issues import InputError
 from ..core.kinematics import cell as cells
 from ..core.motion import Motion
+from ..core.parameters.cell import CellParameters
 from ..core.parameters.joints import JointParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
+from ..core.simulation.timeline import timeline
+from ..core.simulation.totals import MM3_PER_CM3, totals
+from ..core.toolpath import Toolpath
 from . import progress, user_machines
-from .stage import Link, Outcome, Section, Stage
+from .stage import Link, Outcome, Section, Stage, Work
+
+JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves
 
 
 @dataclass(frozen=True)
@@ -25,6 +32,21 @@ class Planned:
 
     joint_path: JointsOfBeads
     motion: Motion
+
+
+def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters]:
+    """The results of a joint path object (None for one that is gone), of its toolpath and of its cell.
+
+    Raises InputError NO_RESULT naming `label`, and NO_INPUT, where one of them is not there.
+    """
+    if path is None or not path.Key:
+        raise InputError("NO_RESULT", label, "there is no joint path yet; recompute the document")
+    for link in ("Toolpath", "Cell"):
+        linked = getattr(path, link)
+        if linked is None or not linked.Key:
+            raise InputError("NO_INPUT", path.Label, f"its {link.lower()} is missing; choose one and recompute")
+    planned, toolpath, cell = (one.Proxy.value(one) for one in (path, path.Toolpath, path.Cell))
+    return planned, toolpath, cell
 
 
 class JointPath(Stage):
@@ -39,19 +61,43 @@ class JointPath(Stage):
     figures = (
         ("Duration", "App::PropertyFloat", "Time of all moves (s)."),
         ("SmallestCondition", "App::PropertyFloat", "Smallest condition of the Jacobian while depositing."),
+        ("TotalTime", "App::PropertyFloat", "Time of the whole job with lead times and waits between layers (s)."),
+        ("DepositTime", "App::PropertyFloat", "Time of depositing moves (s)."),
+        ("WaitTime", "App::PropertyFloat", "Lead times and waits between layers (s)."),
+        ("DepositLength", "App::PropertyLength", "Length of the deposit as it is run."),
+        ("DepositVolume", "App::PropertyFloat", "Volume of the deposit, bead width times layer height (cm\u00b3)."),
+        ("DepositMass", "App::PropertyFloat", "Mass of the deposit (g)."),
     )
 
-    def compute(self, obj: Any) -> Outcome:
+    def prepare(self, obj: Any) -> Work:
         linked = self.linked(obj)
         toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
         toolpath = toolpath_object.Proxy.value(toolpath_object)
-        cell = cells.resolve(
-            cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family, user_machines.folders()
-        )
+        settings, folders = cell_object.Proxy.value(cell_object), user_machines.folders()
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
-        joint_path = plan_joints(toolpath, cell, self.parameters(obj, JointParameters), progress.report)
-        motion, rapid_issues = assemble(joint_path, cell, process, toolpath.surroundings)
-        condition = np.concatenate([bead.condition for bead in joint_path.beads])
-        smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
-        figures = (("Duration", float(np.nansum(motion.duration))), ("SmallestCondition", smallest))
-        return Outcome(Planned(joint_path, motion), (*joint_path.issues, *rapid_issues), figures)
+        parameters = self.parameters(obj, JointParameters)
+
+        def work() -> Outcome:
+            cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+            joint_path = plan_joints(
+                toolpath, cell, parameters, lambda fraction, text: progress.report(JOINTS * fraction, text)
+            )
+            progress.report(JOINTS, "joining the beads by rapid moves")
+            motion, rapid_issues = assemble(joint_path, cell, process, toolpath.surroundings)
+            condition = np.concatenate([bead.condition for bead in joint_path.beads])
+            smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
+            return Outcome(Planned(joint_path, motion), (*joint_path.issues, *rapid_issues),
+                           (("SmallestCondition", smallest), *_sums(motion, process, toolpath)))
+
+        return work
+
+
+def _sums(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> tuple[tuple[str, float], ...]:
+    """What the job takes and deposits, by property name."""
+    times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
+    sums = totals(motion, times, process, toolpath.layer_height)
+    return (
+        ("Duration", float(np.nansum(motion.duration))), ("TotalTime", sums.time), ("DepositTime", sums.deposit_time),
+        ("WaitTime", sums.wait_time), ("DepositLength", sums.length), ("DepositVolume", sums.volume / MM3_PER_CM3),
+        ("DepositMass", sums.mass),
+    )

@@ -15,9 +15,11 @@ from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
+from ..core.toolpath import Toolpath
 from ..posts import catalogue
-from . import user_machines
-from .stage import Link, Outcome, Section, Stage
+from . import progress, user_machines
+from .joint_path import Planned
+from .stage import Link, Outcome, Section, Stage, Work
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class Program(Stage):
             obj.addProperty("App::PropertyString", "ProgramName", "Program", "Name of the program and of its files.")
         super().complete(obj)
 
-    def compute(self, obj: Any) -> Outcome:
+    def prepare(self, obj: Any) -> Work:
         if not obj.ProgramName:
             raise InputError("NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one")
         joint_object = self.linked(obj)["JointPath"]
@@ -49,32 +51,46 @@ class Program(Stage):
         toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
         parameters = self.parameters(obj, ProgramParameters)
         if parameters.post == "none":
-            return Outcome(Written({}, None), figures=(("Files", []),))
+            return lambda: Outcome(Written({}, None), figures=(("Files", []),))
         toolpath = toolpath_object.Proxy.value(toolpath_object)
-        cell = cells.resolve(
-            cell_object.Proxy.value(cell_object), toolpath.frame, toolpath.family, user_machines.folders()
-        )
+        settings, folders = cell_object.Proxy.value(cell_object), user_machines.folders()
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
-        planned = joint_object.Proxy.value(joint_object)
-        motion = planned.motion
-        post = catalogue.load(parameters.post)
-        post.refuse_setup(parameters.motion, cell.setup)
-        if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
-            beads = [path.bead for path in planned.joint_path.beads]
-            motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
-        waits = [layer.wait for layer in toolpath.layers]
-        program = programs.build(motion, cell, process, parameters, obj.ProgramName, waits)
-        files = post.write(program)
-        checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)
-        if has_errors(checked.issues):
-            raise InfeasibleError(
-                "NOT_VERIFIED", obj.Label, "reading the program back does not give the planned path",
-                tuple(checked.issues),
-            )
-        return Outcome(Written(files, checked), tuple(checked.issues), (("Files", sorted(files)),))
+        planned, name, label = joint_object.Proxy.value(joint_object), obj.ProgramName, obj.Label
+
+        def work() -> Outcome:
+            cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+            return _written(planned, toolpath, cell, process, parameters, name, label)
+
+        return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
+
+
+def _written(
+    planned: Planned, toolpath: Toolpath, cell: cells.Cell, process: ProcessParameters, parameters: ProgramParameters,
+    name: str, label: str,
+) -> Outcome:
+    """The files of a joint path, written and read back. InputError; InfeasibleError NOT_VERIFIED naming `label`."""
+    motion = planned.motion
+    post = catalogue.load(parameters.post)
+    post.refuse_setup(parameters.motion, cell.setup)
+    progress.report(0.1, "building moves and events")
+    if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
+        beads = [path.bead for path in planned.joint_path.beads]
+        motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
+    waits = [layer.wait for layer in toolpath.layers]
+    returns = programs.returning(toolpath, planned.joint_path.beads)
+    program = programs.build(motion, cell, process, parameters, name, waits, returns)
+    progress.report(0.3, "writing")
+    files = post.write(program)
+    progress.report(0.5, "reading back and checking")
+    checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)
+    if has_errors(checked.issues):
+        raise InfeasibleError(
+            "NOT_VERIFIED", label, "reading the program back does not give the planned path", tuple(checked.issues),
+        )
+    return Outcome(Written(files, checked), tuple(checked.issues), (("Files", sorted(files)),))
 
 
 def _run(motion: Motion, parameters: ProgramParameters) -> Motion:

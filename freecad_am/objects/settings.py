@@ -7,15 +7,18 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..core.issues import InputError
-from . import properties, rows
+from . import expressions, properties, rows
 from .stage import Stage
 
 
 def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, Any]) -> None:
     """Set the parameters of a stage: whole dataclasses (None leaves the properties) and, over them, single values in
-    outer units by row key. All are checked before the first is set. InputError names what was given."""
-    known = {row.key for section in stage.sections for row in rows.rows(section.cls)}
-    unknown = sorted(set(values) - known)
+    outer units by row key, or expressions (`=Spreadsheet.height`) that they follow from now on.
+
+    All are checked before the first is set. InputError names what was given.
+    """
+    known = {row.key: row for section in stage.sections for row in rows.rows(section.cls)}
+    unknown = sorted(set(values) - set(known))
     if unknown:
         raise InputError(
             "UNKNOWN_PARAMETER", obj.Label, f"{', '.join(unknown)} is not known; use one of {', '.join(sorted(known))}"
@@ -28,7 +31,19 @@ def given(obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, 
             continue
         base = whole.get(section.cls)
         inner = rows.flat(base if base is not None else stage.parameters(obj, section.cls))
-        inner.update({key: row.inner(values[key], f"{section.prefix}.{key}") for key, row in mine.items()})
+        for key, row in mine.items():
+            inner[key] = row.inner(_plain(obj, row, values[key], f"{section.prefix}.{key}"), f"{section.prefix}.{key}")
         checked.append(rows.build(section.cls, inner))
     for parameters in checked:
         properties.write(obj, parameters)
+    for key, value in values.items():
+        expressions.follow(obj, known[key], value if expressions.is_expression(value) else None)
+
+
+def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
+    """The value, or what its expression gives now."""
+    if not expressions.is_expression(value):
+        return value
+    if row.form not in expressions.FOLLOW:
+        raise InputError("BAD_EXPRESSION", where, "it cannot follow an expression; give a plain value")
+    return expressions.evaluated(value, obj, where)

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,18 +37,46 @@ def global_shape(source: Any) -> Any:
 
 def body_of(source: Any) -> Body:
     """The triangles of an object, solid or mesh, in the coordinates of the document. InputError NO_SHAPE, NO_FACES."""
+    return taken(source).body()
+
+
+@dataclass(frozen=True)
+class Taken:
+    """The shape of an object in the coordinates of the document, or its mesh and the frame (4, 4) that puts it there, as
+    they are now: for work that does not touch the document."""
+
+    label: str
+    shape: Any
+    mesh: Any = None
+    frame: Any = None
+
+    def body(self) -> Body:
+        """Its triangles in the coordinates of the document. InputError NO_FACES."""
+        if self.mesh is None:
+            # of a copy: the window draws the triangles of the original, maybe at this very moment
+            return tessellate.body(self.shape.copy(False), self.label)
+        found = tessellate.body(self.mesh, self.label)
+        return dataclasses.replace(found, vertices=found.vertices @ self.frame[:3, :3].T + self.frame[:3, 3])
+
+
+def taken(source: Any) -> Taken:
+    """What an object is now; costs little, as shapes are shared. InputError 'NO_SHAPE'."""
     mesh = getattr(source, "Mesh", None)
     if mesh is None:
-        return tessellate.body(global_shape(source), source.Label)
-    found = tessellate.body(mesh, source.Label)  # where its own placement puts it
+        return Taken(source.Label, global_shape(source))
+    # a mesh stands where its own placement puts it
     outer = source.getGlobalPlacement().multiply(source.Placement.inverse()).toMatrix()
-    frame = np.array(outer.A).reshape(4, 4)
-    return dataclasses.replace(found, vertices=found.vertices @ frame[:3, :3].T + frame[:3, 3])
+    return Taken(source.Label, None, mesh.copy(), np.array(outer.A).reshape(4, 4))
 
 
-def fixtures_of(obj: Any) -> tuple[Body, ...]:
+def fixtures_of(obj: Any) -> tuple[Taken, ...]:
     """The fixtures of a feature."""
-    return tuple(body_of(fixture) for fixture in obj.Fixtures)
+    return tuple(taken(fixture) for fixture in obj.Fixtures)
+
+
+def bodies(fixtures: Sequence[Taken]) -> tuple[Body, ...]:
+    """The triangles of each. InputError NO_FACES."""
+    return tuple(fixture.body() for fixture in fixtures)
 
 
 def shape_fingerprint(shape: Any) -> str:

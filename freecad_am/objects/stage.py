@@ -3,15 +3,19 @@
 
 A stage is computed by `renew`, which raises the errors of the core; FreeCAD's recompute goes through `execute`, which
 turns them into the status, a message and one line on the console. Results are read back when first asked for.
+
+Computing has two steps: `prepare` reads the document, and the work that it returns does not touch it. So the work can be
+done in another thread while the window stays alive, and be dropped at any moment.
 """
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -19,7 +23,7 @@ import FreeCAD as App
 
 from ..brep.kernel import told
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
-from . import hooks, properties, staleness, store
+from . import hooks, progress, properties, staleness, store
 from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 
@@ -63,6 +67,9 @@ class Outcome:
     figures: tuple[tuple[str, Any], ...] = ()
 
 
+Work = Callable[[], Outcome]
+
+
 class Stage:
     """Base of the proxies. Class paths are a file format; nothing is kept in the proxy that must be saved."""
 
@@ -72,6 +79,7 @@ class Stage:
     figures: ClassVar[tuple[tuple[str, str, str], ...]] = ()  # property, FreeCAD type, help
     _kept: tuple[str, Any] | None = None
     _busy = False
+    changes = 0  # of the inputs, counted by `staleness`
 
     def __init__(self, obj: Any) -> None:
         obj.Proxy = self
@@ -80,8 +88,9 @@ class Stage:
 
     # ---- what a stage defines
 
-    def compute(self, obj: Any) -> Outcome:
-        """The result of the present inputs. Raises InputError and InfeasibleError."""
+    def prepare(self, obj: Any) -> Work:
+        """Read the inputs; the work that makes the result of them without the document. Both raise InputError and
+        InfeasibleError."""
         raise NotImplementedError
 
     def further_inputs(self, obj: Any) -> list[str]:
@@ -132,36 +141,81 @@ class Stage:
     def renew(self, obj: Any, force: bool = False) -> Any:
         """Compute when an input differs from those of the stored result (or when forced) and store; the value.
 
-        Raises AmError; the object then says so and keeps its last result.
+        Raises AmError; the object then says so and keeps its last result. Raises Cancelled, and keeps it too, when the
+        user cancels, or when the object is gone by the time it is computed.
         """
-        self._busy = True
+        if hooks.carrying():
+            raise InputError("BUSY", obj.Label, "something else is being computed; wait until that is done, or cancel it")
         try:
             with told(_subject(obj)):
                 key = self.key(obj)
-                if force or key != obj.Key:
-                    started = time.perf_counter()
-                    outcome = self.compute(obj)
-                    self._store(obj, outcome, key, time.perf_counter() - started)
+                outdated = (force or key != obj.Key) and self._compute(obj, key)
             found = issues_of(obj)
-            _say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
+            with self._own_changes():
+                if outdated:
+                    _say(obj, STALE, "an input changed while it was computed; recompute")
+                else:
+                    _say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
+        except progress.Cancelled:
+            if _there(obj) and key != obj.Key:
+                with self._own_changes():
+                    _say(obj, STALE, "cancelled; recompute")
+            raise
         except InfeasibleError as error:
-            obj.Issues = _issues_text(error.issues or (Issue(ERROR, error.code, error.message),))
-            _say(obj, INFEASIBLE, str(error))
+            with self._own_changes():
+                obj.Issues = _issues_text(error.issues or (Issue(ERROR, error.code, error.message),))
+                _say(obj, INFEASIBLE, str(error))
             raise
         except BaseException as error:
-            _say(obj, FAILED, str(error) if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
+            with self._own_changes():
+                _say(obj, FAILED, str(error) if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
             raise
+        return self.value(obj)
+
+    def _compute(self, obj: Any, key: str) -> bool:
+        """Compute and store; whether the inputs are others by then."""
+        started, changes = time.perf_counter(), self.changes
+        work = self.prepare(obj)
+
+        def packed() -> tuple[Outcome, list[float], str]:
+            outcome = work()
+            return outcome, *store.pack(outcome.value, key)
+
+        try:
+            made = hooks.carry_out(packed, obj.Label)
+        except AmError:
+            if _there(obj):
+                raise
+            raise progress.Cancelled from None
+        if not _there(obj):
+            raise progress.Cancelled
+        with self._own_changes():
+            self._store(obj, *made, key, time.perf_counter() - started)
+        return self.changes != changes
+
+    @contextlib.contextmanager
+    def _own_changes(self) -> Iterator[None]:
+        """Within it changes of the object are its own, and make nothing stale."""
+        self._busy = True
+        try:
+            yield
         finally:
             self._busy = False
-        return self.value(obj)
 
     def value(self, obj: Any) -> Any:
         """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
-        if not obj.Key:
-            raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
+        _check_made(obj)
         if self._kept is None or self._kept[0] != obj.Key:
-            self._kept = (obj.Key, store.unpack(obj.ResultData, obj.ResultLayout, obj.Key, obj.Label))
+            self._kept = (obj.Key, store.unpack(store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label))
         return self._kept[1]
+
+    def picked(self, obj: Any, *places: store.Place) -> tuple[Any, ...]:
+        """Values within the stored result, by the field names and indices that lead to them, when not all of it is needed.
+        Errors as `value`."""
+        _check_made(obj)
+        if self._kept is not None and self._kept[0] == obj.Key:
+            return tuple(functools.reduce(_step, place, self._kept[1]) for place in places)
+        return store.picked(store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label, *places)
 
     def key(self, obj: Any) -> str:
         """Fingerprint of all inputs. Raises InputError for a missing or failed one."""
@@ -176,17 +230,21 @@ class Stage:
         missing = self.missing(obj)
         if missing:
             raise InputError("NO_INPUT", obj.Label, missing)
-        return {link.name: _checked(obj, link) for link in self.links if link.kind}
+        return {link.name: checked(obj, link) for link in self.links if link.kind}
 
     def missing(self, obj: Any) -> str:
         """What to do about a required input that is not there, '' when all are."""
         for link in self.links:
             if link.required and not getattr(obj, link.name):
                 return f"{link.name} is missing; choose {link.help[0].lower()}{link.help[1:].rstrip('.')}"
+            broken = _broken(getattr(obj, link.name))
+            if broken:
+                return f"{broken} links to nothing, what it showed is gone or was not loaded; choose another {link.name}"
         return ""
 
-    def _store(self, obj: Any, outcome: Outcome, key: str, seconds: float) -> None:
-        floats, text = store.pack(outcome.value, key)
+    def _store(
+        self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float
+    ) -> None:
         obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
         obj.Issues = _issues_text(outcome.issues)
         for name, figure in outcome.figures:
@@ -197,13 +255,25 @@ class Stage:
     # ---- called by FreeCAD
 
     def execute(self, obj: Any) -> None:
-        """Renew, and report what is wrong in the status and in one line on the console."""
+        """Renew, and report what is wrong in the status and in one line on the console. What follows one that was
+        cancelled waits for it."""
         if _deferred:
+            return
+        stale = next((linked.Label for linked in self._linked_stages(obj) if linked.Status == STALE), "")
+        if stale:
+            with self._own_changes():
+                _say(obj, STALE, f"waits for {stale}; recompute")
             return
         try:
             self.renew(obj)
         except AmError as error:
             App.Console.PrintError(error.line() + "\n")
+        except progress.Cancelled:
+            if _there(obj):
+                App.Console.PrintWarning(f"{obj.Label}: cancelled\n")
+
+    def _linked_stages(self, obj: Any) -> list[Any]:
+        return [linked for link in self.links if link.kind and stage_of(linked := getattr(obj, link.name)) is not None]
 
     def mustExecute(self, obj: Any) -> bool:
         """A stale stage is due at the next recompute, whatever made it stale; a failed one is tried again."""
@@ -215,12 +285,12 @@ class Stage:
             staleness.changed(obj, name)
 
     def onDocumentRestored(self, obj: Any) -> None:
-        """Migrate an old document, and show a document that was made without a window."""
-        self._busy = True
-        try:
+        """Migrate an old document, show a document that was made without a window, and tell what a copy lacks."""
+        with self._own_changes():
             self.complete(obj)
-        finally:
-            self._busy = False
+            missing = self.missing(obj)
+            if missing:
+                _say(obj, FAILED, missing)
         hooks.attach(obj)
 
     def dumps(self) -> None:
@@ -243,6 +313,15 @@ def deferred() -> Iterator[None]:
         yield
     finally:
         _deferred -= 1
+
+
+def _check_made(obj: Any) -> None:
+    if not obj.Key:
+        raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
+
+
+def _step(value: Any, step: str | int) -> Any:
+    return value[step] if isinstance(step, int) else getattr(value, step)
 
 
 def stage_of(obj: Any) -> Stage | None:
@@ -269,6 +348,23 @@ def _issues_text(issues: tuple[Issue, ...]) -> str:
     return json.dumps([issue.as_dict() for issue in issues])
 
 
+def _broken(value: Any) -> str:
+    """The label of a FreeCAD link whose object is gone, '' when all is well."""
+    for one in value if isinstance(value, list) else [value]:
+        linked = one[0] if isinstance(one, tuple) else one
+        if getattr(linked, "TypeId", "") == "App::Link" and linked.getLinkedObject() in (None, linked):
+            return str(linked.Label)
+    return ""
+
+
+def _there(obj: Any) -> bool:
+    """Whether an object is still part of an open document."""
+    try:
+        return obj.Document is not None and obj.Document.getObject(obj.Name) is not None
+    except (ReferenceError, RuntimeError, AttributeError, TypeError):
+        return False
+
+
 def _say(obj: Any, status: str, message: str) -> None:
     if obj.Message != message:
         obj.Message = message
@@ -282,7 +378,9 @@ def _subject(obj: Any) -> str:
     return str(source[0].Label if source else obj.Label)
 
 
-def _checked(obj: Any, link: Link) -> Any:
+def checked(obj: Any, link: Link) -> Any:
+    """The linked stage: of the right kind, and computed; None without one. InputError BAD_INPUT, INPUT_FAILED;
+    InfeasibleError INPUT_INFEASIBLE."""
     linked = getattr(obj, link.name)
     if linked is None:
         return None

@@ -46,6 +46,12 @@ class _Observer:
         if not (document.Restoring or document.Transacting or document.Recomputing) and "Touched" in obj.State:
             _mark_followers(obj)
 
+    def slotRecomputedDocument(self, document: Any) -> None:
+        """FreeCAD does not run what follows an object that failed, such as a link to nothing: tell what is missing."""
+        for obj in document.Objects:
+            if hasattr(obj, "ResultLayout") and obj.Status == STALE and obj.Proxy.missing(obj):
+                _mark(obj, "")
+
 
 def _mark_followers(obj: Any) -> None:
     for follower in obj.InListRecursive:
@@ -54,6 +60,7 @@ def _mark_followers(obj: Any) -> None:
 
 
 def _mark(obj: Any, cause: str) -> None:
+    obj.Proxy.changes += 1
     missing = obj.Proxy.missing(obj)
     status, message = (FAILED, missing) if missing else (STALE, f"{cause} changed; recompute")
     if obj.Status != status or (missing and obj.Message != missing):

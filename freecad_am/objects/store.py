@@ -2,9 +2,9 @@
 """Results of the core as two values a document can hold: one list of floats and one text.
 
 Dataclasses, tuples, arrays, bytes and plain values go in; the same come out. The floats are the arrays one after
-the other (whole numbers and truth values are exact in a float; bytes go compressed, six to a float); the text is
-JSON that says what is where. A FloatList is kept as a compressed binary file in the FCStd, and unlike an included
-file it follows undo and copies of the object by value.
+the other (whole numbers and truth values are exact in a float; bytes go compressed, six to a float), but for runs of
+one number and stretches that are there before; the text is JSON that says what is where. A FloatList is kept as a
+compressed binary file in the FCStd, and unlike an included file it follows undo and copies of the object by value.
 """
 
 from __future__ import annotations
@@ -13,15 +13,18 @@ import dataclasses
 import importlib
 import json
 import zlib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
+from . import repeats
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
 _BYTES_PER_FLOAT = 6
+Place = tuple[str | int, ...]
 _DTYPES = ("float64", "int64", "bool")
 
 
@@ -29,21 +32,66 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     """The floats and the text of a value, both marked with the key. TypeError for what is not data."""
     packer = _Packer()
     packer.put(np.array([_mark(key)]))
-    text = json.dumps(packer.tree(value), separators=(",", ":"))
-    return np.concatenate(packer.parts).tolist(), f"{key} {text}"
+    tree = packer.tree(value)
+    numbers, runs = repeats.without_runs(np.concatenate(packer.parts))
+    rest, copies = repeats.folded(numbers)
+    if len(copies):
+        tree = {"f": [len(numbers), len(copies)], "v": tree}
+        rest = np.concatenate([rest, copies.astype(np.float64).ravel()])
+    if len(runs):
+        tree = {"r": len(runs), "v": tree}
+        rest = np.concatenate([rest, runs.astype(np.float64).ravel()])
+    return rest.tolist(), f"{key} {json.dumps(tree, separators=(',', ':'))}"
 
 
-def unpack(floats: list[float], text: str, key: str, where: str) -> Any:
+def numbers_of(floats: list[float]) -> NDArray[np.float64]:
+    """The floats of a document as an array. The list is best let go then: Python looks through it now and again."""
+    return np.fromiter(floats, np.float64, len(floats))
+
+
+def unpack(floats: Sequence[float] | NDArray[np.float64], text: str, key: str, where: str) -> Any:
     """The value of `pack`; InputError 'BAD_RESULT' naming `where` for one that is damaged, unknown, or of another key.
 
     While a step is undone, floats, text and key come back one after the other: for a moment they do not belong together.
     """
+    return picked(floats, text, key, where, ())[0]
+
+
+def picked(
+    floats: Sequence[float] | NDArray[np.float64], text: str, key: str, where: str, *places: Place
+) -> tuple[Any, ...]:
+    """Values within that of `pack`, nothing else of it read: by the field names and indices that lead to each. Errors as
+    `unpack`."""
     try:
-        if not text.startswith(f"{key} ") or not floats or floats[0] != _mark(key):
+        if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
             raise ValueError("it belongs to other inputs")
-        return _Reader(np.array(floats, dtype=np.float64)).value(json.loads(text[len(key):]))
+        tree, numbers = json.loads(text[len(key):]), np.asarray(floats)
+        runs = np.zeros((0, 2), dtype=np.int64)
+        if isinstance(tree, dict) and "r" in tree:
+            numbers, runs = _split(numbers, tree["r"], 2)
+            tree = tree["v"]
+        if isinstance(tree, dict) and "f" in tree:
+            (size, count), tree = tree["f"], tree["v"]
+            numbers = repeats.unfolded(*_split(numbers, count, 3), size)
+        if len(runs):
+            numbers = repeats.with_runs(numbers, runs)
+        reader = _Reader(numbers)
+        return tuple(reader.value(_within(tree, place)) for place in places)
     except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error) as error:
         raise InputError("BAD_RESULT", where, f"the stored result cannot be read ({error}); recompute it") from None
+
+
+def _within(tree: Any, place: Place) -> Any:
+    """What is at a place of a tree."""
+    for step in place:
+        tree = tree["t"][step] if isinstance(step, int) else tree["v"][step]
+    return tree
+
+
+def _split(numbers: NDArray[np.float64], count: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """What comes before a table at the end, and the table."""
+    rest, table = np.split(numbers, [len(numbers) - columns * count])
+    return rest, table.astype(np.int64).reshape(-1, columns)
 
 
 def _mark(key: str) -> float:
@@ -59,7 +107,10 @@ class _Packer:
         if value is None or isinstance(value, (bool, int, float, str)):
             return value
         if isinstance(value, np.ndarray):
-            return {"a": [_DTYPES.index(str(value.dtype)), *self.put(value.ravel()), *value.shape]}
+            dtype = _DTYPES.index(str(value.dtype))
+            if value.ndim == 3:  # what comes before and behind each point is mostly the same: first all of one
+                return {"s": [dtype, *self.put(value.transpose(1, 0, 2).ravel()), *value.shape]}
+            return {"a": [dtype, *self.put(value.ravel()), *value.shape]}
         if isinstance(value, np.generic):
             return value.item()
         if isinstance(value, (bytes, bytearray)):
@@ -94,6 +145,10 @@ class _Reader:
             dtype, start, *shape = tree["a"]
             size = int(np.prod(shape)) if shape else 1
             return self.slice(start, size).astype(_DTYPES[dtype]).reshape(shape)
+        if "s" in tree:
+            dtype, start, rows, sides, columns = tree["s"]
+            turned = self.slice(start, rows * sides * columns).astype(_DTYPES[dtype]).reshape(sides, rows, columns)
+            return np.ascontiguousarray(turned.transpose(1, 0, 2))
         if "b" in tree:
             length, start = tree["b"]
             return zlib.decompress(_bytes_of(self.slice(start, -(-length // _BYTES_PER_FLOAT)), length))

@@ -12,8 +12,8 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters
 from .feature import source_of
-from .shapes import FIXTURES, body_of, fingerprint, fixtures_of, global_shape, shape_fingerprint
-from .stage import Link, Outcome, Section, Stage
+from .shapes import FIXTURES, bodies, fingerprint, fixtures_of, global_shape, shape_fingerprint, taken
+from .stage import Link, Outcome, Section, Stage, Work
 
 
 class SurfaceFeature(Stage):
@@ -42,31 +42,31 @@ class SurfaceFeature(Stage):
         "connected faces."),
     )
 
-    def compute(self, obj: Any) -> Outcome:
+    def prepare(self, obj: Any) -> Work:
         self.linked(obj)
         strategy = self.parameters(obj, SurfaceParameters)
         self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
-        substrate = obj.Substrate
-        wall = wall_on(
-            global_shape(source), faces, None if substrate is None else _solid(substrate), strategy.layer_height,
-            source.Label, "" if substrate is None else substrate.Label, _start_edges(obj),
-        )
-        bodies = () if substrate is None else (body_of(substrate),)
-        wall = dataclasses.replace(wall, surroundings=(*bodies, *fixtures_of(obj)))
-        kind = "patches" if isinstance(wall, PatchWall) else wall.kind
-        return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", kind)))
+        substrates = () if obj.Substrate is None else (taken(obj.Substrate),)
+        shape, label, edges, fixtures = global_shape(source), source.Label, _start_edges(obj), fixtures_of(obj)
+
+        def work() -> Outcome:
+            ground = bodies(substrates)
+            solid, name = None, ""
+            for substrate in substrates:
+                solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
+            wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges)
+            wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)))
+            kind = "patches" if isinstance(wall, PatchWall) else wall.kind
+            return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", kind)))
+
+        return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         source, faces = source_of(obj)
         substrate = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         fixtures = [fingerprint(fixture) for fixture in obj.Fixtures]
         return [shape_fingerprint(global_shape(source)), *substrate, " ".join((*faces, *_start_edges(obj))), *fixtures]
-
-
-def _solid(substrate: Any) -> Any:
-    """A mesh as a body, or a shape, in the coordinates of the document."""
-    return global_shape(substrate) if getattr(substrate, "Mesh", None) is None else body_of(substrate)
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:

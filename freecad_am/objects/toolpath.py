@@ -21,8 +21,10 @@ from ..core.strategies import developable, revolution, surface, surface_directio
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
 from .developable_feature import DevelopableFeature
-from .stage import Link, Outcome, Section, Stage, stage_of
+from .stage import Link, Outcome, Section, Stage, Work, stage_of
 from .surface_feature import SurfaceFeature
+
+STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
 
 
 class Toolpath(Stage):
@@ -41,22 +43,25 @@ class Toolpath(Stage):
         ("Length", "App::PropertyLength", "Length of all beads."),
     )
 
-    def compute(self, obj: Any) -> Outcome:
+    def prepare(self, obj: Any) -> Work:
         linked = self.linked(obj)
         feature, cell = linked["Feature"], linked["Cell"]
         shape = stage_of(feature)
         assert shape is not None
         carried = None if cell is None else cell.Proxy.value(cell)
         family = family_of(shape)
-        toolpath = planned(
-            shape.value(feature), shape.parameters(feature, family), shape.parameters(feature, BuildDirectionParameters),
-            self.parameters(obj, ProcessParameters), carried,
-        )
-        figures = (
-            ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
-            ("Length", toolpath.length),
-        )
-        return Outcome(toolpath, toolpath.issues, figures)
+        wall, strategy = shape.value(feature), shape.parameters(feature, family)
+        build, process = shape.parameters(feature, BuildDirectionParameters), self.parameters(obj, ProcessParameters)
+
+        def work() -> Outcome:
+            toolpath = planned(wall, strategy, build, process, carried)
+            figures = (
+                ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
+                ("Length", toolpath.length),
+            )
+            return Outcome(toolpath, toolpath.issues, figures)
+
+        return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         model = self.parameters(obj, ProcessParameters).bead_model
@@ -75,6 +80,11 @@ def planned(
     build: BuildDirectionParameters, process: ProcessParameters, cell: CellParameters | None,
 ) -> CoreToolpath:
     """The toolpath of a wall or of solids, the result of a feature, cut by the strategy of its family."""
+    if process.bead_model == "none" and process.wire.feed_mode != "constant":
+        raise InputError(
+            "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model the travel speed does not vary, and the wire "
+            "has nothing to follow; use constant, or a process.bead_model"
+        )
     if isinstance(strategy, DevelopableParameters):
         return _of_solids(wall, strategy, build, process, cell)
     if process.bead_model != "none":
@@ -83,13 +93,19 @@ def planned(
         )
     if isinstance(strategy, SurfaceParameters):
         family = wall_fronts if isinstance(wall, PatchWall) else surface
-        return _kept_clear(family.plan(wall, strategy, build, process), wall, build, cell)
+        made = family.plan(wall, strategy, build, process, _share)
+        progress.report(STRATEGY, "keeping the nozzle clear")
+        return _kept_clear(made, wall, build, cell)
     toolpath = revolution.plan(
         wall, strategy, build, process, NozzleParameters() if cell is None else cell.nozzle,
         0.0 if cell is None else cell.platform_diameter,
-        np.eye(4) if cell is not None and cell.mount == "part" else None,
+        np.eye(4) if cell is not None and cell.mount == "part" else None, _share,
     )
     return _kept_clear(toolpath, wall, build, cell)
+
+
+def _share(fraction: float, text: str) -> None:
+    progress.report(STRATEGY * fraction, text)
 
 
 def _of_solids(
@@ -98,9 +114,10 @@ def _of_solids(
 ) -> CoreToolpath:
     """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
     model = None if process.bead_model == "none" else bead_table.load(process.bead_model)
-    toolpath = developable.plan(solids, strategy, build, process, model, progress.report)
+    toolpath = developable.plan(solids, strategy, build, process, model, _share)
     if build.clearance == "none":
         return toolpath
+    progress.report(STRATEGY, "keeping the nozzle clear")
     nozzle = NozzleParameters() if cell is None else cell.nozzle
     return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, developable.without_axis_limits(build))
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a user's own machine files are kept: RoboticAM/machines in FreeCAD's folder of user data."""
+"""Where a user's own machine files are kept: RoboticAM/machines in FreeCAD's folder of user data, and, for the window, the
+folder of the preferences."""
 
 from __future__ import annotations
 
@@ -7,16 +8,39 @@ import os
 
 import FreeCAD as App
 
+from ..core.issues import InputError
+from ..core.kinematics import machine
+from . import preferences
+
 FOLDER = os.path.join("RoboticAM", "machines")
 
 
 def folders() -> tuple[str, ...]:
     """Folders with the user's machine files, those that exist."""
+    own = os.path.join(App.getUserAppDataDir(), FOLDER)
+    return tuple(folder for folder in (own, preferences.machine_folder()) if preferences.existing(folder))
+
+
+def save(name: str, text: str) -> str:
+    """Write the text of a machine file as that of a machine of this id; the path. It is there whole or not at all.
+
+    Raises InputError NOT_WRITTEN where it cannot be written, or where there is a machine of that id already.
+    """
     folder = os.path.join(App.getUserAppDataDir(), FOLDER)
-    return (folder,) if os.path.isdir(folder) else ()
+    path = os.path.join(folder, f"{name}.json")
+    if os.path.exists(path) or (machine.BUILT_IN / f"{name}.json").exists():
+        raise InputError("NOT_WRITTEN", "id", f"there is a machine {name!r} already; choose another name")
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with open(f"{path}.new", "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(f"{path}.new", path)
+    except OSError as error:
+        raise InputError("NOT_WRITTEN", path, f"it cannot be written: {error.strerror or error}") from None
+    return path
 
 
-def file_of(machine: str) -> str | None:
+def file_of(name: str) -> str | None:
     """The user's file of a machine given by its id or by a path; None for a built-in or unknown one."""
-    candidates = [machine, *(os.path.join(folder, f"{machine}.json") for folder in folders())]
+    candidates = [name, *(os.path.join(folder, f"{name}.json") for folder in folders())]
     return next((path for path in candidates if os.path.isfile(path)), None)

@@ -7,7 +7,6 @@ What is written, what must be set on the controller and what was confirmed where
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -24,21 +23,24 @@ from ..core.program import (
     Moves,
     Program,
     Wait,
+    WaitBelow,
     WaitInput,
 )
 from . import fanuc_listing as text
 from . import fanuc_numbers as numbers
 from .fanuc_read import read
+from .names import Naming
 from .parts import Piece, Run, grouped, packed
-from .refusals import DEVICES, refuse_incomplete
+from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
 
 __all__ = ["read", "write"]
 
 Array = NDArray[np.float64]
 
+LAST_ANALOGUE = 25  # analogue inputs
+# why the speed of the wire cannot follow that of the torch
+NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
 AXES = 6
-LONGEST_NAME = 36  # 8 on older controllers
-ROOMY_NAME = LONGEST_NAME - 4  # what is proposed leaves room for the digits of the parts
 MOST_LINES = 9999
 
 # Where the robot stands before the program is not known, so the time of the first move cannot be: it goes at a
@@ -46,10 +48,12 @@ MOST_LINES = 9999
 _FIRST_MOVE = "10%"
 
 # words of the listing's own language
-_RESERVED = DEVICES | frozenset(
+_RESERVED = frozenset(
     ("ABORT", "CALL", "DI", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "FOR", "IF", "JMP", "LBL", "MESSAGE", "MONITOR")
     + ("PAUSE", "RUN", "SELECT", "THEN", "WAIT", "WHEN")
 )
+# names of 8 characters at most on older controllers
+NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=36, spare=4, prefix="AM_", reserved=_RESERVED)
 
 
 def write(program: Program) -> dict[str, bytes]:
@@ -59,7 +63,7 @@ def write(program: Program) -> dict[str, bytes]:
     The duration of the very first move is not used.
 
     Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, MOVE_TIME, MOVE_SPEED,
-    ENDLESS_STEP, TURN_NUMBER, NOTHING_TO_WRITE.
+    ENDLESS_STEP, TURN_NUMBER, NO_WIRE_OUTPUT, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -70,11 +74,7 @@ def write(program: Program) -> dict[str, bytes]:
     if len(parts) == 1:
         _refuse_calls_of_own(program, {name})
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
-    digits = max(2, len(str(len(parts))))
-    names = [f"{name}{number:0{digits}d}" for number in range(1, len(parts) + 1)]
-    if len(names[0]) > LONGEST_NAME:
-        why = f"with the {digits} digits of its parts it has more than {LONGEST_NAME} characters"
-        raise _bad_name(program.name, "name", why)
+    names = NAMING.parts(name, len(parts))
     files = {f"{name}.LS": text.listing(name, "Robotic AM", head + remarks + [text.call(part) for part in names], "")}
     for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
         comment = f"part {number} of {len(parts)}"
@@ -85,28 +85,7 @@ def write(program: Program) -> dict[str, bytes]:
 
 def program_name(name: str, where: str) -> str:
     """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
-    upper = name.upper() if name.isascii() else name
-    if not name:
-        raise _bad_name(name, where, "it is empty")
-    if re.search(r"[^A-Z0-9_]", upper):
-        raise _bad_name(name, where, "it may hold only the letters A to Z, digits and underscores")
-    if not upper[0].isalpha():
-        raise _bad_name(name, where, "it must start with a letter")
-    if len(upper) > LONGEST_NAME:
-        raise _bad_name(name, where, f"it has more than {LONGEST_NAME} characters")
-    if upper in _RESERVED:
-        raise _bad_name(name, where, "it is a reserved word")
-    return upper
-
-
-def _bad_name(name: str, where: str, why: str) -> InputError:
-    proposal = re.sub(r"[^A-Z0-9]+", "_", text.plain(name.replace("ß", "ss")).upper()).strip("_")
-    if not proposal or not proposal[0].isalpha() or proposal in _RESERVED:
-        proposal = f"AM_{proposal}".rstrip("_")
-    return InputError(
-        "PROGRAM_NAME", where,
-        f"{name!r} cannot be a program name on the controller: {why}; use {proposal[:ROOMY_NAME]!r}",
-    )
+    return NAMING.checked(name, where)
 
 
 def refuse_setup(motion: str, setup: str) -> None:
@@ -124,9 +103,16 @@ def refuse_setup(motion: str, setup: str) -> None:
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "fanuc", AXES)
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, LAST_ANALOGUE)
     for block in program.blocks:
         if isinstance(block, Call):
             program_name(block.program, "process.between_layers.call")
+        if isinstance(block, WaitBelow) and block.below != round(block.below):
+            raise InputError(
+                "ANALOGUE_INPUT", "process.cooling",
+                f"analogue inputs are whole numbers, not {block.below:.9g}; change below, gain or zero so that it is one",
+            )
     _refuse_endless_steps(program)
 
 
@@ -191,6 +177,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return text.wait(block.seconds)
     if isinstance(block, WaitInput):
         return [f"  WAIT DI[{block.number}]=ON    ;"]
+    if isinstance(block, WaitBelow):
+        return [f"  WAIT AI[{block.number}]<{block.below:.0f}    ;"]
     if isinstance(block, Call):
         return [text.call(block.program.upper())]
     raise TypeError(f"no instruction for {block!r}")

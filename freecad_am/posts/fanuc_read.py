@@ -25,6 +25,7 @@ _MOTION = re.compile(
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
+_COOL = re.compile(r"WAIT AI\[(\d+)(?::[^\]]*)?\]<(-?\d+(?:\.\d*)?)$")
 _HARMLESS = re.compile(r"$|!|//|--eg:|WAIT +\d*\.\d+\(sec\)$|WAIT DI\[\d+(?::[^\]]*)?\]=(?:ON|OFF)$")
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
@@ -66,6 +67,8 @@ class _Run:
     frame: dict[str, str] = field(default_factory=dict)
     output: str = ""
     on: bool = False
+    cooling: tuple[float, float] = (0.0, np.nan)
+    awaited: list[tuple[float, float]] = field(default_factory=list)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -88,12 +91,12 @@ def _moves(run: _Run) -> ReadMoves:
     values = np.array([listing.values[row] for listing, row in run.rows])
     digits = max(listing.digits for listing, _ in run.rows)
     duration, deposit = np.array(run.duration), np.array(run.deposit)
-    speed = np.array(run.speed)
+    speed, awaited = np.array(run.speed), np.array(run.awaited)
     if not cartesian:
-        return ReadMoves(np.radians(values), np.radians(digits), duration, deposit, speed=speed)
+        return ReadMoves(np.radians(values), np.radians(digits), duration, deposit, speed=speed, awaited=awaited)
     return ReadMoves(
         None, 0.0, duration, deposit, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])),
-        position_digits=digits, rotation_digits=float(np.radians(digits)), speed=speed,
+        position_digits=digits, rotation_digits=float(np.radians(digits)), speed=speed, awaited=awaited,
     )
 
 
@@ -172,6 +175,11 @@ def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers
         elif call := _CALL.match(statement):
             if call[1].upper() in listings:
                 _follow(listings[call[1].upper()], listings, run, (*callers, listing.name))
+        elif cool := _COOL.match(statement):
+            if run.on or run.cooling[0]:
+                where = f"{listing.file} line {number}"
+                raise _unreadable(where, "it is waited for an analogue input within a bead, or twice")
+            run.cooling = float(cool[1]), float(cool[2])
         elif frame := _FRAME.match(statement):
             run.frame[frame[1]] = frame[2]
         elif statement == "END" and position == len(listing.instructions) - 1:
@@ -200,6 +208,8 @@ def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> N
     run.duration.append(float(value) * seconds)
     run.speed.append(float(value) if unit == "mm/sec" else np.nan)
     run.deposit.append(run.on)
+    run.awaited.append(run.cooling)
+    run.cooling = (0.0, np.nan)
 
 
 def _unreadable(where: str, why: str) -> InputError:

@@ -27,21 +27,24 @@ from ..core.program import (
     LayerStart,
     Program,
     Wait,
+    WaitBelow,
     WaitInput,
 )
 from . import nc_numbers as numbers
+from . import nc_parts as common
 from .linuxcnc_read import read
-from .nc_parts import CALL, bad_name, part_names, plain, refuse_bead, refuse_table, refuse_words, wrapped
+from .names import Naming
 from .parts import Piece, Run, grouped, packed
-from .refusals import DEVICES
+from .refusals import refuse_cooling
 
 __all__ = ["read", "write"]
 
 Array = NDArray[np.float64]
 
-LONGEST_NAME = 30
+NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9
-# pins motion.digital-out and -in, counted from 0 there
+NO_WIRE = ""  # the speed of the wire can follow that of the torch
+# pins motion.digital-out, -in and analog-out, counted from 0 there
 LAST_PIN = 64
 # the work offset that this program sets to zero, for moves of the axes themselves
 MACHINE_OFFSET = "G59.3"
@@ -62,21 +65,21 @@ def write(program: Program) -> dict[str, bytes]:
     """The files of a program, name -> content; the same bytes for the same program.
 
     One file name.ngc where its points fit, else name.ngc calls the subs name01.ngc, name02.ngc and so on, each with whole
-    beads.
+    beads; a bead with more points has a part of its own.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME, MOVE_TIME, MOVE_SPEED,
-    NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, DEPOSIT_WORD, BEAD_TOO_LONG, UNREACHABLE,
+    NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, DEPOSIT_WORD, WIRE_OUTPUT, UNREACHABLE,
     NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in wrapped(words)]
+    remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
     groups = list(grouped(program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, refuse_bead)
+    parts = packed(groups, program.max_points, _NO_END, common.whole)
     if len(parts) == 1:
         return {f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])}
-    names = part_names(name, len(parts), LONGEST_NAME)
-    _refuse_calls_of_own(program, {name, *names})
+    names = NAMING.parts(name, len(parts))
+    common.refuse_calls_of_own(program, {name, *names}, program_name)
     files = {f"{name}.ngc": _file([*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         inside = [_remark(f"part {number} of {len(parts)}"), *_modes(program), *_lines(program, pieces)]
@@ -86,39 +89,20 @@ def write(program: Program) -> dict[str, bytes]:
 
 def program_name(name: str, where: str) -> str:
     """The name of file and sub, in lower case as LinuxCNC looks for it. Raises InputError PROGRAM_NAME, proposing one."""
-    lower = name.lower() if name.isascii() else name
-    if not name:
-        raise _bad_name(name, where, "it is empty")
-    if re.search(r"[^a-z0-9_]", lower):
-        raise _bad_name(name, where, "it may hold only letters, digits and underscores")
-    if not lower[0].isalpha():
-        raise _bad_name(name, where, "it must start with a letter")
-    if len(lower) > LONGEST_NAME:
-        raise _bad_name(name, where, f"it has more than {LONGEST_NAME} characters")
-    if lower.upper() in DEVICES:
-        raise _bad_name(name, where, "it is a reserved word")
-    return lower
-
-
-def _bad_name(name: str, where: str, why: str) -> InputError:
-    proposal = re.sub(r"[^a-z0-9]+", "_", plain(name).lower()).strip("_")
-    if not proposal or not proposal[0].isalpha() or proposal.upper() in DEVICES:
-        proposal = f"am_{proposal}".rstrip("_")
-    return bad_name(name, where, why, proposal[: LONGEST_NAME - 3].rstrip("_"))
+    return NAMING.checked(name, where)
 
 
 def refuse_setup(motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
-    if setup != "rotary-table":
-        raise InputError(
-            "UNSUPPORTED_SETUP", "cell.setup", f"the post linuxcnc cannot write {setup} ({motion} motion), only rotary-table"
-        )
+    common.refuse_setup("linuxcnc", motion, setup)
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    refuse_table(program, "linuxcnc")
-    refuse_words(program, _TAKEN)
+    common.refuse_table(program, "linuxcnc")
+    common.refuse_words(program, _TAKEN)
+    common.refuse_wire_output(program, LAST_PIN)
+    refuse_cooling(program, LAST_PIN)
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
@@ -130,7 +114,7 @@ def _refuse(program: Program) -> None:
                 "DEPOSIT_INPUT", "process.between_layers.input",
                 f"digital inputs are 1 to {LAST_PIN} (motion.digital-in-00 is number 1), not {block.number}",
             )
-    _refuse_calls_of_own(program, {program_name(program.name, "name")})
+    common.refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     if program.motion == "cartesian":
         _refuse_cartesian(program)
 
@@ -147,19 +131,20 @@ def _refuse_cartesian(program: Program) -> None:
             f"work offset {program.user_frame} is not there for the part; use 1 to {len(OFFSETS)} (G54 to G59.2; the ninth,"
             f" {MACHINE_OFFSET}, is set to zero for moves of the axes)",
         )
-    if program.carried is not None and max(abs(angle) for angle in program.carried[3:5]) > 1e-9:
+    if program.carried is not None:
+        refuse_tilt(program.carried)
+
+
+def refuse_tilt(carried: tuple[float, ...]) -> None:
+    """Raises InputError UNSUPPORTED_FRAME where the program's origin, X Y Z RX RY RZ (mm, rad), leans on the table."""
+    if max(abs(angle) for angle in carried[3:5]) > 1e-9:
+        x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
         raise InputError(
             "UNSUPPORTED_FRAME", "program.origin",
-            "a work offset of LinuxCNC turns about Z alone; use a program origin upright on the table, or `motion: joint`",
+            f"a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {rx:.4g} and RY {ry:.4g} "
+            f"deg; enter an upright origin, as cell.platform: [{x:.6g}, {y:.6g}, {z:.6g}, 0, 0, {rz + 0.0:.6g}], or use "
+            "`motion: joint`",
         )
-
-
-def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
-    for block in program.blocks:
-        if isinstance(block, Call) and program_name(block.program, CALL) in names:
-            raise InputError(
-                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
-            )
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
@@ -200,7 +185,9 @@ def _instructions(program: Program, block: Block) -> list[str]:
     cartesian = program.motion == "cartesian"
     if isinstance(block, DepositOn):
         enter = ["M428", OFFSETS[program.user_frame - 1]] if cartesian else []
-        return [*enter, *(["G4 P0"] if program.dry_run else [_output(program, True), *_dwell(block.lead)])]
+        # at rest: at once
+        wire = [] if block.wire is None else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
+        return [*enter, *(["G4 P0"] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)])]
     if isinstance(block, DepositOff):
         leave = _axes_again(program) if cartesian else []
         return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
@@ -210,8 +197,11 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return _dwell(block.seconds)
     if isinstance(block, WaitInput):
         return [f"M66 P{block.number - 1} L3 Q{LONGEST_WAIT}"]
+    if isinstance(block, WaitBelow):  # of analogue inputs M66 only reads the value, into #5399
+        sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
+        return [sample, f"{loop} while [#5399 GE {numbers.level(block.below)}]", *_dwell(0.1), sample, f"{loop} endwhile"]
     if isinstance(block, Call):
-        return [f"o<{program_name(block.program, CALL)}> call", *_modes(program)]
+        return [f"o<{program_name(block.program, common.CALL)}> call", *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
 
 
@@ -222,12 +212,17 @@ def _output(program: Program, on: bool) -> str:
     return f"M{64 if on else 65} P{program.deposit_output - 1}"
 
 
+def _wire(program: Program) -> str:
+    """Which analogue output and, to be filled in, its value."""
+    return f"E{program.nc.wire_output - 1} Q{{}}"
+
+
 def _dwell(seconds: float) -> list[str]:
-    return [f"G4 P{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
+    return common.dwell("P", seconds)
 
 
 def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
-    return [line for piece in pieces for line in (_motion(program, piece) if isinstance(piece, Run) else piece)]
+    return common.lines_of(pieces, lambda run: _motion(program, run))
 
 
 def _motion(program: Program, run: Run) -> list[str]:
@@ -240,7 +235,9 @@ def _motion(program: Program, run: Run) -> list[str]:
         rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
         values = np.hstack([np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]])
         names = [*"XYZ", *(name for name, turns in zip(names, rotary.tolist(), strict=True) if turns)]
-    return numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
+    blocks = numbers.blocks(numbers.rows(numbers.template(names), values), run.words[part])
+    # queued: it takes effect where the next move begins, and corners are rounded all the same
+    return numbers.told_of_wire(program, moves, blocks, f"M67 {_wire(program)}")
 
 
 def _file(lines: list[str]) -> bytes:

@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass, field
 
 from ..core.program import ReadMoves
-from .nc_read import AXES, TIME, TIP, Track, unreadable
+from .nc_read import AXES, TIME, TIP, Shape, Track, unreadable
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")
@@ -20,8 +20,12 @@ _COMMENT = re.compile(r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|P
 _HARMLESS = re.compile(
     rf"(?:G92\.2|G61(?:\.1)?|G64(?: P(?:{_NUMBER}))?(?: Q(?:{_NUMBER}))?|G4 P(?:{_NUMBER})|M66 P\d+ L3 Q\d+|G43 H\d+)$"
 )
+_SAMPLE = re.compile(r"M66 E(\d+) L0$")
+_LOOP = re.compile(rf"O<(\w+)> (?:WHILE \[#5399 GE ({_NUMBER})\]|ENDWHILE)$")
+_DWELL = re.compile(rf"G4 P(?:{_NUMBER})$")
 _ZERO = re.compile(r"G10 L2 P9( [XYZABCR]0)+$")
 _OUTPUT = re.compile(r"M(6[2-5]) P(\d+)$|M(\d+)$")
+_WIRE = re.compile(rf"M6([78]) E(\d+) Q({_NUMBER})$")
 _OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"}
 _FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
 _PLAIN = {"G17", "G40", "G49", "G80"}
@@ -43,6 +47,9 @@ class _State:
     output: str = ""
     on_word: str = ""
     off_word: str = ""
+    sampled: str = ""
+    shape: Shape | None = None
+    loop: tuple[str, str] = ("", "")
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -63,8 +70,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise unreadable("program", f"there are {len(main)} programs that are no subs, expected one")
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
-    if state.track.on:
-        raise unreadable("program", "it ends with the deposit on")
+    if state.track.on or state.loop[0]:
+        raise unreadable("program", "it ends with the deposit on, or within a loop")
     return state.track.moves()
 
 
@@ -85,16 +92,47 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
     if name in callers:
         raise unreadable(name, "it calls itself")
     for where, text in lines:
+        words = None if state.shape is None or state.loop[0] else state.shape.words(text)
+        if words is not None:
+            state.linear, state.sampled = True, ""
+            _move(where, words, state)
+            continue
+        if _cooled(where, text, state):
+            continue
         if sub := _SUB.match(text):
             if sub[2] != "CALL":
                 raise unreadable(where, f"{text!r} is not understood here")
             _call(where, sub[1], state, (*callers, name))
         elif _ZERO.match(text):
             state.zeroed = {word[0] for word in text.split()[3:]}
+        elif wire := _WIRE.match(text):
+            if wire[1] == "8" and state.track.on:
+                raise unreadable(where, "the analogue output stops the machine within a bead")
+            state.track.set_wire(wire[2], wire[3], where)
         elif output := _OUTPUT.match(text):
             _switch(where, text, output, state)
         elif not _HARMLESS.match(text):
             _line(where, text, state)
+
+
+def _cooled(where: str, text: str, state: _State) -> bool:
+    """Whether a line is part of a loop that goes round until an analogue input, read anew each time, is below a value."""
+    sampled, state.sampled = state.sampled, ""
+    loop = _LOOP.match(text)
+    if sample := _SAMPLE.match(text):
+        if state.loop[1] not in ("", sample[1]):
+            raise unreadable(where, "another analogue input is read than the one that is waited for")
+        state.sampled = sample[1]
+    elif loop and loop[2] and sampled and not state.loop[0]:
+        state.loop = loop[1], sampled
+        state.track.wait_below(str(int(sampled) + 1), loop[2], where)
+    elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
+        state.loop = "", ""
+    elif loop or (state.loop[0] and not _DWELL.match(text)):
+        raise unreadable(where, f"{text!r} in or about a loop that waits for an analogue input")
+    else:
+        return bool(state.loop[0])
+    return True
 
 
 def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> None:
@@ -126,6 +164,7 @@ def _line(where: str, text: str, state: _State) -> None:
             raise unreadable(where, f"{token!r} is not understood")
     if words:
         _move(where, words, state)
+        state.shape = Shape.of(text)
 
 
 def _move(where: str, words: dict[str, str], state: _State) -> None:

@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 
 # of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
 DECIMALS, VECTOR_DECIMALS = 5, 6
-# significant digits of a feed, and the range every controller takes
-FEED_DIGITS = 7
+# significant digits of a feed, and the range every controller takes; digits of what tells the speed of the wire
+FEED_DIGITS, WIRE_DIGITS = 7, 5
 SLOWEST, FASTEST = 0.001, 999_999.0
 # mm: where the linear axes go less than this, their speed is no measure of the time of a move
 SHORTEST_WAY = 0.01
@@ -44,7 +44,35 @@ def template(names: Sequence[str]) -> str:
 
 def feed(value: float) -> str:
     """A feed with its significant digits, never in exponents."""
-    return f"F{value:.{max(FEED_DIGITS - 1 - math.floor(math.log10(value)), 0)}f}"
+    return f"F{_significant(value, FEED_DIGITS)}"
+
+
+def _significant(value: float, digits: int) -> str:
+    return f"{value:.{max(digits - 1 - math.floor(math.log10(value)), 0)}f}"
+
+
+def level(value: float) -> str:
+    """A value of an analogue input, never in exponents."""
+    text = f"{value:.6f}".rstrip("0")
+    return f"{text}0" if text.endswith(".") else text
+
+
+def wire(program: Program, speeds: Sequence[float]) -> list[str]:
+    """Values of the analogue output at speeds of the wire, mm/s."""
+    values = [program.nc.wire_gain * 0.06 * speed for speed in speeds]
+    return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
+
+
+def told_of_wire(program: Program, moves: Moves, lines: Sequence[str], statement: str) -> list[str]:
+    """The lines of a run of moves, the last ones one per move, with the statement that sets the analogue output in front of
+    each move at which its value changes. The first value was told before the run."""
+    if moves.wire is None:
+        return list(lines)
+    values = wire(program, moves.wire.tolist())
+    changed = [value != before for before, value in zip(values, values[1:])]
+    rest = len(lines) - len(values) + 1
+    told = [[statement.format(value)] if new else [] for new, value in zip(changed, values[1:], strict=True)]
+    return [*lines[:rest], *(line for words, move in zip(told, lines[rest:], strict=True) for line in (*words, move))]
 
 
 class Feeds:

@@ -5,22 +5,15 @@ from __future__ import annotations
 
 import re
 import textwrap
-import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from ..core.issues import InputError
-from ..core.program import DEPOSIT, LINEAR, ROTARY, Program
-from . import nc_numbers as numbers
-from .parts import Piece, Run, size
+from ..core.program import DEPOSIT, LINEAR, ROTARY, Call, Program
+from .names import plain
+from .parts import Piece, Run
 from .refusals import refuse_incomplete
 
 CALL = "process.between_layers.call"
-
-
-def plain(text: str) -> str:
-    """The text in ASCII characters that can be printed."""
-    apart = unicodedata.normalize("NFKD", text.replace("ß", "ss")).encode("ascii", "ignore").decode("ascii")
-    return re.sub(r"[^ -~]+", " ", apart)
 
 
 def wrapped(text: str) -> list[str]:
@@ -60,31 +53,43 @@ def refuse_words(program: Program, taken: frozenset[str]) -> None:
         raise InputError("DEPOSIT_WORD", key, f"{word} cannot switch both on and off; give two different words")
 
 
-def refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """A bead that no part can hold. Raises InputError BEAD_TOO_LONG."""
-    moves = next(piece.moves for piece in group if isinstance(piece, Run))
-    points = size(group)[0]
-    raise InputError(
-        "BEAD_TOO_LONG", "program.max_points",
-        f"{numbers.place(moves)} has {points} points with its approach, and going on in another file within a bead would"
-        f" stop the machine while it deposits; use at least {points}",
-    )
-
-
-def part_names(name: str, count: int, longest: int) -> list[str]:
-    """Names of so many parts. Raises InputError PROGRAM_NAME where there is no room for their digits."""
-    digits = max(2, len(str(count)))
-    names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
-    if len(names[0]) > longest:
+def refuse_wire_output(program: Program, last: int) -> None:
+    """Raises InputError WIRE_OUTPUT where the program tells the speed of the wire by an analogue output beyond `last`."""
+    if any(run.wire is not None for run in program.moves) and program.nc.wire_output > last:
         raise InputError(
-            "PROGRAM_NAME", "name",
-            f"{name!r} has more than {longest} characters with the {digits} digits of its parts; use"
-            f" {name[: longest - digits]!r}, or a larger program.max_points",
+            "WIRE_OUTPUT", "program.nc.wire_output",
+            f"the controller's program sets analogue outputs 1 to {last}, not {program.nc.wire_output}; use one of these",
         )
-    return names
 
 
-def bad_name(name: str, where: str, why: str, proposal: str) -> InputError:
-    """The error for a name a controller refuses."""
-    message = f"{name!r} cannot be a program's name on the controller: {why}; use {proposal!r}"
-    return InputError("PROGRAM_NAME", where, message)
+def refuse_calls_of_own(program: Program, names: set[str], program_name: Callable[[str, str], str]) -> None:
+    """Raises InputError PROGRAM_NAME where a program called between layers has the name of a part of this one."""
+    for block in program.blocks:
+        if isinstance(block, Call) and program_name(block.program, CALL) in names:
+            raise InputError(
+                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
+            )
+
+
+def refuse_setup(post: str, motion: str, setup: str) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for what is no machine with rotary axes; both motions of these can be said."""
+    if setup != "rotary-table":
+        raise InputError(
+            "UNSUPPORTED_SETUP", "cell.setup", f"the post {post} cannot write {setup} ({motion} motion), only rotary-table"
+        )
+
+
+def whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+    """A bead longer than a part is one by itself: these controllers read files of any length, and going on in another one
+    within a bead would stop the machine while it deposits."""
+    yield group
+
+
+def dwell(address: str, seconds: float) -> list[str]:
+    """Standing still for a time, to 0.001 s; nothing for no time."""
+    return [f"G4 {address}{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
+
+
+def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
+    """The lines of a part; `motion` writes those of a run."""
+    return [line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)]

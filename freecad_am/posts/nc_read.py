@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -18,25 +19,86 @@ Array = NDArray[np.float64]
 # feed as the time of the move; as the speed of the linear axes; as theirs, or that of the rotary axes where these alone
 # move; and as that of the tip in part coordinates
 TIME, SLIDES, AXES, TIP = "time", "slides", "axes", "tip"
+_NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
+_SHAPED = re.compile(rf"([XYZABCF]|[ABC]3(?==))(=?(?:DC\()?)({_NUMBER})(\)?)$")
 _LINEAR, _VECTOR = "XYZ", ("A3", "B3", "C3")
+
+
+class Shape:
+    """What a block with a move looks like but for its numbers: blocks alike, most of a program, are read at once.
+
+    block: its words, one that was understood word by word: G1, with `ahead` or nothing before it, and words with numbers.
+    """
+
+    def __init__(self, block: Sequence[str], ahead: str = "") -> None:
+        words = [_SHAPED.match(word) for word in block if word not in (ahead, "G1")]
+        self.names = [word[1] for word in words if word]
+        self.shorter = {word[1] for word in words if word and word[2] == "=DC("}
+        parts = [f" {word[1]}{re.escape(word[2])}({_NUMBER}){re.escape(word[4])}" for word in words if word]
+        self._pattern = re.compile((f"(?:{ahead} )?G1" if ahead else "G1") + "".join(parts))
+
+    @staticmethod
+    def of(text: str, ahead: str = "") -> Shape | None:
+        """The shape of a block, None where it is not a move in one piece."""
+        block = text.split()
+        rest = block[1:] if block[0] == ahead else block
+        whole = len(rest) > 1 and rest[0] == "G1" and all(_SHAPED.match(word) for word in rest[1:])
+        return Shape(block, ahead) if whole else None
+
+    def words(self, text: str) -> dict[str, str] | None:
+        """The words of a block of this shape by their names, None of another one."""
+        found = self._pattern.fullmatch(text)
+        return dict(zip(self.names, found.groups())) if found else None
 
 
 @dataclass
 class Track:
     """The moves found so far, and whether the deposit is on. axes: names of the words of a move in axes, in their order;
-    shorter: those that were sent the shorter way."""
+    shorter: those that were sent the shorter way. output, wire: the analogue output, and its value as it stands there."""
 
     rows: list[tuple[str, dict[str, str]]] = field(default_factory=list)
     deposit: list[bool] = field(default_factory=list)
     axes: tuple[str, ...] = ()
     on: bool = False
     shorter: set[str] = field(default_factory=set)
+    output: str = ""
+    wire: str = ""
+    wires: list[str] = field(default_factory=list)
+    cooling: tuple[str, str] = ("0", "nan")
+    awaited: list[tuple[int, str, str]] = field(default_factory=list)
+    known: set[tuple[str, tuple[str, ...]]] = field(default_factory=set)
+
+    def wait_below(self, number: str, value: str, where: str) -> None:
+        """Wait before the next move until an analogue input is below a value. Raises InputError UNREADABLE_PROGRAM."""
+        if self.on or self.cooling[0] != "0":
+            raise unreadable(where, "it is waited for an analogue input within a bead, or twice")
+        self.cooling = number, value
+
+    def set_wire(self, output: str, value: str, where: str) -> None:
+        """The analogue output from the next move on. Raises InputError UNREADABLE_PROGRAM for a second one."""
+        if self.output not in ("", output):
+            raise unreadable(where, "a second analogue output is set")
+        self.output, self.wire = output, value
 
     def add(self, sort: str, words: dict[str, str], where: str) -> None:
         """A move with these words, F among them. Raises InputError UNREADABLE_PROGRAM."""
         if float(words.get("F", "0")) <= 0.0:
             raise unreadable(where, "a move without a feed of its own")
-        names = tuple(name for name in words if name != "F")
+        told = sort, tuple(words)
+        if told not in self.known:
+            self._check_words(sort, tuple(name for name in words if name != "F"), where)
+            self.known.add(told)
+        if sort in (SLIDES, AXES) and (not self.rows or self.rows[-1][0] == TIP):
+            raise unreadable(where, "the way of the move, and so its time, is not known")
+        self.rows.append((sort, words))
+        self.deposit.append(self.on)
+        self.wires.append(self.wire)
+        if self.cooling[0] != "0":
+            self.awaited.append((len(self.rows) - 1, *self.cooling))
+            self.cooling = ("0", "nan")
+
+    def _check_words(self, sort: str, names: tuple[str, ...], where: str) -> None:
+        """Whether these words tell a move; the first one tells the axes."""
         if sort == TIP:
             if not set(_LINEAR) <= set(names) or not self.axes:
                 raise unreadable(where, "a position needs X Y Z, and a move in axes before it")
@@ -44,10 +106,6 @@ class Track:
             self.axes = names
         elif names != self.axes:
             raise unreadable(where, "the move is not told in the axes of the first one")
-        if sort in (SLIDES, AXES) and (not self.rows or self.rows[-1][0] == TIP):
-            raise unreadable(where, "the way of the move, and so its time, is not known")
-        self.rows.append((sort, words))
-        self.deposit.append(self.on)
 
     def moves(self) -> ReadMoves:
         """All of them. Raises InputError UNREADABLE_PROGRAM when there are none."""
@@ -64,6 +122,7 @@ class Track:
         turning, sliding = (float(np.max(digits[side], initial=0.0)) for side in (~linear, linear))
         shorter = np.array([name in self.shorter for name in self.axes])
         read = {"linear_digits": sliding, "duration_digits": duration_digits, "shorter_way": shorter}
+        read |= self._wire() | self._cooling()
         deposit = np.array(self.deposit)
         if not tips.any():
             return ReadMoves(joints, math.radians(turning), duration, deposit, **read)  # type: ignore[arg-type]
@@ -79,6 +138,17 @@ class Track:
             direction_digits=float(direction_digits.max()), **read,  # type: ignore[arg-type]
         )
 
+    def _cooling(self) -> dict[str, object]:
+        found = np.tile((0.0, np.nan), (len(self.rows), 1))
+        for row, number, value in self.awaited:
+            found[row] = float(number), float(value)
+        return {"awaited": found} if self.awaited else {}
+
+    def _wire(self) -> dict[str, object]:
+        if not self.output:
+            return {}
+        return {"wire": np.array([float(text or "nan") for text in self.wires]), "wire_digits": _half_digits(self.wires)}
+
     def _values(self, names: Sequence[str], told: NDArray[np.bool_], each: bool = False) -> tuple[Array, Array]:
         """Values (n, names) of the rows told, else NaN, and half of the last digit of each name, or of each value."""
         values = np.full(told.shape, np.nan)
@@ -87,8 +157,15 @@ class Track:
             rows = np.flatnonzero(told[:, column])
             texts = [self.rows[row][1][name] for row in rows.tolist()]
             values[rows, column] = np.array(texts, dtype=np.float64)
-            halves[rows, column] = [0.5 * 10.0 ** -len(text.partition(".")[2]) for text in texts]
+            halves[rows, column] = _half_digits(texts)
         return values, halves if each else halves.max(axis=0)
+
+
+def _half_digits(texts: Sequence[str]) -> Array:
+    """(n,) half of the last digit of each number."""
+    decimals = np.array([len(text.partition(".")[2]) for text in texts], dtype=np.intp)
+    half: Array = np.array([0.5 * 10.0**-count for count in range(int(decimals.max(initial=0)) + 1)])[decimals]
+    return half
 
 
 def _first(mask: NDArray[np.bool_]) -> int:

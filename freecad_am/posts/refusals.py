@@ -6,10 +6,34 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.issues import InputError
-from ..core.program import Program
+from ..core.program import Program, WaitBelow
 
-# names that files cannot have on the computers programs pass through
-DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))))
+
+def refuse_wire(program: Program, no_wire: str) -> None:
+    """Raises InputError NO_WIRE_OUTPUT, for the reason `no_wire`, where the program tells the speed of the wire."""
+    if any(run.wire is not None for run in program.moves):
+        raise wire_refused(no_wire)
+
+
+def wire_refused(no_wire: str) -> InputError:
+    """The error for a controller that cannot be told the speed of the wire along a bead."""
+    return InputError("NO_WIRE_OUTPUT", "process.wire.feed_mode", f"{no_wire}; use constant, or another controller")
+
+
+def refuse_cooling(program: Program, last: int, why: str = "") -> None:
+    """Raises InputError where the program waits for a temperature: NO_ANALOGUE_INPUT for the reason `why`, or ANALOGUE_INPUT
+    for an input that is none of 1 to `last`."""
+    waits = [block for block in program.blocks if isinstance(block, WaitBelow)]
+    if waits and why:
+        raise InputError(
+            "NO_ANALOGUE_INPUT", "process.cooling.below", f"{why}; use process.between_layers.input, strategy.wait, or "
+            "another controller",
+        )
+    if any(block.number > last for block in waits):
+        raise InputError(
+            "ANALOGUE_INPUT", "process.cooling.input",
+            f"the controller's program reads analogue inputs 1 to {last}, not {waits[0].number}; use one of these",
+        )
 
 
 def refuse_incomplete(program: Program, post: str, axes: int) -> None:

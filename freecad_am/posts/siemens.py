@@ -10,7 +10,6 @@ and what was confirmed where: docs/posts/siemens.md.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -27,33 +26,39 @@ from ..core.program import (
     LayerStart,
     Program,
     Wait,
+    WaitBelow,
     WaitInput,
 )
 from . import nc_numbers as numbers
-from .nc_parts import CALL, bad_name, part_names, plain, refuse_bead, refuse_table, refuse_words, wrapped
+from . import nc_parts as common
+from .names import Naming
 from .parts import Piece, Run, grouped, packed
-from .refusals import DEVICES
+from .refusals import refuse_cooling
 from .siemens_read import read
 
 __all__ = ["read", "write"]
 
 Array = NDArray[np.float64]
 
-LONGEST_NAME = 24
 _NO_END = 10**9
+NO_WIRE = ""  # the speed of the wire can follow that of the torch
 # an endless axis goes the shorter way
 LARGEST_TURN = 180.0 - 0.001
-# address extensions of H words, and numbers of inputs the controller reads itself
-LAST_OUTPUT, LAST_INPUT = 99, 32
+# address extensions of H words, numbers of inputs the controller reads itself, and of analogue inputs and outputs
+LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
 
 # M words that stop or end a program, change the tool or set the spindle
 _TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
 # words of the language that begin like a name; what else it knows is found by trying it on the controller
-_RESERVED = DEVICES | frozenset(
+_RESERVED = frozenset(
     ("AND", "ATRANS", "AROT", "BRISK", "CASE", "COMPCAD", "COMPCURV", "COMPOF", "COMPON", "DEF", "DIV", "ELSE", "ENDFOR")
     + ("ENDIF", "ENDLOOP", "ENDWHILE", "EXTERN", "FALSE", "FFWOF", "FFWON", "FGROUP", "FOR", "GOTO", "GOTOB", "GOTOF", "IF")
     + ("LOOP", "MCALL", "MOD", "MSG", "NOT", "OR", "ORIMKS", "ORIVECT", "ORIWKS", "PROC", "REPEAT", "RET", "ROT", "SET")
     + ("SETMS", "SOFT", "STOPRE", "SUPA", "TO", "TRAFOOF", "TRANS", "TRAORI", "TRUE", "UNTIL", "WHILE", "XOR")
+)
+NAMING = Naming(
+    str.upper, "[A-Z]{2}|_[A-Z]", "two letters, or an underscore and a letter", longest=24, spare=3, prefix="AM_",
+    reserved=_RESERVED,
 )
 
 
@@ -61,20 +66,20 @@ def write(program: Program) -> dict[str, bytes]:
     """The files of a program, name -> content; the same bytes for the same program.
 
     One main program NAME.MPF where its points fit, else NAME.MPF calls NAME01.SPF, NAME02.SPF and so on, each with whole
-    beads.
+    beads; a bead with more points has a part of its own.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_STEP, MOVE_TIME, MOVE_SPEED,
-    NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, BEAD_TOO_LONG, UNREACHABLE, NOTHING_TO_WRITE.
+    NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [f"; {line}" for words in (*program.remarks, *_own_remarks(program)) for line in wrapped(words)]
+    remarks = [f"; {line}" for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
     groups = list(grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, refuse_bead)
+    parts = packed(groups, program.max_points, _NO_END, common.whole)
     if len(parts) == 1:
         return {f"{name}.MPF": _file([*remarks, *_HEAD, *_modes(program), *_lines(program, parts[0]), "M30"])}
-    names = part_names(name, len(parts), LONGEST_NAME)
-    _refuse_calls_of_own(program, {name, *names})
+    names = NAMING.parts(name, len(parts))
+    common.refuse_calls_of_own(program, {name, *names}, program_name)
     files = {f"{name}.MPF": _file([*remarks, *_HEAD, *names, "M30"])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         lines = [f"; part {number} of {len(parts)}", *_HEAD, *_modes(program), *_lines(program, pieces), "M17"]
@@ -84,61 +89,34 @@ def write(program: Program) -> dict[str, bytes]:
 
 def program_name(name: str, where: str) -> str:
     """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
-    upper = name.upper() if name.isascii() else name
-    if not name:
-        raise _bad_name(name, where, "it is empty")
-    if re.search(r"[^A-Z0-9_]", upper):
-        raise _bad_name(name, where, "it may hold only the letters A to Z, digits and underscores")
-    if not re.match(r"[A-Z]{2}|_[A-Z]", upper):
-        raise _bad_name(name, where, "it must start with two letters, or an underscore and a letter")
-    if len(upper) > LONGEST_NAME:
-        raise _bad_name(name, where, f"it has more than {LONGEST_NAME} characters")
-    if upper in _RESERVED:
-        raise _bad_name(name, where, "it is a reserved word")
-    return upper
-
-
-def _bad_name(name: str, where: str, why: str) -> InputError:
-    proposal = re.sub(r"[^A-Z0-9]+", "_", plain(name).upper()).strip("_")
-    if not re.match(r"[A-Z]{2}", proposal) or proposal in _RESERVED:
-        proposal = f"AM_{proposal}".rstrip("_")
-    return bad_name(name, where, why, proposal[: LONGEST_NAME - 3].rstrip("_"))
+    return NAMING.checked(name, where)
 
 
 def refuse_setup(motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
-    if setup != "rotary-table":
-        raise InputError(
-            "UNSUPPORTED_SETUP", "cell.setup", f"the post siemens cannot write {setup} ({motion} motion), only rotary-table"
-        )
+    common.refuse_setup("siemens", motion, setup)
 
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    refuse_table(program, "siemens")
+    common.refuse_table(program, "siemens")
+    common.refuse_wire_output(program, LAST_ANALOGUE)
+    refuse_cooling(program, LAST_ANALOGUE)
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_OUTPUT:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
             f"H words have address extensions to {LAST_OUTPUT}, not {program.deposit_output}; use another output, or"
             " program.nc.deposit_on and deposit_off",
         )
-    refuse_words(program, _TAKEN)
+    common.refuse_words(program, _TAKEN)
     for block in program.blocks:
         if isinstance(block, WaitInput) and block.number > LAST_INPUT:
             raise InputError(
                 "DEPOSIT_INPUT", "process.between_layers.input",
                 f"the controller's program reads inputs 1 to {LAST_INPUT}, not {block.number}; use one of these",
             )
-    _refuse_calls_of_own(program, {program_name(program.name, "name")})
+    common.refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     _refuse_endless_steps(program)
-
-
-def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
-    for block in program.blocks:
-        if isinstance(block, Call) and program_name(block.program, CALL) in names:
-            raise InputError(
-                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
-            )
 
 
 def _refuse_endless_steps(program: Program) -> None:
@@ -181,6 +159,7 @@ def _rpy(bryant: Sequence[float]) -> tuple[str, ...]:
 
 
 _HEAD = ["G17 G710 G40 G90"]
+_WIRE = "$A_OUTA[{}]={}"
 
 
 def _modes(program: Program) -> list[str]:
@@ -193,7 +172,8 @@ def _modes(program: Program) -> list[str]:
 def _instructions(program: Program, block: Block) -> list[str]:
     cartesian = program.motion == "cartesian"
     if isinstance(block, DepositOn):
-        on = [] if program.dry_run else [_output(program, True), *_dwell(block.lead)]
+        wire = [] if block.wire is None else [_WIRE.format(program.nc.wire_output, *numbers.wire(program, [block.wire]))]
+        on = [] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)]
         return [*([_offset(program.user_frame), "TRAORI", "ORIWKS ORIVECT"] if cartesian else []), *on]
     if isinstance(block, DepositOff):
         off = [] if program.dry_run else [*_dwell(block.lead), _output(program, False)]
@@ -204,8 +184,10 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return _dwell(block.seconds)
     if isinstance(block, WaitInput):
         return [f"WHILE $A_IN[{block.number}]==0", *_dwell(0.1), "ENDWHILE"]
+    if isinstance(block, WaitBelow):
+        return [f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}", *_dwell(0.1), "ENDWHILE"]
     if isinstance(block, Call):
-        return [program_name(block.program, CALL), *_HEAD, *_modes(program)]
+        return [program_name(block.program, common.CALL), *_HEAD, *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
 
 
@@ -221,11 +203,11 @@ def _offset(number: int) -> str:
 
 
 def _dwell(seconds: float) -> list[str]:
-    return [f"G4 F{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
+    return common.dwell("F", seconds)
 
 
 def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
-    return [line for piece in pieces for line in (_motion(program, piece) if isinstance(piece, Run) else piece)]
+    return common.lines_of(pieces, lambda run: _motion(program, run))
 
 
 def _motion(program: Program, run: Run) -> list[str]:
@@ -243,11 +225,13 @@ def _motion(program: Program, run: Run) -> list[str]:
     blocks = numbers.blocks(words, run.words[part])
     if run.stop == len(moves):
         blocks[-1] = f"G9 {blocks[-1]}"
-    # the time of one block would be that of all those compressed into one
+    # a synchronized action of one block: it takes effect where that begins, without a stop
+    told = numbers.told_of_wire(program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}"))
+    # the time of one block would be that of all those compressed into one, and so would the wire's speed
     by_speed = all(feed.startswith(numbers.PATH) for feed in run.words[part])
-    if program.nc.compress and by_speed:
+    if program.nc.compress and by_speed and len(told) == len(blocks):
         return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]
-    return blocks
+    return told
 
 
 def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:

@@ -11,19 +11,23 @@ import re
 from dataclasses import dataclass, field
 
 from ..core.program import ReadMoves
-from .nc_read import SLIDES, TIME, TIP, Track, unreadable
+from .nc_read import SLIDES, TIME, TIP, Shape, Track, unreadable
 
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])=?({_NUMBER})$|([ABC]3)=({_NUMBER})$")
 _SHORTER = re.compile(rf"([ABC])=DC\(({_NUMBER})\)$")
+_NUMBERED = re.compile(r"N(\d+)(?: +|$)")
 _NAME = re.compile(r"(?:[A-Z]{2}|_[A-Z])[A-Z0-9_]*$")
 _OUTPUT = re.compile(r"\$A_OUT\[(\d+)\]=([01])$|H(\d+)=(\d+)$|M(\d+)$")
+_WIRE = re.compile(rf"(DO )?\$A_OUTA\[(\d+)\]=({_NUMBER})$")
 _OFFSET = re.compile(r"G5(?:0[05-9]|[4-7]|[1-9]\d)$")
+_TIP_WORDS = {*"XYZF", "A3", "B3", "C3"}
 _FEEDS = {"G93", "G94"}
 _UNITS = {"G710", "G90"}
 _COMPRESS = {"COMPCAD": True, "COMPCURV": True, "COMPON": True, "COMPOF": False}
 _HARMLESS = re.compile(r"(?:G17|G40|G64\d?|G9|G60|D\d+|SOFT|BRISK|FFWON|FFWOF|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
 _WAIT = re.compile(r"WHILE \$A_IN\[\d+\]==0$")
+_COOL = re.compile(rf"WHILE \$A_INA\[(\d+)\]>=({_NUMBER})$")
 _DWELL = re.compile(rf"G4 F(?:{_NUMBER})$")
 
 
@@ -42,6 +46,7 @@ class _State:
     group: bool = False
     compress: bool = False
     waiting: bool = False
+    shape: Shape | None = None
     output: str = ""
     on_word: str = ""
     off_word: str = ""
@@ -70,12 +75,13 @@ def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
         text = line.partition(";")[0].strip()
         where = f"{file} line {number}"
-        if numbered := re.match(r"N(\d+)(?: +|$)", text):
+        if numbered := _NUMBERED.match(text):
             if int(numbered[1]) <= last:
                 raise unreadable(where, "block numbers do not rise")
             last, text = int(numbered[1]), text[numbered.end() :]
         if text:
-            blocks.append((where, " ".join(text.split())))
+            tidy = text.isprintable() and "  " not in text
+            blocks.append((where, text if tidy else " ".join(text.split())))
     return blocks
 
 
@@ -86,13 +92,21 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
     if not blocks or blocks[-1][1] != end or name in callers:
         raise unreadable(name, f"it does not end with {end}, or calls itself")
     for where, text in blocks[:-1]:
-        if state.waiting:
+        words = None if state.shape is None or state.waiting else state.shape.words(text)
+        if state.shape is not None and words is not None:
+            state.linear = True
+            state.track.shorter |= state.shape.shorter
+            _move(where, words, state)
+        elif state.waiting:
             if text == "ENDWHILE":
                 state.waiting = False
             elif not _DWELL.match(text):
                 raise unreadable(where, f"{text!r} in a loop that waits for an input")
         elif _WAIT.match(text):
             state.waiting = True
+        elif cool := _COOL.match(text):
+            state.waiting = True
+            state.track.wait_below(cool[1], cool[2], where)
         elif not _DWELL.match(text):
             _block(where, text, state, (*callers, name))
     if state.waiting:
@@ -100,6 +114,11 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
 
 
 def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
+    if wire := _WIRE.match(text):
+        if state.compress or (not wire[1] and state.track.on):
+            raise unreadable(where, "the analogue output stops the machine within a bead, or its compressor")
+        state.track.set_wire(wire[2], wire[3], where)
+        return
     words: dict[str, str] = {}
     rest = []
     for token in text.split():
@@ -120,6 +139,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
         if rest:
             raise unreadable(where, f"{rest[0]!r} with a move is not understood")
         _move(where, words, state)
+        state.shape = Shape.of(text, "G9")
     elif len(rest) == 1:
         _other(where, rest[0], state, callers)
     elif rest:
@@ -150,7 +170,7 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
     if not state.linear or state.units != _UNITS:
         raise unreadable(where, "a move before G1, G90 and G710 are said")
     if state.tip:
-        if state.feed != "G94" or not state.workpiece or set(words) != {*"XYZF", "A3", "B3", "C3"} or not state.offset:
+        if state.feed != "G94" or not state.workpiece or words.keys() != _TIP_WORDS or not state.offset:
             raise unreadable(where, "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, ORIWKS and a work offset")
         state.track.add(TIP, words, where)
         return

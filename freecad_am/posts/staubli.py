@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-import unicodedata
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -32,25 +31,30 @@ from ..core.program import (
 )
 from . import staubli_numbers as numbers
 from . import staubli_text as text
+from .names import Naming
 from .parts import Piece, Run, grouped, packed, size
-from .refusals import DEVICES, refuse_incomplete
+from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
 from .staubli_read import read
 
 __all__ = ["read", "write"]
 
 Array = NDArray[np.float64]
 
+NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
+# why the speed of the wire cannot follow that of the torch
+NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
 AXES = 6
-LONGEST_NAME = 15
-ROOMY_NAME = LONGEST_NAME - 3  # what is proposed leaves room for the digits of the parts
 SETUPS = ("part-on-robot", "tool-on-robot")
 PART = "prog"  # alias of the part that is loaded
 
 # words of the language that an alias of a library cannot be; case does not count in file names
-_RESERVED = DEVICES | frozenset(
+_RESERVED = frozenset(
     ("AND", "BEGIN", "BREAK", "CALL", "CASE", "DEFAULT", "DO", "ELSE", "ELSEIF", "END", "ENDFOR", "ENDIF", "ENDSWITCH")
     + ("ENDWHILE", "FALSE", "FLANGE", "FOR", "IF", "NOT", "OR", "RETURN", "START", "STEP", "STOP", "SWITCH", "THEN", "TO")
     + ("TRUE", "UNTIL", "WHILE", "WORLD", "XOR", PART.upper())
+)
+NAMING = Naming(
+    str, "[A-Za-z]", "a letter", longest=15, spare=3, prefix="am_", reserved=_RESERVED, what="an application's name"
 )
 _LOAD = """\
 if {alias}:libLoad("./{part}")!=0
@@ -67,7 +71,7 @@ def write(program: Program) -> dict[str, bytes]:
     other, each with whole beads. The duration of the very first move is not used.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED,
-    MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, UNREACHABLE, NOTHING_TO_WRITE.
+    MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -78,11 +82,7 @@ def write(program: Program) -> dict[str, bytes]:
         return _application(program, name, name, remarks, pieces)
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
     parts = _withdrawn(packed(groups, program.max_points - 1, _NO_END, _refuse_bead))
-    digits = max(2, len(str(len(parts))))
-    names = [f"{name}{number:0{digits}d}" for number in range(1, len(parts) + 1)]
-    if len(names[0]) > LONGEST_NAME:
-        why = f"with the {digits} digits of its parts it has more than {LONGEST_NAME} characters"
-        raise _bad_name(program.name, "name", why)
+    names = NAMING.parts(name, len(parts))
     load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
     files = _files(program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"})
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
@@ -96,28 +96,7 @@ _NO_END = 10**9  # programs are short: moves are in the data
 
 def program_name(name: str, where: str) -> str:
     """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
-    if not name:
-        raise _bad_name(name, where, "it is empty")
-    if not re.fullmatch(r"[A-Za-z0-9_]*", name):
-        raise _bad_name(name, where, "it may hold only the letters A to Z, digits and underscores")
-    if not name[0].isalpha():
-        raise _bad_name(name, where, "it must start with a letter")
-    if len(name) > LONGEST_NAME:
-        raise _bad_name(name, where, f"it has more than {LONGEST_NAME} characters")
-    if name.upper() in _RESERVED:
-        raise _bad_name(name, where, "it is a reserved word")
-    return name
-
-
-def _bad_name(name: str, where: str, why: str) -> InputError:
-    plain = unicodedata.normalize("NFKD", name.replace("ß", "ss")).encode("ascii", "ignore").decode("ascii")
-    proposal = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")
-    if not proposal or not proposal[0].isalpha() or proposal.upper() in _RESERVED:
-        proposal = f"am_{proposal}".rstrip("_")
-    return InputError(
-        "PROGRAM_NAME", where,
-        f"{name!r} cannot be an application's name on the controller: {why}; use {proposal[:ROOMY_NAME].rstrip('_')!r}",
-    )
+    return NAMING.checked(name, where)
 
 
 def refuse_setup(motion: str, setup: str) -> None:
@@ -129,6 +108,8 @@ def refuse_setup(motion: str, setup: str) -> None:
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
     refuse_incomplete(program, "staubli", AXES)
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, 0, NO_ANALOGUE)
     if any(program.endless):
         axis = program.endless.index(True) + 1
         raise InputError(

@@ -150,6 +150,24 @@ def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
     assert not (workshop.folder / "out").exists()
 
 
+@pytest.mark.parametrize("kind", ["step", "dxf"])
+def test_writes_paths_as_wires(workshop, saved, kind):
+    done = workshop.run("export", saved, "-o", "wires of it", "--wires", kind)
+    assert done.status == 0, done.err
+    files = workshop.files("wires of it")
+    assert set(files) == {f"wires/Joint path.{kind}"}
+    assert done.out.strip() == str(workshop.folder / "wires of it" / "wires" / f"Joint path.{kind}")
+    if kind == "dxf":
+        assert files["wires/Joint path.dxf"].startswith(b"  0\r\nSECTION") and b"RAPID" in files["wires/Joint path.dxf"]
+    done = workshop.run("export", saved, "-o", "some", "--wires", kind, "--object", "Toolpath", "Second")
+    assert set(workshop.files("some")) == {f"wires/Toolpath.{kind}", f"wires/Second.{kind}"}
+    done = workshop.run("export", saved, "-o", "none", "--wires", "iges")
+    assert done.status == 2 and "error[USAGE]" in done.err
+    done = workshop.run("export", saved, "-o", "none", "--wires", kind, "--object", "Cell")
+    assert done.status == 2 and "error[NO_OBJECT]" in done.err and "Joint path, Toolpath, First one, Second" in done.err
+    assert not (workshop.folder / "none").exists()
+
+
 def test_bad_input(workshop, saved):
     done = workshop.run("export", saved, "--object", "Third")
     assert done.status == 2 and "First one, Second" in done.err

@@ -49,7 +49,7 @@ def test_a_robot_is_told_which_controllers_it_has(workshop):
     ("nc: {deposit_on: start, deposit_off: M9}", "DEPOSIT_WORD", "nc.deposit_on"),
     ("nc: {feed: fast}", "BAD_VALUE", "nc.feed"),
     ("nc: {tolerance: 0 mm}", "BAD_VALUE", "nc.tolerance"), ("deposit_output: 100", "DEPOSIT_OUTPUT", "deposit_output"),
-    ("max_points: 20", "BEAD_TOO_LONG", "max_points"),
+    ("nc: {wire_output: 0}", "BAD_VALUE", "nc.wire_output"), ("nc: {wire_gain: 0}", "BAD_VALUE", "nc.wire_gain"),
 ])  # fmt: skip
 def test_keys_that_cannot_be(workshop, keys, code, key):
     text = job("siemens", "joint").partition("program:")[0] + f"program: {{post: siemens, {keys}}}\n"

@@ -6,6 +6,7 @@ import json
 import math
 import re
 import shutil
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -107,7 +108,11 @@ def test_what_is_told_of_axes_is_in_their_units(planned):
     assert all(0.0 <= share <= 1.0 for share in joints["speed_ratio_max"])
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "mx, mm" in page and "largest speed, deg/s or mm/s" not in page  # one method: no table of methods
-    assert ">mm</text>" in page and "above the limit of 500 mm" in page and "c (endless)" in page
+    drawn = [ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
+    texts = {one.get("aria-label"): [node.text for node in one.iter() if node.tag.endswith("text")] for one in drawn}
+    assert {"place, mm", "limits -500 to 500 mm"} <= set(texts["mx"]) and "angle, deg" not in texts["mx"]
+    assert "angle, deg" in texts["c (endless)"] and "place, mm" not in texts["c (endless)"]
+    assert not any("limits" in text for text in texts["c (endless)"])
     assert "smallest condition" not in page and "Condition of the Jacobian" not in page
 
 
@@ -168,3 +173,12 @@ def test_four_axes_are_told_with_what_they_miss(planned):
     assert set(column(rows, "a_deg")[:, 0].round(6)) == {-40.0}
     tool = column([row for row in rows if row["kind"] == "deposit"], "tx", "ty", "tz")
     np.testing.assert_allclose(tool[:, 2], math.cos(math.radians(40.0)), atol=1e-9)
+
+
+def test_a_part_that_leans_is_refused_before_it_is_planned(workshop, root):
+    (workshop.folder / "dome.step").write_text("no part: it is never read", encoding="utf-8")
+    text = ("version: 1\npart: {file: dome.step}\nprogram: {post: linuxcnc, motion: cartesian}\n"
+            "cell: {machine: table-xyzac, setup: rotary-table, platform: [11, -7, 60, 0, 20, 35]}\n")
+    (workshop.folder / "leans.yaml").write_text(text, encoding="utf-8")
+    done = workshop.run("plan", "leans.yaml", "-o", "out")
+    assert done.status == 2 and "UNSUPPORTED_FRAME" in done.err and "cell.platform: [11, -7, 60, 0, 0, 35]" in done.err

@@ -9,6 +9,7 @@ import pytest
 
 from freecad_am.batch import waypoints
 from freecad_am.core.motion import Motion
+from freecad_am.core.simulation import deposit
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 COLUMNS = ("layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,"
@@ -76,7 +77,7 @@ def test_without_a_cell_the_deposit_alone():
         return Bead(points, up, up, angle, np.full(13, 6.0), closed)
 
     path = Toolpath((Layer((bead(0.0, True),)), Layer((bead(1.0, True), bead(1.5, True)))), np.eye(4), 1.0, 0.01)
-    motion = waypoints.from_toolpath(path)
+    motion = deposit.alone(path)
     rows = list(csv.DictReader(io.StringIO("".join(waypoints.text(motion)))))
     assert list(rows[0]) == COLUMNS.split(",")[:15]
     assert [(r["layer"], r["bead"], r["point"]) for r in rows] == [

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A person at the window: sees buttons, fields and pictures, clicks and types; whatever pops up unasked is noted."""
 
+import importlib
 import os
 import subprocess
 import time
@@ -34,7 +35,7 @@ class ModalWatch:
 
     def look(self):
         dialog = self.application.activeModalWidget()
-        if dialog is None:
+        if dialog is None or dialog.objectName() == "RoboticAM_Progress":  # of long work, as it should
             self.first_seen = None
             return
         if self.first_seen is None:
@@ -55,6 +56,8 @@ class Person:
 
         self.gui, self.core, self.widgets = FreeCADGui, QtCore, QtGui
         self.window = FreeCADGui.getMainWindow()
+        binding = "shiboken2" if QtCore.qVersion().startswith("5") else "shiboken6"
+        self.forget = importlib.import_module(binding).invalidate
         self.folder = folder
 
     # ---- time
@@ -120,11 +123,17 @@ class Person:
 
     def press(self, standard_button):
         wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
-        for box in self.window.findChildren(self.widgets.QDialogButtonBox):
-            if box.isVisible() and box.button(wanted) is not None:
-                box.button(wanted).click()
-                self.idle()
-                return
+        boxes = self.window.findChildren(self.widgets.QDialogButtonBox)
+        try:
+            for box in boxes:
+                if box.isVisible() and box.button(wanted) is not None:
+                    box.button(wanted).click()
+                    self.idle()
+                    return
+        finally:
+            # Python keeps what the window has found, and would take for it whatever comes to be at its place later
+            for box in boxes:
+                self.forget(box)
         raise AssertionError(f"no button {standard_button} is to be seen")
 
     def will_answer(self, standard_button):
@@ -144,8 +153,10 @@ class Person:
         self.until(lambda: not self.gui.Control.activeDialog(), "the panel to close")
 
     def panel_error(self, panel):
-        label = self.field(panel, "error")
-        return label.text() if label.isVisible() else ""
+        """What is wrong: at the top of the panel, and under its fields."""
+        labels = [self.field(panel, "error"), *panel.findChildren(self.widgets.QLabel)]
+        notes = [label for label in labels if label.isVisible() and label.objectName().endswith(("error", "Note"))]
+        return "\n".join(dict.fromkeys(label.text() for label in notes if label.text()))
 
     def double_click(self, obj):
         obj.ViewObject.Proxy.doubleClicked(obj.ViewObject)
@@ -243,7 +254,11 @@ class Hand:
 
     def enter(self, panel, name, text):
         """Type over what a field holds, and leave it."""
-        self.click(self.person.field(panel, name))
+        field = self.person.field(panel, name)
+        self.click(field)
+        parts = [field, *field.findChildren(self.person.widgets.QWidget)]
+        # on a busy machine the click may be at work when the first key comes
+        self.person.until(lambda: any(part.hasFocus() for part in parts), f"{name} to have the keys", 5)
         self.do("key", "ctrl+a")
         self.do("type", "--delay", "20", text)
         self.do("key", "Tab")
@@ -260,9 +275,21 @@ class Hand:
         self.at((where.x(), where.y()), *held)
 
     def click_face(self, obj, face, *held):
-        """Click a face of an object where it is to be seen in the 3D view."""
+        """Click a face of an object where it is to be seen in the 3D view; what a panel covers is brought out from under it
+        by the wheel (FreeCAD 1.1 lays panels over the view)."""
         view = self.person.gui.getDocument(obj.Document.Name).activeView()
-        height = view.getSize()[1]
+        for _ in range(6):
+            place = self.seen(view, obj, face)
+            if place:
+                self.at(place, *held)
+                return
+            corner = self.corner(view)
+            self.do("mousemove", corner.x() + 5, corner.y() + view.getSize()[1] // 2, "click", 5)
+            self.person.idle(0.2)
+        raise AssertionError(f"{obj.Label} {face} is not to be seen")
+
+    def seen(self, view, obj, face):
+        """A place of the screen where a face of an object is seen, with a little of it all around; None without one."""
         points, triangles = obj.Shape.getElement(face).tessellate(2.0)
         on_screen = getattr(view, "getPointOnViewport", None) or view.getPointOnScreen
         for corners in triangles:
@@ -270,10 +297,11 @@ class Hand:
             x, y = on_screen(middle)
             around = [view.getObjectInfo((x + dx, y + dy)) for dx, dy in ((0, 0), (6, 0), (-6, 0), (0, 6), (0, -6))]
             if all(info and (info["Object"], info["Component"]) == (obj.Name, face) for info in around):
-                where = self.corner(view)
-                self.at((where.x() + x, where.y() + height - 1 - y), *held)
-                return
-        raise AssertionError(f"{obj.Label} {face} is not to be seen")
+                where = self.corner(view) + self.person.core.QPoint(x, view.getSize()[1] - 1 - y)
+                on_top = self.person.widgets.QApplication.widgetAt(where)
+                if on_top is not None and view.graphicsView().isAncestorOf(on_top):
+                    return where.x(), where.y()
+        return None
 
     def corner(self, view):
         """The upper left corner of a 3D view on the screen."""

@@ -10,7 +10,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.process import bead_table
-from freecad_am.gui import colouring, legend
+from freecad_am.gui.path import colouring, legend
 from freecad_am.gui.view_hub import HubView
 
 ORANGE = (245, 120, 0)  # of first layers
@@ -128,7 +128,8 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     hand.click(person.button("RoboticAM_Toolpath"))
     panel = person.panel("RoboticAM_Toolpath")
     person.choose(panel, "BeadModel", "csw")
-    person.until(person.field(panel, "BeadModelPlot").isVisible, "the plot", 5)
+    plot = person.field(panel, "BeadModelPlot")
+    person.until(lambda: plot.isVisible() and plot.ready, "the plot", 10)
     person.until(lambda: not person.field(panel, "BeadModelFit").visibleRegion().isEmpty(), "the fit to be scrolled to", 5)
     person.screenshot("panel_bead_model")
     ok(person, hand)
@@ -157,8 +158,7 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     stages = api.stages_of(opened)
     assert [stage.Key for stage in stages] == keys and {stage.Status for stage in stages} == {"up to date"}
     assert opened.Toolpath.ViewObject.Colouring == "width"
-    assert [scale.title for _, scale in person.window.findChild(person.widgets.QWidget, legend.NAME).scales] == [
-        "width"]
+    assert [scale.title for scale in legend.shown(opened)] == ["joint margin"]
 
 
 def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades):
@@ -255,7 +255,7 @@ def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
     plot, fit = person.field(panel, "BeadModelPlot"), person.field(panel, "BeadModelFit")
     assert not plot.isVisible()
     person.choose(panel, "BeadModel", "csw")
-    person.until(plot.isVisible, "the plot", 5)
+    person.until(lambda: plot.isVisible() and plot.ready, "the plot", 10)
     model = bead_table.load("csw")
     for number in (f"{model.width.m:.4g}", f"{model.width.r_squared:.4f}", f"{model.height.rmse:.3f}"):
         assert number in fit.text()
@@ -317,7 +317,7 @@ def test_many_points_are_coloured_at_once(person, rotor):
     many = dataclasses.replace(path, layers=path.layers * count)
     view = toolpath.ViewObject.Proxy
     view.draw(toolpath, many)
-    assert len(view.points) >= 100_000 and view.beads.coordinates.point.getNum() == len(view.points)
+    assert len(view.rows) >= 100_000
     for kind in colouring.KINDS:
         if kind != "local distance":
-            assert len(colouring.coloured(many, kind, 0.2)[0]) == len(view.points)
+            assert len(colouring.coloured(many, kind, 0.2)[0]) == len(view.rows)

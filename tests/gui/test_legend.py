@@ -9,8 +9,8 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.process.spacing import local_distances
-from freecad_am.gui import colouring, legend
 from freecad_am.gui.colours import ramp
+from freecad_am.gui.path import colouring, legend
 
 
 @pytest.fixture
@@ -23,8 +23,8 @@ def toolpath(person, hemisphere):
 
 def shown(person):
     """The legends to be seen, each as title and unit."""
-    overlays = [one for one in person.window.findChildren(person.widgets.QWidget, legend.NAME) if one.isVisible()]
-    return [(scale.title, scale.unit) for overlay in overlays for _, scale in overlay.scales]
+    document = App.ActiveDocument
+    return [] if document is None else [(scale.title, scale.unit) for scale in legend.shown(document)]
 
 
 def test_each_colouring_has_its_legend(person, toolpath):
@@ -58,14 +58,27 @@ def test_the_legend_is_on_the_screen_and_stays_where_it_is(person, toolpath):
     toolpath.ViewObject.Colouring = "layer"
     for colour in colours:
         assert person.screen_pixels(colour, 4) >= 16
-    overlay = next(one for one in person.window.findChildren(person.widgets.QWidget, legend.NAME) if one.isVisible())
-    place = overlay.mapToGlobal(overlay.rect().center())
-    person.gui.activeDocument().activeView().viewTop()
+    toolpath.ViewObject.Look = "tubes"  # shaded: what has the colours of the ramp is the bar
+    before = bar(person)
+    assert before.sum() > 1000
+    view = person.gui.activeDocument().activeView()
+    view.viewTop()
     person.gui.SendMsgToActiveView("ViewFit")
     person.idle()
-    assert overlay.isVisible() and overlay.mapToGlobal(overlay.rect().center()) == place
-    for colour in colours:
-        assert person.screen_pixels(colour, 4) >= 16
+    assert np.array_equal(bar(person), before)
+    view.setCameraType("Perspective")
+    person.idle()
+    assert np.array_equal(bar(person), before)
+
+
+def bar(person):
+    """Where in the upper left corner of a saved picture the colours of the ramp are."""
+    path = str(person.folder / "corner.png")
+    person.gui.activeDocument().activeView().saveImage(path, 800, 600, "White")
+    image = person.widgets.QImage(path).convertToFormat(person.widgets.QImage.Format_RGB32)
+    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(600, -1, 4)[:230, :40, 2::-1].astype(int)
+    colours = np.rint(255 * ramp(np.linspace(0, 1, 256))).astype(int)
+    return (np.abs(rows[:, :, None] - colours).max(axis=-1) < 3).any(axis=-1)
 
 
 def test_the_legend_follows_undo_deletion_and_views(person, toolpath):
@@ -79,14 +92,23 @@ def test_the_legend_follows_undo_deletion_and_views(person, toolpath):
     assert shown(person) == [("layer", "")]
     person.gui.runCommand("Std_ViewCreate")
     person.idle(0.4)
-    overlays = [one for one in person.window.findChildren(person.widgets.QWidget, legend.NAME) if one.scales]
-    assert len(overlays) == 2
+    assert bar(person).sum() > 1000  # in the new view too
     document.removeObject("Toolpath")
     person.idle()
-    assert shown(person) == []
-    App.closeDocument(document.Name)
+    assert shown(person) == [] and bar(person).sum() == 0
+
+
+def test_two_legends_stand_side_by_side_with_their_names(person, toolpath):
+    document = toolpath.Document
+    second = api.make_toolpath(document, document.Feature, label="Other")
     person.idle()
-    assert person.window.findChildren(person.widgets.QWidget, legend.NAME) == []
+    assert [scale.title for scale in legend.shown(document)] == ["layer", "layer"]
+    first, other = toolpath.ViewObject.Proxy.legend, second.ViewObject.Proxy.legend
+    assert (first.entry[0], other.entry[0]) == (("Toolpath",), ("Other",)) and other.left > first.left == 0
+    person.screenshot("two_legends")
+    second.ViewObject.Visibility = False
+    person.idle()
+    assert first.entry[0] == () and other.entry is None
 
 
 def test_local_distances_are_told_by_colour(person, toolpath):

@@ -179,7 +179,7 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
     for arguments, code, where in (
         ((away, hub), "NOT_ON_HUB", "Away"), ((blades, bore, inner), "INNER_FACE", f"Bore {inner[0]}"),
         ((blades, hub, flat[:1]), "NOT_DEVELOPABLE", f"Hub {flat[0]}"), ((blades, hub, ["Face99"]), "BAD_FACES", ""),
-        ((sheet, hub), "NO_SOLID", "Sheet"), ((away,), "NO_HUB", ""), ((blades, away), "NO_BASE", "Blades"),
+        ((sheet, hub), "NO_SOLID", "Sheet"), ((away,), "NO_HUB", ""), ((blades, away), "NO_BASE", "Away"),
     ):
         with pytest.raises(InputError) as caught:
             api.make_developable_feature(doc, *arguments, **FAST)
@@ -202,8 +202,8 @@ def test_a_document_keeps_the_solids_and_knows_when_they_change(thruster, tmp_pa
     try:
         stage = again.getObject(toolpath_name(again))
         assert api.result(stage).length == length and stage.Status == "up to date"
-        api.change(again.Feature, bead_spacing=7)
-        assert api.result(stage).length < length
+        api.change(again.Feature, bead_spacing=2.5)
+        assert api.result(stage).length > length
         assert stage.Status == "up to date"
         again.Hub.Placement.Base = App.Vector(0, 0, 40)
         assert again.Feature.Status == "stale"

@@ -38,7 +38,7 @@ def reopened(job, tmp_path):
 def test_results_are_there_after_reopening_and_nothing_is_computed(job, reopened, monkeypatch):
     again, values, _ = reopened
     for kind in {type(obj.Proxy) for obj in job.stages}:
-        monkeypatch.setattr(kind, "compute", lambda self, obj: pytest.fail("computed"))
+        monkeypatch.setattr(kind, "prepare", lambda self, obj: pytest.fail("computed"))
     found = api.stages_of(again)
     assert [obj.Label for obj in found] == [obj.Label for obj in api.stages_of(job.doc)]
     for before in job.stages:

@@ -49,6 +49,8 @@ def random_value(row, rng):
     if row.form == rows.LENGTH_OR_POSE:
         pose = tuple(rng.uniform(-50, 50) for _ in range(6))
         return rng.choice([rng.uniform(0, 50), pose])
+    if row.key == "given":
+        return tuple(f"{layer}/0:{rng.uniform(-180, 180):.6g}:360" for layer in range(rng.randint(0, 3)))
     if row.form == rows.TEXT_LIST:
         return tuple(rng.sample(METHODS, rng.randint(0, len(METHODS))))
     if row.key == "origin":

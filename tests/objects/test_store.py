@@ -44,6 +44,17 @@ def test_toolpaths_come_back(seed):
     assert equal(store.unpack(floats, text, "k", "x"), path)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_parts_alone_are_those_of_the_whole(seed):
+    path = toolpath(seed)
+    places = (("layers", -1, "beads", -1, "points"), ("layer_height",), (), ("layers", 0, "beads"), ("frame",))
+    parts = store.picked(*store.pack(path, "k"), "k", "x", *places)
+    assert equal(parts, (path.layers[-1].beads[-1].points, 1.0, path, path.layers[0].beads, path.frame))
+    for wrong in (("height",), ("layers", 9), ("layer_height", 0)):
+        with pytest.raises(InputError, match="cannot be read"):
+            store.picked(*store.pack(path, "k"), "k", "x", wrong)
+
+
 @pytest.mark.parametrize("length", [0, 1, 5, 6, 7, 1000, 100_003])
 def test_bytes_come_back(length):
     data = np.random.default_rng(length).integers(0, 256, length, dtype=np.uint8).tobytes()

@@ -85,8 +85,9 @@ KINEMATICS = (428, 429, 430)
 def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: float = 0.0) -> tuple[list[dict], list[str]]:
     """What LinuxCNC's interpreter makes of a program: its moves in order, and what it complains of.
 
-    A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset). seconds
-    come from the feed as LinuxCNC counts it: of the linear axes where they move, else of the rotary ones.
+    A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset), analogue
+    (values of outputs). seconds come from the feed as LinuxCNC counts it: of the linear axes where they move, else of the
+    rotary ones.
     """
     command, environment = rs274()
     for name, content in files.items():
@@ -105,6 +106,7 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
     )
     moves, complaints, ended = [], [], False
     at, feed, deposit, kinematics, offset = np.full(6, np.nan), 0.0, False, None, 0
+    analogue: dict[int, tuple[float, bool]] = {}
     for line in (result.stdout + result.stderr).splitlines():
         found = re.match(r" *\d+ N\S* +(\w+)\((.*)\)\s*$", line)
         if found is None:
@@ -118,6 +120,9 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
             offset = int(inside.split(",")[0])
         elif word in ("SET_AUX_OUTPUT_BIT", "CLEAR_AUX_OUTPUT_BIT"):
             deposit = word.startswith("SET")
+        elif word in ("SET_AUX_OUTPUT_VALUE", "SET_MOTION_OUTPUT_VALUE"):
+            number, value = inside.split(",")
+            analogue[int(number)] = (float(value), word.startswith("SET_MOTION"))
         elif word == "COMMENT" and (said := re.match(r'"kinematics (\d+)', inside)):
             kinematics = int(said[1])
         elif word in ("STRAIGHT_FEED", "STRAIGHT_TRAVERSE"):
@@ -125,7 +130,8 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
             step = place - at
             way = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
             moves.append({"at": place, "way": way, "feed": feed, "seconds": 60.0 * way / feed if feed else np.nan,
-                          "deposit": deposit, "kinematics": kinematics, "offset": offset, "rapid": word != "STRAIGHT_FEED"})
+                          "deposit": deposit, "kinematics": kinematics, "offset": offset, "rapid": word != "STRAIGHT_FEED",
+                          "analogue": dict(analogue)})
             at = place
         ended |= word == "PROGRAM_END"
     if result.returncode or not ended:
@@ -153,13 +159,14 @@ def run_nc(texts: list[str]) -> list[tuple[list[dict], list[str], str]]:
     """What nc-gcode-interpreter makes of SINUMERIK programs, each by itself: its blocks as rows, the names it takes for
     calls, and its complaint, or ''.
 
-    Words it has no address for (A3=, H1=) become variables of other names, rows have them under the old ones; C=DC(..) is
-    taken as the value; input 3 reads as on.
+    Words it has no address for (A3=, H1=) become variables of other names, rows have them under the old ones, analogue
+    outputs as O1 and so on; C=DC(..) is taken as the value; input 3 reads as on.
     """
     asked = []
     for text in texts:
-        plain = re.sub(r"\b([A-Z]\d+)=(?!=)", r"V_\1=", text)
-        plain = re.sub(r"=DC\(([^()]*)\)", r"=\1", plain).replace("$A_IN[3]==0", "0==1")
+        plain = re.sub(r"(?:\bDO )?\$A_OUTA\[(\d+)\]=", r"O\1=", text)
+        plain = re.sub(r"\b([A-Z]\d+)=(?!=)", r"V_\1=", plain)
+        plain = re.sub(r"=DC\(([^()]*)\)", r"=\1", plain).replace("$A_IN[3]==0", "0==1").replace("$A_INA[4]>=", "0>=")
         asked.append((plain, sorted(set(re.findall(r"\bV_[A-Z]\d+(?==)", plain)))))
     result = subprocess.run(
         [*(nc_python() or []), "-c", _INTERPRET], input=json.dumps(asked), capture_output=True, text=True, timeout=LIMIT,

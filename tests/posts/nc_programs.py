@@ -15,6 +15,7 @@ from freecad_am.core.program import (
     NcOptions,
     Program,
     Wait,
+    WaitBelow,
     WaitInput,
 )
 
@@ -38,9 +39,9 @@ def program(*blocks, name="part", **options):
     return Program(name, "a machine", blocks, **{**defaults, **options})
 
 
-def random_program(seed, motion="joint", endless=False, names=NAMES, **options):
-    """Of all kinds of blocks, steps of all sizes and moves that only turn or only slide."""
-    rng = np.random.default_rng(seed)
+def random_program(seed, motion="joint", endless=False, names=NAMES, wire=False, **options):
+    """Of all kinds of blocks, steps of all sizes and moves that only turn or only slide. wire: beads tell its speed."""
+    rng, speeds = np.random.default_rng(seed), np.random.default_rng([seed, 1])
     kinds = tuple("linear" if name in "XYZ" else "rotary" for name in names)
     linear = np.array([kind == "linear" for kind in kinds])
     at = np.where(linear, rng.uniform(-200.0, 200.0, len(names)), rng.uniform(-2.0, 2.0, len(names)))
@@ -74,8 +75,14 @@ def random_program(seed, motion="joint", endless=False, names=NAMES, **options):
             blocks.append(some("rapid", layer, bead, int(rng.integers(1, 4))))
             blocks.append(DepositOn(float(rng.choice([0.0, 0.004, 0.5]))))
             blocks.append(some("deposit", layer, bead, int(rng.integers(1, 40))))
+            if wire:
+                feeds = speeds.uniform(20.0, 300.0, len(blocks[-1]))
+                feeds[speeds.random(len(feeds)) < 0.5] = 108.25  # many moves at one speed
+                blocks[-1] = dataclasses.replace(blocks[-1], wire=feeds)
+                blocks[-2] = dataclasses.replace(blocks[-2], wire=float(feeds[0]))
             blocks.append(DepositOff(float(rng.choice([0.0, 1.25]))))
         blocks += [Wait(float(rng.choice([0.0, 12.5, 700.0]))), WaitInput(3), Call("clean")][: int(rng.integers(0, 4))]
+        blocks += [WaitBelow(4, 0.125 * (seed + 1), layer, 0)] * (layer % 2)
     blocks.append(some("rapid", layer, bead, 1))
     options = {
         "max_points": int(rng.integers(45, 120)), "user_frame": int(rng.integers(1, 9)),

@@ -33,17 +33,28 @@ def wanted(of):
     return values
 
 
+def wires(of):
+    """Speed of the wire in each move, NaN where it is not told; and whether the move is the first of a bead."""
+    speeds = [np.full(len(run), np.nan) if run.wire is None else run.wire for run in of.moves]
+    return np.concatenate(speeds), np.concatenate([np.arange(len(run)) == 0 for run in of.moves])
+
+
 @linuxcnc_is_here
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
 def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     names = (("X", "Y", "Z", "A", "C"), ("X", "Y", "Z", "B", "C"))[seed % 2]
-    of = with_options(random_program(seed, motion, seed % 3 == 0, names, deposit_output=4), path_feed=feed)
+    of = random_program(seed, motion, seed % 3 == 0, names, wire=seed % 2 == 0, deposit_output=4)
+    of = with_options(of, path_feed=feed, wire_output=7, wire_gain=2.5)
     moves, complaints = run_rs274(tmp_path, linuxcnc.write(of), "random.ngc", 250.0)
     assert not complaints and not any(move["rapid"] for move in moves)
     at = np.array([move["at"] for move in moves])
     assert np.abs(at - wanted(of)).max() <= 5e-6 + 5e-5 + 1e-9  # of the text, and of what rs274 prints
     assert [move["deposit"] for move in moves] == deposit_of(of)
+    for move, wire, first in zip(moves, *wires(of), strict=True):
+        if np.isfinite(wire):
+            value, queued = move["analogue"][6]
+            assert value == pytest.approx(0.15 * wire, rel=5.1e-5) and not (first and queued)
     tip = [motion == "cartesian" and on for on in deposit_of(of)]
     assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in tip]
     assert [move["offset"] for move in moves] == [of.user_frame if on else 9 for on in tip]
@@ -78,7 +89,8 @@ def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
 @pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
 def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     endless = seed % 2 == 1
-    of = with_options(random_program(seed, motion, endless, deposit_output=4), path_feed=feed)
+    of = random_program(seed, motion, endless, wire=seed % 2 == 0, deposit_output=4)
+    of = with_options(of, path_feed=feed, wire_output=7, wire_gain=2.5)
     files = siemens.write(of)
     rows, places, names = {}, [], set()
     order = sorted(files)  # the parts are called in the order of their names
@@ -92,10 +104,11 @@ def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     joints, deposit = columns(of, "joints"), np.array(deposit_of(of))
     tip = deposit & (motion == "cartesian")
     assert len(places) == len(joints)
-    for place, axes, is_tip, position, run_on in zip(
-        places, joints, tip, columns(of, "position") if motion == "cartesian" else joints, deposit, strict=True
+    for place, axes, is_tip, position, run_on, wire in zip(
+        places, joints, tip, columns(of, "position") if motion == "cartesian" else joints, deposit, wires(of)[0], strict=True
     ):
         row = rows[place]
+        assert np.isnan(wire) or row["O7"] == pytest.approx(0.15 * wire, rel=5.1e-5)
         if is_tip:
             assert np.all(np.abs([row[name] for name in "XYZ"] - position) <= HALF + SINGLE * np.abs(position))
             assert math.hypot(row["A3"], row["B3"], row["C3"]) == pytest.approx(1.0, abs=2e-6)

@@ -215,9 +215,64 @@ def test_what_cannot_be_said_is_refused(post):
     refusal(post, dataclasses.replace(JOINT, deposit_output=100), code="DEPOSIT_OUTPUT", where="program.deposit_output")
     where = "process.between_layers.input"
     refusal(post, program(moves("rapid", RING), WaitInput(65)), code="DEPOSIT_INPUT", where=where)
-    blocks = [block for n in range(3) for block in (moves("rapid", RING, bead=n), DepositOn(), DepositOff())]
-    message = refusal(post, program(*blocks, max_points=3), code="BEAD_TOO_LONG", where="program.max_points")
-    assert "has 4 points" in message and message.endswith("use at least 4")
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
+    """These controllers read files of any length: `max_points` cuts between beads and refuses none."""
+    sizes = (2, 40, 3, 3, 25)
+    blocks = [block for n, size in enumerate(sizes) for block in (
+        moves("rapid", RING[:1], bead=n), DepositOn(),
+        moves("deposit", [[n, k, 5.0, 0.0, 0.0] for k in range(size)], bead=n),
+        DepositOff(),
+    )]
+    files = post.write(program(*blocks, max_points=10))
+    counts = [content.decode().count("G1 ") for _, content in sorted(files.items())]
+    assert counts == [0, 3, 41, 8, 26]  # the main program; both short beads together
+    read = post.read(files)
+    assert read.deposit.tolist() == [on for size in sizes for on in (False, *[True] * size)]
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)])
+def test_the_speed_of_the_wire_comes_back(post, seed, motion, feed):
+    plain = with_options(random_program(seed, motion), path_feed=feed)
+    of = with_options(random_program(seed, motion, wire=True), path_feed=feed, wire_output=3, wire_gain=400.0)
+    files = post.write(of)
+    read, deposit = post.read(files), np.array(deposit_of(of))
+    wanted = np.concatenate([np.full(len(run), np.nan) if run.wire is None else run.wire for run in of.moves])
+    told = wanted[deposit] * 0.06 * 400.0  # at a gain of 400 a value of 400 is 1 m/min
+    assert np.abs(read.wire[deposit] / told - 1.0).max() <= 5.1e-5
+    assert (np.abs(read.wire[deposit] - told) <= read.wire_digits[deposit] + 1e-9).all()
+    assert (read.wire_digits[deposit] <= 5.1e-5 * told).all()
+    written = "".join(content.decode() for _, content in sorted(files.items()))
+    within, before = (r"DO \$A_OUTA\[3\]=", r"N\d+ \$A_OUTA\[3\]=") if post is siemens else (r"M67 E2 Q", r"M68 E2 Q")
+    beads = [run.wire for run in of.moves if run.wire is not None]
+    assert len(re.findall(before, written)) == len(beads)
+    assert len(re.findall(within, written)) == sum(int((np.diff(wire) != 0.0).sum()) for wire in beads)
+    # nothing else is different, but that blocks with a value of their own are not compressed
+    ours, theirs = ([re.sub(r"^N\d+ ", "", line) for _, content in sorted(some.items())
+                     for line in content.decode().split("\n") if not re.search(r"OUTA|M6[78]|COMP", line)]
+                    for some in (files, post.write(plain)))
+    assert ours == theirs
+    for inside in re.findall(r"COMPCAD\n(.*?)COMPOF", written, re.DOTALL):
+        assert "OUTA" not in inside
+
+
+@pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
+def test_the_wire_of_a_dry_run_and_of_outputs_that_are_not_there(post):
+    of = random_program(5, wire=True, max_points=10**4)
+    last = {siemens: 8, linuxcnc: 64}[post]
+    post.write(with_options(of, wire_output=last))
+    where = "program.nc.wire_output"
+    assert f"1 to {last}" in refusal(post, with_options(of, wire_output=last + 1), code="WIRE_OUTPUT", where=where)
+    still = text(post.write(with_options(random_program(5, max_points=10**4), wire_output=last + 1)))
+    assert "OUTA" not in still and not re.search(r"M6[78]", still)
+    dry = text(post.write(dataclasses.replace(of, dry_run=True, blocks=tuple(
+        dataclasses.replace(block, wire=None) if isinstance(block, (Moves, DepositOn)) else block for block in of.blocks))))
+    assert "OUTA" not in dry and not re.search(r"M6[78]", dry)
+    assert post.read(post.write(random_program(5))).wire is None
 
 
 def test_what_one_controller_alone_cannot_say():
@@ -225,7 +280,8 @@ def test_what_one_controller_alone_cannot_say():
         other = dataclasses.replace(TIP, user_frame=number)
         refusal(linuxcnc, other, code="UNSUPPORTED_FRAME", where="program.user_frame")
     tilted = dataclasses.replace(TIP, carried=(0.0, 0.0, 0.0, 0.1, 0.0, 0.0))
-    refusal(linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin")
+    assert "cell.platform: [0, 0, 0, 0, 0, 0]" in refusal(
+        linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin")
     siemens.write(tilted)
     fixed = with_options(TIP, switch_kinematics=False)
     refusal(linuxcnc, fixed, code="NO_TIP_KINEMATICS", where="program.nc.switch_kinematics")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.posts import linuxcnc, siemens
+from freecad_am.posts import linuxcnc, nc_read, siemens
 
 # as others write them: short numbers, words in another order, lower case, remarks behind blocks
 MAIN = """; by hand
@@ -182,6 +182,44 @@ def test_what_is_not_understood_of_linuxcnc(old, new, where, why):
         linuxcnc.read(ngc(old, new))
     assert (raised.value.code, raised.value.where) == ("UNREADABLE_PROGRAM", where)
     assert why in raised.value.message
+
+
+FIRST = {
+    siemens: ["N1 G17 G40 G710 G90", "N2 G500", "N3 FGROUP(X,Y,Z)", "N4 G93", "N5 G1 X1 Y2 Z3 A4 C=DC(5.5) F6",
+              "N6 G1 X1.5 Y2 Z3 A4 C=DC(6.25) F6"],
+    linuxcnc: ["G21 G90 G17 G40", "M429", "G10 L2 P9 X0 Y0 Z0 A0 C0 R0", "G59.3", "G93", "G1 X1 Y2 Z3 A4 C5.5 F6",
+               "G1 X1.5 Y2 Z3 A4 C6.25 F6"],
+}
+
+
+@pytest.mark.parametrize("post", FIRST, ids=["siemens", "linuxcnc"])
+@pytest.mark.parametrize(("old", "new"), [
+    ("G1 X", "X"), ("G1 X", "G0 X"), ("G1 X", "G91 G1 X"), ("G1 X", "G1 G1 G0 X"), ("X1.5", "X1,5"), ("X1.5", "X1E5"),
+    ("X1.5", "X1.5X2"), ("X1.5", "X1.5 X2"), ("X1.5", "X--1.5"), ("X1.5", "X"), ("X1.5", "X=AC(1.5)"), ("X1.5", "U1.5"),
+    ("X1.5 ", ""), ("X1.5 Y2", "Y1.5 Y2"), ("F6", "F0"), ("F6", "F-6"), ("F6", ""), ("F6", "F6 M30"), ("F6", "F6 Z4"),
+    ("6.25", "6.25) Z=(3"), ("6.25", "6.2.5"), ("F6", "F6 G9"), ("G1 X", "G9 G1 X"),
+])  # fmt: skip
+def test_a_block_after_one_alike_is_read_as_strictly(post, old, new, monkeypatch):
+    """Blocks that look like the one before are read at once; what comes out is as without that."""
+    def read(*lines):
+        end = ["N9 M30"] if post is siemens else ["M2"]
+        text = "\n".join([*lines, *end]) + "\n"
+        try:
+            return post.read({"HAND.MPF" if post is siemens else "hand.ngc": text.encode()})
+        except InputError as error:
+            return error.code, error.where, error.message
+
+    lines = [*FIRST[post], FIRST[post][-1].replace("N6", "N7").replace(old, new, 1)]
+    assert lines[-1].replace("N7", "N6") != lines[-2]
+    quick = read(*lines)
+    monkeypatch.setattr(nc_read.Shape, "of", staticmethod(lambda *given: None))
+    slow = read(*lines)
+    assert isinstance(quick, tuple) == isinstance(slow, tuple)
+    if isinstance(slow, tuple):
+        assert quick == slow and slow[0] == "UNREADABLE_PROGRAM"
+    else:
+        for name in ("joints", "duration", "deposit", "duration_digits", "shorter_way"):
+            np.testing.assert_array_equal(getattr(quick, name), getattr(slow, name))
 
 
 def test_files_that_hide_something_are_refused():

@@ -8,20 +8,25 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..geometry.medial import spine
-from ..geometry.plane_curve import Array
+from ..geometry.plane_curve import Array, length
 from ..geometry.region import Region, along, simplified
 from ..issues import InfeasibleError
 from .curve import Beads, PlaneCurve
 
 ROUNDS = 12  # of beads within one gap
 FINE = 0.04  # of the spacing, mm between the places that the middle is found from
+LONGER = 8  # attempts to make a bead long enough
+COARSE = 0.01  # of the gap; what is open is found no finer
 ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 
 
-def centre_beads(left: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region] = ()) -> list[PlaneCurve]:
+def centre_beads(
+    left: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region], kind: str = "centre"
+) -> list[PlaneCurve]:
     """Open beads along the middle of regions left open, or closed ones where those go round; no gap stays wider than stated.
 
-    inner: where the middles of beads may lie; beads are moved there. Without it anywhere in the regions.
+    inner: where the middles of beads may lie; beads are moved there, and those too short go on in there until they are long
+    enough.
     """
     found: list[PlaneCurve] = []
     for _ in range(ROUNDS):
@@ -29,16 +34,37 @@ def centre_beads(left: Sequence[Region], beads: Beads, ring: int, inner: Sequenc
         rest: list[Region] = []
         for region in left:
             points, closed = _middle(region, beads, 0.5 * ENDS * beads.gap)
-            if len(points) < 2:
-                continue
-            if inner:
-                points = _moved(points, inner)
-            found.append(PlaneCurve(points, closed, "centre", ring))
+            points = moved(points if len(points) > 1 else _dab(region, beads), inner)
+            if not closed:
+                points = _lengthened(points, beads, inner)
+            found.append(PlaneCurve(points, closed, kind, ring))
             rest += region.without(along([(points, closed)], 0.5 * beads.spacing, beads.chord_error))
         left = rest
         if not left:
             break
     return found
+
+
+def left_open(curves: Sequence[tuple[Array, bool]], inner: Sequence[Region], beads: Beads) -> list[Region]:
+    """What curves (points (n, 2), whether closed) leave open, wider than the gap allowed, of what beads can reach with their
+    middles in `inner`."""
+    half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
+    covered = along([(_thinned(points, closed, error), closed) for points, closed in curves], half, error)
+    reached = [part for piece in inner for part in piece.grown(half, error)]
+    left = [part for piece in reached for part in (piece.without(covered) if covered else (piece,))]
+    return [part for part in left if part.grown(-0.5 * beads.gap, error)]
+
+
+def _thinned(points: Array, closed: bool, tolerance: float) -> Array:
+    thin = simplified(np.vstack([points, points[:1]]) if closed else points, tolerance)
+    return thin[:-1] if closed else thin
+
+
+def closing(region: Region, curves: Sequence[PlaneCurve], beads: Beads, ring: int) -> list[PlaneCurve]:
+    """Beads in what other beads leave open of the part of a region that beads can reach."""
+    inner = region.grown(-beads.inset, beads.chord_error)
+    left = left_open([(curve.points, curve.closed) for curve in curves], inner, beads)
+    return centre_beads(left, beads, ring, inner, "closing")
 
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
@@ -47,8 +73,8 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
     for region in thin:
         if beads.thin == "refuse":
             raise InfeasibleError(
-                "THIN_REGION", "filling", f"the region at {region.where()} is {region.width:.3g} mm wide, less than a bead "
-                f"({beads.spacing:.3g} mm); choose thin = single, a smaller bead spacing or a margin",
+                "THIN_REGION", "filling", f"the region at {beads.where(region.inside())} is {region.width:.3g} mm wide, "
+                f"less than a bead ({2.0 * beads.inset:.3g} mm); choose thin = single, a narrower bead or a margin",
             )
         points, closed = _middle(region, beads, 0.15 * region.width)
         if len(points) > 1:
@@ -58,8 +84,8 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
 
 def necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region, ...]:
     """Pieces of a region that no bead inside of `inner` reaches and that join two places which beads do reach."""
-    half, error = 0.5 * beads.spacing, beads.chord_error
-    reached = [part for piece in inner for part in piece.grown(half, error)]
+    error = beads.chord_error
+    reached = [part for piece in inner for part in piece.grown(beads.inset, error)]
     if len(reached) < 2:
         return ()
     found = []
@@ -90,8 +116,37 @@ def _smooth(points: Array, closed: bool, tolerance: float) -> Array:
     return line[:-1] if closed else line
 
 
-def _moved(points: Array, inner: Sequence[Region]) -> Array:
-    """Points (n, 2), those outside of all regions moved to the nearest of them."""
+def _dab(region: Region, beads: Beads) -> Array:
+    """Two places (2, 2) in the middle of a region too round for a path, along it."""
+    core = max(region.grown(-0.5 * beads.gap, beads.chord_error), key=lambda part: part.area)
+    border = region.rings()[0]
+    way = np.linalg.svd(border - border.mean(axis=0), full_matrices=False)[2][0]
+    reach = 0.5 * ENDS * beads.gap * way
+    ends: Array = core.inside() + np.stack([-reach, reach])
+    return ends
+
+
+def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
+    """An open bead gone on at both ends, along itself and then along the border of its room, until it is long enough; as it
+    is where the room is too small."""
+    for _ in range(LONGER):
+        lack = beads.shortest - length(points, False)
+        if lack <= 0.0:
+            break
+        share = np.linspace(0.0, 0.6 * lack, 5)[1:, None]
+        ways = [out / max(float(np.hypot(*out)), 1e-300) for out in (points[0] - points[1], points[-1] - points[-2])]
+        ends = [moved(end + share * way, inner) for end, way in zip((points[0], points[-1]), ways)]
+        longer = simplified(np.vstack([ends[0][::-1], points, ends[1]]), 0.2 * beads.chord_error)
+        if length(longer, False) <= length(points, False):
+            break
+        points = longer
+    return points
+
+
+def moved(points: Array, inner: Sequence[Region]) -> Array:
+    """Points (n, 2), those outside of all regions moved to the nearest of them; as they are where there are none."""
+    if not inner:
+        return points
     inside = np.any([region.contains(points) for region in inner], axis=0)
     near = [region.nearest(points) for region in inner]
     best = np.argmin([away for _, away in near], axis=0)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel contours: the border's parallel curves, half a spacing inside and then at the spacing, and their middle."""
+"""Parallel contours: the border's parallel curves, half a bead inside and then at the spacing, and their middle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..geometry.plane_curve import length
 from ..geometry.region import Region
 from .centre import centre_beads, necks, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
@@ -20,9 +21,10 @@ class Levels:
 
 
 def levels(region: Region, beads: Beads) -> Levels:
-    """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add."""
+    """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Contours
+    too short are left open, for the beads in the middle."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = region.grown(-half, error)
+    inner = region.grown(-beads.inset, error)
     if not inner:
         return Levels((), (), (region,))
     thin = necks(region, inner, beads)
@@ -30,8 +32,11 @@ def levels(region: Region, beads: Beads) -> Levels:
     k = 0
     while inner:
         rings.append(inner)
-        open_ = region.grown(-(2 * k + 2) * half, error)
-        inner = region.grown(-(2 * k + 3) * half, error)
+        open_ = region.grown(-beads.inset - (2 * k + 1) * half, error)
+        inner = tuple(
+            part for part in region.grown(-beads.inset - (2 * k + 2) * half, error)
+            if length(part.rings()[0], True) >= beads.shortest
+        )
         covered = [part for piece in inner for part in piece.grown(half, error)]
         left.append(tuple(part for piece in open_ for part in (piece.without(covered) if covered else (piece,))))
         k += 1
@@ -53,5 +58,5 @@ def middles(found: Levels, beads: Beads) -> list[PlaneCurve]:
     """The beads in what contours leave open, and in thin places."""
     curves = single_beads(found.thin, beads)
     for k, left in enumerate(found.left):
-        curves += [begun(curve, beads) for curve in centre_beads(left, beads, k + 1)]
+        curves += [begun(curve, beads) for curve in centre_beads(left, beads, k + 1, found.rings[0])]
     return curves

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,8 +17,10 @@ LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
 class PlaneCurve:
     """The middle of a bead: points (n, 2) mm; a closed one does not repeat its first point.
 
-    kind: 'contour', 'line', 'spiral', 'zigzag' or 'centre'. ring: counts from the outermost contour, 0, inwards. turns: how
-    often a closed one goes round the hub, so that behind its last point follows the first, moved on by the period as often.
+    kind: 'contour', 'line', 'spiral', 'zigzag', 'centre' or 'closing'. ring: counts from the outermost contour, 0, inwards.
+    turns: how often a closed one goes round the hub, so that behind its last point follows the first, moved on by the period
+    as often. sheet: u (`strip.Period`), mm, about which it lies: on a wide cone it may be more than half a turn of the
+    plane from 0.
     """
 
     points: Array
@@ -25,16 +28,24 @@ class PlaneCurve:
     kind: str
     ring: int
     turns: int = 0
+    sheet: float = 0.0
+
+
+def on_plane(point: Array) -> str:
+    """A place (2,) in words."""
+    return f"({point[0]:.4g}, {point[1]:.4g}) mm"
 
 
 @dataclass(frozen=True)
 class Beads:
     """How a region is filled: what all patterns ask for.
 
-    spacing: mm between the middles of neighbouring beads. gap: the widest (mm) that may stay open between beads.
-    shortest: beads below this length (mm) are dropped. thin: 'single' lays one bead where a region, or a neck of it, is
-    narrower than a bead; 'refuse' refuses. clockwise: sense of closed beads. start: a point (x, y) that closed beads begin
-    nearest to, or the direction (rad) in which they begin farthest out. chord_error: mm, of arcs; 0: 0.005 spacings.
+    spacing: mm between the middles of neighbouring beads. width: mm of a bead, which the outermost lies half of inside the
+    border; 0: the spacing. gap: the widest (mm) that may stay open between beads.
+    shortest: beads that close gaps go on until they are that long (mm), others below it are dropped. thin: 'single' lays one
+    bead where a region, or a neck of it, is narrower than a bead; 'refuse' refuses. clockwise: sense of closed beads. start:
+    a point (x, y) that closed beads begin nearest to, or the direction (rad) in which they begin farthest out. chord_error:
+    mm, of arcs; 0: 0.005 spacings. where: a place (2,) in words.
     """
 
     spacing: float
@@ -44,6 +55,13 @@ class Beads:
     clockwise: bool = False
     start: tuple[float, float] | float = 0.0
     chord_error: float = 0.0
+    where: Callable[[Array], str] = on_plane
+    width: float = 0.0
+
+    @property
+    def inset(self) -> float:
+        """How far (mm) inside the border the middle of the outermost bead lies."""
+        return 0.5 * (self.width or self.spacing)
 
     def __post_init__(self) -> None:
         if not self.spacing > 0.0 or not self.gap > 0.0 or self.shortest < 0.0 or self.thin not in ("single", "refuse"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel lines at an angle, half a spacing inside the border or inside a contour round them."""
+"""Parallel lines at an angle, half a bead inside the border or inside a contour round them."""
 
 from __future__ import annotations
 
@@ -9,70 +9,65 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.plane_curve import Array, turned
-from ..geometry.region import Region, along
-from .centre import centre_beads, necks, single_beads
+from ..geometry.plane_curve import Array, length, turned
+from ..geometry.region import Region
+from .centre import closing, necks, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
 
-STRETCH = 0.01  # relative; lines are moved apart or together no more than that
+TOGETHER, APART = 0.01, 0.002  # of the spacing; lines are moved no more than that so that they come out even
 
 
 class Frame(NamedTuple):
-    """curves: the contour round the lines, if any; room: the regions that the lines fill from border to border; thin: the
-    region, or necks of it, narrower than a bead."""
+    """curves: the contour round the lines, if any; room: the regions between whose borders lines are spread; ends: those
+    that they run through, which reach onto the contour; thin: the region, or necks of it, narrower than a bead."""
 
     curves: list[PlaneCurve]
     room: tuple[Region, ...]
+    ends: tuple[Region, ...]
     thin: tuple[Region, ...]
 
 
 def frame(region: Region, beads: Beads, ring: bool) -> Frame:
-    """Where lines may run: half a spacing inside the border, or of a contour that is laid first, onto which they end."""
+    """Where lines may run: half a bead inside the border, or a spacing inside of a contour that is laid first, onto which
+    they end."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = region.grown(-half, error)
+    inner = region.grown(-beads.inset, error)
     if not inner:
-        return Frame([], (), (region,))
+        return Frame([], (), (), (region,))
+    thin = necks(region, inner, beads)
     if not ring:
-        return Frame([], inner, necks(region, inner, beads))
+        return Frame([], inner, inner, thin)
     curves = [begun(PlaneCurve(line, True, "contour", 0), beads) for part in inner for line in part.rings()]
-    return Frame(curves, tuple(piece for part in inner for piece in part.grown(-half, error)), necks(region, inner, beads))
+    room, ends = (
+        tuple(piece for part in inner for piece in part.grown(-way, error)) for way in (2.0 * half, half)
+    )
+    return Frame(curves, room, ends, thin)
 
 
 def lines(region: Region, beads: Beads, angle: float = 0.0, ring: bool = False) -> list[PlaneCurve]:
     """Lines at an angle (rad), every other one the other way round; with `ring` a contour round them comes first.
 
-    First and last line are half a spacing inside the border (with a ring: half a spacing inside of that), and the rest
-    at the spacing from these. Where the breadth is no multiple of the spacing the lines move evenly if that takes less
-    than STRETCH; otherwise what is left over is in the middle, with a line of its own where it is wider than the gap
-    allowed. What lines leave open elsewhere, beside borders almost along them, is filled too. InfeasibleError
-    THIN_REGION, see `Beads`.
+    First and last line are half a bead inside the border (with a ring: a spacing inside of that), and the rest
+    at the spacing from these. Where the breadth is no multiple of the spacing the lines move evenly if that takes no more
+    than TOGETHER and APART; otherwise what is left over is in the middle and has a line of its own. With a ring, lines end
+    on it. What lines leave open elsewhere, beside borders almost along them, is filled too, as is the place of lines that
+    would be too short. InfeasibleError THIN_REGION, see `Beads`.
     """
     place = frame(region, beads, ring)
     curves = single_beads(place.thin, beads) + place.curves
-    for row, cuts in enumerate(rows(place.room, beads, angle)):
+    for row, cuts in enumerate(rows(place, beads, angle)):
+        cuts = [cut for cut in cuts if length(cut, False) >= beads.shortest]
         curves += [PlaneCurve(cut[::-1] if row % 2 else cut, False, "line", int(ring)) for cut in cuts]
-    curves += rest(region, curves, beads, int(ring) + 1)
+    curves += closing(region, curves, beads, int(ring))
     return long_enough(curves, beads.shortest)
 
 
-def rest(region: Region, curves: Sequence[PlaneCurve], beads: Beads, ring: int) -> list[PlaneCurve]:
-    """Beads in what curves leave open of the part of a region that beads can reach."""
-    half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = region.grown(-half, error)
-    if not inner:
+def rows(place: Frame, beads: Beads, angle: float) -> list[list[Array]]:
+    """Level by level the pieces (2, 2) of lines, all in the direction of the angle (rad)."""
+    if not place.room:
         return []
-    covered = along([(curve.points, curve.closed) for curve in curves], half, error)
-    reached = [part for piece in inner for part in piece.grown(half, error)]
-    left = [part for piece in reached for part in piece.without(covered)]
-    return centre_beads(left, beads, ring, inner)
-
-
-def rows(room: Sequence[Region], beads: Beads, angle: float) -> list[list[Array]]:
-    """Level by level the pieces (2, 2) of lines inside of regions, all in the direction of the angle (rad)."""
-    if not room:
-        return []
-    rings = [turned(ring, -angle) for part in room for ring in part.rings()]
-    height = np.concatenate([ring[:, 1] for ring in rings])
+    rings = [turned(ring, -angle) for part in place.ends for ring in part.rings()]
+    height = np.concatenate([turned(part.rings()[0], -angle)[:, 1] for part in place.room])
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
         x = _crossings(rings, level)
@@ -87,17 +82,14 @@ def levels_between(low: float, high: float, beads: Beads) -> Array:
     hair = 1e-7 * spacing + 1e-12 * max(abs(low), abs(high))  # lines along the border cross it for sure
     if breadth <= 4.0 * hair:
         return np.array([0.5 * (low + high)])
-    count = max(round(breadth / spacing), 1)
-    if abs(breadth / count - spacing) <= STRETCH * spacing:
+    count = max(math.ceil(breadth / ((1.0 + APART) * spacing)), 1)
+    if breadth / count >= (1.0 - TOGETHER) * spacing:
         levels = np.linspace(low, high, count + 1)
     else:
         whole = math.floor(breadth / spacing)
         below, above = (whole + 2) // 2, (whole + 1) // 2
         first, last = low + spacing * np.arange(below), high - spacing * np.arange(above)[::-1]
-        between = [0.5 * (first[-1] + last[0])] if len(last) and last[0] - first[-1] - spacing > beads.gap else []
-        if not len(last):
-            between = [high] if breadth > beads.gap else []
-        levels = np.r_[first, between, last]
+        levels = np.r_[first, 0.5 * (first[-1] + last[0]), last] if len(last) else np.array([low, high])
     found: Array = np.clip(levels, low + hair, high - hair)
     return found
 

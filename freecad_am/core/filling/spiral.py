@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contours linked to spirals: almost round, then over to the next contour by a short line."""
+"""Contours linked to spirals: once quite round at the border, then almost round and over to the next contour by a short
+line, and at last quite round again, so that neither end leaves a wedge open."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from ..geometry.plane_curve import Array, begun_at, doubled_area, length, nearest, up_to
 from ..geometry.region import Region
+from .centre import closing
 from .contours import levels, middles
 from .curve import Beads, PlaneCurve, long_enough
 
@@ -36,8 +38,8 @@ def spiral(region: Region, beads: Beads) -> list[PlaneCurve]:
             pieces = _linked([rings[j][n] for j, n in chain], found.rings[k:], beads)
             led.update(chain[: len(pieces)])
             curves.append(_curve(pieces, beads, k))
-    curves += middles(found, beads)
-    return long_enough(curves, beads.shortest)
+    curves = long_enough(curves + middles(found, beads), beads.shortest)
+    return curves + long_enough(closing(region, curves, beads, 0), beads.shortest)
 
 
 def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) -> dict[int, int]:
@@ -54,16 +56,19 @@ def _followers(here: Sequence[Array], there: Sequence[Array], spacing: float) ->
 
 
 def _linked(chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: Beads) -> list[Array]:
-    """The rings as far as links lead, each begun where the link arrives and ended where the next leaves."""
+    """The rings as far as links lead, each begun where the link arrives and ended where the next leaves: the first where it
+    began, the others a spacing before, so that links lie side by side. A ring that no link leads from is whole."""
     ring = beads.ring(chain[0])
-    pieces = []
+    pieces: list[Array] = []
     for following, inside in zip(chain[1:], regions):
         way = length(ring, True)
         if way < SHORT * beads.spacing:
             break
-        cut = up_to(np.vstack([ring, ring[:1]]), way - beads.spacing)
+        whole = np.vstack([ring, ring[:1]])
+        cut = up_to(whole, way - beads.spacing) if pieces else whole
         turned = following[::-1] if (doubled_area(following) < 0.0) != beads.clockwise else following
-        arrives = nearest(turned, ring[:1], True).points[0]
+        ahead = ring[:1] if pieces else up_to(whole, beads.spacing)[-1:]
+        arrives = nearest(turned, ahead, True).points[0]
         link = cut[-1] + np.linspace(0.0, 1.0, 17)[1:-1, None] * (arrives - cut[-1])
         if np.hypot(*(arrives - cut[-1])) > LINK * beads.spacing or not _inside(link, inside):
             break
@@ -76,9 +81,7 @@ def _linked(chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: 
 def _curve(pieces: Sequence[Array], beads: Beads, ring: int) -> PlaneCurve:
     if len(pieces) == 1:
         return PlaneCurve(pieces[0], True, "spiral", ring)
-    last = np.vstack([pieces[-1], pieces[-1][:1]])
-    last = up_to(last, max(length(last, False) - 0.5 * beads.spacing, 0.5 * length(last, False)))
-    return PlaneCurve(np.vstack([*pieces[:-1], last]), False, "spiral", ring)
+    return PlaneCurve(np.vstack([*pieces, pieces[-1][:1]]), False, "spiral", ring)
 
 
 def _inside(points: Array, regions: Sequence[Region]) -> bool:

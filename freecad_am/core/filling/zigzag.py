@@ -8,12 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..geometry.plane_curve import Array, length, nearest
-from ..geometry.region import Region
-from .centre import single_beads
+from ..geometry.region import Region, simplified
+from .centre import closing, single_beads
 from .curve import Beads, PlaneCurve, long_enough
-from .lines import frame, rest, rows
+from .lines import frame, rows
 
 LINK = 3.0  # of the spacing
+FLOOR = 4.0  # chord errors; no edge is shorter
 
 
 def zigzag(
@@ -25,22 +26,25 @@ def zigzag(
     """
     limit = longest_link if longest_link > 0.0 else LINK * beads.spacing
     place = frame(region, beads, ring)
-    borders = [line for part in place.room for line in part.rings()]
-    levels = rows(place.room, beads, angle)
+    borders = [line for part in place.ends for line in part.rings()]
+    least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
+    levels = [[cut for cut in cuts if length(cut, False) > least] for cuts in rows(place, beads, angle)]
     open_ = [list(range(len(level))) for level in levels]
     curves = single_beads(place.thin, beads) + place.curves
     for row in range(len(levels)):
         while open_[row]:
-            points = _chain(levels, open_, row, borders, limit)
-            curves.append(PlaneCurve(points, False, "zigzag", int(ring)))
-    curves += rest(region, curves, beads, int(ring) + 1)
+            points = _chain(levels, open_, row, borders, limit, least)
+            if length(points, False) >= beads.shortest:
+                curves.append(PlaneCurve(points, False, "zigzag", int(ring)))
+    curves += closing(region, curves, beads, int(ring))
     return long_enough(curves, beads.shortest)
 
 
 def _chain(
-    levels: Sequence[Sequence[Array]], open_: list[list[int]], row: int, borders: Sequence[Array], limit: float
+    levels: Sequence[Sequence[Array]], open_: list[list[int]], row: int, borders: Sequence[Array], limit: float,
+    least: float,
 ) -> Array:
-    """A zigzag from the first line open in a row up; takes its lines off the list."""
+    """A zigzag from the first line open in a row up, without edges shorter than `least` mm; takes its lines off the list."""
     piece = levels[row][open_[row].pop(0)]
     parts, far = [piece], 1
     while row + 1 < len(levels):
@@ -54,8 +58,19 @@ def _chain(
         _, number, way = min(links, key=lambda link: link[:2])
         open_[row].remove(number)
         far = 1 - far
-        parts += [way[1:-1], levels[row][number][:: 1 if far else -1]]
+        parts += [_clean(way, least), levels[row][number][:: 1 if far else -1]]
     return np.vstack(parts)
+
+
+def _clean(way: Array, least: float) -> Array:
+    """The inner points of a link, which begins and ends on lines, without those that hardly turn it and those within `least`
+    mm of others: an edge that short would turn the travel with nothing travelled."""
+    points = simplified(way, least / FLOOR)
+    kept = [points[0]]
+    for point in points[1:-1]:
+        if np.hypot(*(point - kept[-1])) >= least and np.hypot(*(point - points[-1])) >= least:
+            kept.append(point)
+    return np.array(kept[1:]).reshape(-1, 2)
 
 
 def _link(start: Array, end: Array, borders: Sequence[Array], limit: float) -> Array | None:

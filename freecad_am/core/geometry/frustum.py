@@ -20,6 +20,12 @@ Mask = NDArray[np.bool_]
 ROUNDING = 1e-9  # mm of depth that is rounding
 
 
+def beside_tip(radius: float, slope: float) -> float:
+    """Height (mm) over the tip plane at which the side of a nozzle is one diameter of its tip from the deposit point: below,
+    it touches what it stands on and the bead being laid."""
+    return float(radius * (np.sqrt(slope * slope + 3.0 * (1.0 + slope * slope)) - slope) / (1.0 + slope * slope))
+
+
 @dataclass(frozen=True)
 class Frustum:
     """radius: a, mm, at the tip plane; slope: k; low, high: mm over the tip plane.

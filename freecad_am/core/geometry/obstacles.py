@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Many segments or triangles in a tree of balls, and which nozzles they reach into or enclose."""
+"""Many points, segments or triangles in a tree of balls, and which nozzles they reach into or enclose."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from .frustum import Array, Frustum, Mask
 from .inside import Inside, inside_of
@@ -22,16 +21,17 @@ MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are
 
 
 class Obstacles:
-    """Segments (m, 2, 3) or triangles (m, 3, 3), neighbours in the list near each other.
+    """Points (m, 1, 3), segments (m, 2, 3) or triangles (m, 3, 3), kept in an order of their own.
 
     since: (m,) the moment from which each is there; none, then always. solids: closed bodies, always there, whose
     triangles are among the obstacles as far as nozzles reach.
     """
 
     def __init__(self, corners: Array, since: Index | None = None, solids: Sequence[Inside] = ()) -> None:
-        self.corners = corners
+        order = _packed(corners.mean(axis=1))
+        self.corners = corners = corners[order]
         self.solids = tuple(solids)
-        self.since = np.full(len(corners), -1, dtype=np.intp) if since is None else since
+        self.since = np.full(len(corners), -1, dtype=np.intp) if since is None else since[order]
         self._levels = [self._balls(1)]
         if corners.shape[1] == 3:
             normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -108,12 +108,33 @@ class Obstacles:
                 cut = nozzle.crossed(normal, level, axis[q])
                 q, n = q[cut], n[cut]
             offset = self.corners[n] - tip[q, None]
-            if self.corners.shape[1] == 2:
+            if self.corners.shape[1] == 1:
+                meets = nozzle.holds(offset[:, 0], axis[q])
+            elif self.corners.shape[1] == 2:
                 meets = nozzle.meets_segments(offset[:, 0], offset[:, 1], axis[q])
             else:
                 meets = nozzle.meets_triangles(offset, axis[q])
             found[q[meets]] = True
         return found
+
+
+def _packed(points: Array) -> Index:
+    """An order of points (n, 3) in which every ball of the tree holds neighbours: halves along the longest side of their
+    box again and again, cut between whole balls."""
+    order = np.arange(len(points))
+    waiting = [(0, len(points), BRANCH ** int(np.log(max(len(points), 1)) / np.log(BRANCH) + 1))]
+    while waiting:
+        low, high, ball = waiting.pop()
+        if high - low <= BRANCH:
+            continue
+        while ball >= high - low:
+            ball //= BRANCH
+        mine = order[low:high]
+        some = points[mine]
+        cut = -(-(high - low) // ball) // 2 * ball
+        order[low:high] = mine[np.argpartition(some[:, np.argmax(np.ptp(some, axis=0))], cut)]
+        waiting += [(low, low + cut, ball), (low + cut, high, ball)]
+    return order
 
 
 def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Obstacles:
@@ -131,8 +152,6 @@ def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Obstacles:
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
             break
         corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
-    if len(corners):
-        corners = corners[cKDTree(corners.mean(axis=1), leafsize=BRANCH).indices]
     # only a body whose box reaches as far has room for a whole nozzle about one of the points
     near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
             and (body.vertices.max(axis=0) >= low).all()]

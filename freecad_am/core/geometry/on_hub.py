@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import Issue
+from .columns import columns
 from .developable import TURN, Developable
 from .surroundings import Body
 
@@ -41,12 +42,31 @@ class Base:
         return part
 
 
-class Seat(NamedTuple):
-    """A base, and from where to where (mm along its axis) faces of it reach; infinite for one that is given."""
+class Stretch(NamedTuple):
+    """Where a face of a base is: from low to high, mm along its axis, and from the azimuth start, rad, on by span."""
 
-    base: Base
     low: float
     high: float
+    start: float = 0.0
+    span: float = TURN
+
+    def near(self, points: Array, room: float, all_round: bool = False) -> NDArray[np.bool_]:
+        """Which of points (n, 3) of the base's frame are on the face, or within `room` mm past its ends; all_round: whatever
+        their azimuths."""
+        x, y, z = columns(points)
+        along = (z > self.low - room) & (z < self.high + room)
+        if all_round or self.span >= TURN:
+            return np.asarray(along)
+        beside = room / np.maximum(np.hypot(x, y), room)
+        return np.asarray(along & (np.remainder(np.arctan2(y, x) - self.start + beside, TURN) < self.span + 2.0 * beside))
+
+
+class Seat(NamedTuple):
+    """A base and where its faces are. chosen: by the user, who may mean the rest of the turn too where there is no face."""
+
+    base: Base
+    faces: tuple[Stretch, ...]
+    chosen: bool = False
 
 
 @dataclass(frozen=True)
@@ -73,11 +93,18 @@ def middle_azimuth(base: Base, points: Array) -> float:
     """Azimuth (rad, from 0 to a turn) of the middle of the sector that points (n, 3) of the part lie in: opposite to their
     widest gap."""
     local = base.inside(points)
-    angle = np.sort(np.remainder(np.arctan2(local[:, 1], local[:, 0]), TURN))
+    start, span = sector(np.arctan2(local[:, 1], local[:, 0]))
+    middle = float(np.remainder(start + 0.5 * span, TURN))
+    return 0.0 if TURN - middle < 1e-9 else round(middle, 9)
+
+
+def sector(azimuths: Array) -> tuple[float, float]:
+    """Where the sector of azimuths (n,) rad begins, and how wide it is: all but their widest gap."""
+    angle = np.sort(np.remainder(azimuths, TURN))
     gaps = np.diff(angle, append=angle[0] + TURN)
     k = int(np.argmax(gaps))
-    middle = float(np.remainder(angle[k] + 0.5 * gaps[k] + 0.5 * TURN, TURN))
-    return 0.0 if TURN - middle < 1e-9 else round(middle, 9)
+    start = float(angle[(k + 1) % len(angle)])
+    return 0.0 if TURN - start < 1e-9 else start, TURN - float(gaps[k])
 
 
 def downwards(z: Array) -> bool:

@@ -80,6 +80,15 @@ def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
     return Nearest(place, edge, part, np.hypot(*(points - place).T))
 
 
+def dense(ring: Array, step: float) -> Array:
+    """A ring (n, 2) with points at most `step` mm apart."""
+    way = steps(ring, True)
+    count = np.maximum(np.ceil(np.hypot(*way.T) / step), 1.0).astype(np.intp)
+    edge = np.repeat(np.arange(len(ring)), count)
+    share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
+    return np.asarray(ring[edge] + share[:, None] * way[edge])
+
+
 def begun_at(ring: Array, point: Array) -> Array:
     """A ring (n, 2) that begins where it is nearest to a point (2,); that place becomes one of its points."""
     found = nearest(ring, point[None], closed=True)

@@ -24,8 +24,10 @@ Mask = NDArray[np.bool_]
 
 SAME = 1e-12  # of the extent; points nearer together are one
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
+AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
 LEAST_ARC = 8  # segments of a full turn
 WIDTH = 0.005  # relative tolerance of a region's width
+FINE_SLIT, LONG_SLIT = 0.1, 20.0  # of a slit's width: chord error of what closes it; how much border it takes away
 
 
 class Shapely(NamedTuple):
@@ -55,6 +57,7 @@ class Region:
     """One connected piece of the plane, with its holes; mm."""
 
     shape: Any  # a valid shapely Polygon; for this file alone
+    sheet: float = 0.0  # u (`strip.Period`), mm, of its middle, where it goes round more than half a turn of the plane
 
     @cached_property
     def _rings(self) -> tuple[Array, ...]:
@@ -110,7 +113,7 @@ class Region:
         """
         if distance == 0.0:
             return (self,)
-        return _parts(_buffered(self.shape, distance, chord_error), SLIVER * self.extent**2)
+        return _parts(_buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet)
 
     def without(self, others: Iterable[Region]) -> tuple[Region, ...]:
         """What is left when others are taken away."""
@@ -128,13 +131,13 @@ class Region:
 
     def simple(self, tolerance: float) -> Region:
         """The same with no more points than `tolerance` mm asks for."""
-        found = _parts(self.shape.simplify(tolerance), 0.0)
+        found = _parts(self.shape.simplify(tolerance), 0.0, self.sheet)
         return found[0] if len(found) == 1 else self
 
-    def where(self) -> str:
-        """A place inside, in words."""
+    def inside(self) -> Array:
+        """A place (2,) inside, away from the border."""
         point = self.shape.representative_point()
-        return f"({point.x:.4g}, {point.y:.4g}) mm"
+        return np.array([point.x, point.y])
 
 
 class Mended(NamedTuple):
@@ -180,8 +183,30 @@ def mended(loops: Sequence[Array], least_area: float | None = None) -> Mended:
 def along(curves: Sequence[tuple[Array, bool]], half: float, chord_error: float) -> tuple[Region, ...]:
     """What lies within `half` mm of curves (points (n, 2), whether closed)."""
     library = shapely()
-    lines = [library.geometry.LineString(np.vstack([points, points[:1]]) if closed else points) for points, closed in curves]
+    wholes = [np.vstack([points, points[:1]]) if closed else points for points, closed in curves]
+    lines = [library.geometry.LineString(piece) for whole in wholes for piece in _bends(whole)]
     return _parts(library.ops.unary_union([_buffered(line, half, chord_error) for line in lines]), 0.0)
+
+
+def joined(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
+    """Regions of one plane without the slits in and between them that are thinner than `width` mm; the same regions where
+    there are none, or only short ones."""
+    shape = shapely().ops.unary_union([_buffered(part.shape, 0.5 * width, FINE_SLIT * width) for part in parts])
+    shape = _buffered(shape, -0.5 * width, FINE_SLIT * width)
+    if sum(part.shape.length for part in parts) - shape.length < LONG_SLIT * width:
+        return tuple(parts)
+    return _parts(shape, SLIVER * shape.area)
+
+
+def _bends(line: Array) -> list[Array]:
+    """A line (n, 2) in pieces that do not come beside themselves: where one does, the library may fill what it goes round,
+    or find a shape that crosses itself."""
+    way = np.diff(line, axis=0)
+    heading = np.arctan2(way[:, 1], way[:, 0])
+    turn = np.abs(np.remainder(np.diff(heading) + math.pi, 2.0 * math.pi) - math.pi)
+    number = np.floor(np.r_[0.0, np.cumsum(turn)] / BEND + np.arange(len(way)) / AT_ONCE)
+    cuts = np.r_[0, np.flatnonzero(np.diff(number) > 0.0) + 1, len(way)]
+    return [line[a : b + 1] for a, b in zip(cuts, cuts[1:])]
 
 
 def simplified(points: Array, tolerance: float) -> Array:
@@ -238,26 +263,23 @@ def _wound(loops: list[Array]) -> tuple[Any, float]:
 
 
 def _ring(ring: Any, sense: float) -> Array:
-    points = np.asarray(ring.coords)[:-1]
-    if doubled_area(points) * sense < 0.0:
-        points = points[::-1]
+    points = np.asarray(ring.coords)
+    x, y = points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]
+    points = points[:-1] if (x[:-1] @ y[1:] - x[1:] @ y[:-1]) * sense >= 0.0 else points[-2::-1]
     leftmost = np.flatnonzero(points[:, 0] == points[:, 0].min())
     first = int(leftmost[np.argmin(points[leftmost, 1])])
-    begun: Array = np.roll(points, -first, axis=0)
-    return begun
+    return np.concatenate([points[first:], points[:first]])
 
 
-def _parts(shape: Any, least_area: float) -> tuple[Region, ...]:
+def _parts(shape: Any, least_area: float, sheet: float = 0.0) -> tuple[Region, ...]:
     """The polygons of a shape in the order of their leftmost points."""
-    found = [Region(part) for part in _polygons(shape) if part.area > least_area]
+    found = [Region(part, sheet) for part in _polygons(shape) if part.area > least_area]
     if len(found) < 2:
         return tuple(found)
     return tuple(sorted(found, key=lambda region: (region.rings()[0][0, 0], region.rings()[0][0, 1])))
 
 
 def _polygons(shape: Any) -> list[Any]:
-    if shape.is_empty:
-        return []
     if shape.geom_type == "Polygon":
-        return [shape]
+        return [] if shape.is_empty else [shape]
     return [part for item in getattr(shape, "geoms", ()) for part in _polygons(item)]

@@ -145,6 +145,11 @@ class Search:
         return side * distance, foot, self.owner[triangle]
 
 
+def spread(corners: Array, longest: float) -> tuple[Array, Index]:
+    """Middles (k, 3) of the parts of triangles (m, 3, 3), none with a side beyond `longest` mm; the triangle of each."""
+    return _spread(corners, longest) if len(corners) else (np.zeros((0, 3)), np.zeros(0, dtype=np.intp))
+
+
 def _spread(corner: Array, longest: float) -> tuple[Array, Index]:
     """Middles (k, 3) of the parts of triangles (m, 3, 3) with no side longer than `longest`, and the triangle of each."""
     of, done = np.arange(len(corner)), []

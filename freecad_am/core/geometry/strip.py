@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,20 @@ class Period:
         rest = self.apex - y
         return np.stack([np.arctan2(x, rest) * abs(self.apex), self.apex - np.hypot(x, rest)], axis=1)
 
+    @property
+    def whole(self) -> float:
+        """What u takes to come round to the same place of the plane, mm; more than a turn round the hub."""
+        return math.inf if math.isinf(self.apex) else 2.0 * math.pi * abs(self.apex)
+
+    def followed(self, flat: Array, sheet: float = 0.0) -> Array:
+        """(u, v) (n, 2) along a curve (n, 2) on the plane, u counted on where it comes round behind the apex, in the mean
+        within half a turn of the plane about `sheet`, mm."""
+        cover = self.unrolled(flat)
+        if not math.isinf(self.apex):
+            cover[:, 0] = np.unwrap(cover[:, 0], period=self.whole)
+            cover[:, 0] -= self.whole * np.round((cover[:, 0].mean() - sheet) / self.whole)
+        return cover
+
     def laid(self, cover: Array, about: float = 0.0) -> Array:
         """Points (n, 2) of the plane of (u, v), turned back by `about` mm of u."""
         if math.isinf(self.apex):
@@ -67,6 +82,15 @@ class Period:
             return np.asarray(flat[:, 0] - u)
         phi = u / abs(self.apex)
         return np.asarray(flat[:, 0] * math.cos(phi) - (self.apex - flat[:, 1]) * math.sin(phi))
+
+
+class Window(NamedTuple):
+    """Part of a turn: u from low to high and what else is looked at on both sides, mm. about: its middle."""
+
+    about: float
+    low: float
+    high: float
+    room: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,12 +122,10 @@ class Strip:
 
     def made(self, operation: Callable[[Region], Sequence[Region]], reach: float) -> tuple[Strip | Region, ...]:
         """What an operation makes of the strip that looks no farther than `reach` mm around."""
-        turn, period = self.period.around, self.period
-        room, count = self._windows(reach)
-        cuts: Array = np.linspace(-0.5 * turn, 0.5 * turn, count + 1)
+        period = self.period
+        windows = self.windows(reach)
         pieces: list[list[Array]] = []
-        for low, high in zip(cuts, cuts[1:]):
-            about = 0.5 * (low + high)
+        for about, low, high, room in windows:
             found: list[Array] = []
             for part in self.between(low - room, high + room):
                 laid = regions([period.laid(ring, about) for ring in part.rings()])
@@ -111,7 +133,7 @@ class Strip:
                     cover = [self._cut(ring, about, (low - about, high - about)) for ring in whole.rings()]
                     found += [ring for inner in regions(cover) for ring in _boxed(inner, low, high)]
             pieces.append(found)
-        return parts(*_chained(pieces, cuts), period)
+        return parts(*_chained(pieces, np.array([windows[0].low, *(window.high for window in windows)])), period)
 
     def between(self, low: float, high: float) -> tuple[Region, ...]:
         """The strip from u = low to u = high as regions in (u, v)."""
@@ -152,6 +174,21 @@ class Strip:
         cover = self._with_cuts(self.period.unrolled(flat), at, closed=True)
         return np.asarray(cover + np.array([about, 0.0]))
 
+    def windows(self, reach: float) -> tuple[Window, ...]:
+        """The strip once round, for what looks `reach` mm around."""
+        turn = self.period.around
+        room, count = self._windows(reach)
+        cuts = np.linspace(-0.5 * turn, 0.5 * turn, count + 1).tolist()
+        return tuple(Window(0.5 * (low + high), low, high, room) for low, high in zip(cuts, cuts[1:]))
+
+    def pane(self, window: Window) -> Array:
+        """A ring (n, 2) in (u, v) about all of the strip in a window, without the room beside it."""
+        u = np.linspace(window.low, window.high, 17)
+        bottom, top = self.levels
+        room = 0.05 * (window.high - window.low) + 1.0
+        below, above = np.stack([u, np.full(17, bottom - room)], axis=1), np.stack([u, np.full(17, top + room)], axis=1)
+        return np.vstack([below, above[::-1]])
+
     def _windows(self, reach: float) -> tuple[float, int]:
         """Room (mm of u) beside a window, and the number of windows."""
         if math.isinf(self.period.apex):
@@ -182,7 +219,9 @@ def parts(rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: 
         shifted = [hole + np.array([k * period.around, 0.0]) for hole in free for k in (-1, 0, 1)]
         inside = [hole for hole in shifted if winding((outer,), hole[:1])[0] > 0]
         about = np.array([np.round(outer[:, 0].mean() / period.around) * period.around, 0.0])
-        found += regions([period.laid(ring - about) for ring in (outer, *inside)])
+        sheet = 0.5 * float(outer[:, 0].min() + outer[:, 0].max()) - float(about[0])
+        laid = regions([period.laid(ring - about) for ring in (outer, *inside)])
+        found += [replace(region, sheet=sheet) for region in laid]
     return tuple(found)
 
 

@@ -66,6 +66,18 @@ class Chain:
         """The axes and the flange in base_link for joint values `q` (..., axes), rad and mm."""
         return self._run(q)
 
+    def links(self, q: ArrayLike) -> Array:
+        """The frames (axes + 1, 4, 4) of the links in base_link for one joint vector `q` (axes,), rad and mm: base_link
+        itself, then each joint's frame as the joint has moved it."""
+        result = np.empty((self.axes + 1, 4, 4))
+        result[0] = np.eye(4)
+        for joint, value in enumerate(np.asarray(q, float)):
+            direction = self.directions[joint]
+            moved = (np.eye(3), value * direction) if self.sliding[joint] else (
+                frames.rotation_about(direction, value), np.zeros(3))
+            result[joint + 1] = result[joint] @ self.origins[joint] @ frames.pose(*moved)
+        return result
+
     def _run(self, q: ArrayLike) -> JointFrames:
         angles = np.asarray(q, float)
         lead = angles.shape[:-1]

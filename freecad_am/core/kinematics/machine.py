@@ -7,6 +7,7 @@ by the joint frames and by the closed form, and a file that does not give them i
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from ..geometry.frames import Array
 from ..issues import InputError
 from .chain import Chain
 from .limits import Limits
+from .link_shape import LinkShape, link_shapes
 from .machine_file import Node, read
 from .opw import OpwArm
 
@@ -27,10 +29,11 @@ BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
 MAKER = "maker"
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "verified",
-    "check_poses",
+    "check_poses", "shapes",
 )
 # what rounding of the check poses may leave: mm, and entries of a rotation
 POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
+MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,8 @@ class Machine:
     the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
-    the file does not say.
+    the file does not say. `max_acceleration` (axes,) rad/s^2 or mm/s^2, infinite where not known. `shapes` (axes + 1) are
+    the files a user gave the links to be drawn from, base first.
     """
 
     id: str
@@ -58,6 +62,8 @@ class Machine:
     posts: tuple[str, ...] | None
     sources: tuple[str, ...]
     remarks: tuple[str, ...]
+    max_acceleration: Array
+    shapes: tuple[LinkShape | None, ...]
 
     @property
     def is_table(self) -> bool:
@@ -117,14 +123,28 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
             raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no machine file {text}")
         return _parse(read(path))
     if text.lower().endswith((".urdf", ".xacro")):
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{text}: URDF cannot be read; give a machine file (.json)")
-    files = _files(folders)
-    if text not in files:
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{text!r} is not known; {_near(text, sorted(files))}")
-    machine = _parse(read(files[text]))
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{text}: make a machine file of it: New Machine… in the window")
+    path = file_of(text, folders)
+    machine = _parse(read(path))
     if machine.id != text:
-        raise InputError("BAD_MACHINE", f"{files[text]}: id", f"{machine.id!r} is not the name of the file, {text!r}")
+        raise InputError("BAD_MACHINE", f"{path}: id", f"{machine.id!r} is not the name of the file, {text!r}")
     return machine
+
+
+def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
+    """The file of a machine of this id; InputError UNKNOWN_MACHINE when there is none."""
+    files = _files(folders)
+    if name not in files:
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{name!r} is not known; {_near(name, sorted(files))}")
+    return files[name]
+
+
+def parse(text: str, path: Path) -> Machine:
+    """The machine of the text of a machine file, which need not be there yet; `path` names it, and places its shapes.
+
+    Raises InputError BAD_MACHINE as `load` does.
+    """
+    return _parse(Node(json.loads(text), path))
 
 
 def _files(folders: Sequence[Path | str]) -> dict[str, Path]:
@@ -143,7 +163,8 @@ def _near(name: str, names: list[str]) -> str:
 
 def _parse(top: Node) -> Machine:
     top.only(*KEYS)
-    joints = [joint.only("name", "type", "origin", "rpy", "axis", "max_speed") for joint in top["joints"].items()]
+    keys = ("name", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration")
+    joints = [joint.only(*keys) for joint in top["joints"].items()]
     if not joints:
         raise top["joints"].bad("there is no joint")
     count = len(joints)
@@ -164,7 +185,7 @@ def _parse(top: Node) -> Machine:
         ),
         opw=_opw(top["opw"], count) if top.has("opw") else None,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
-        max_speed=np.array([_speed(joint) for joint in joints]) * units,
+        max_speed=np.array([_most(joint, "max_speed", "a speed") for joint in joints]) * units,
         limit_sets={name: _limits(name, node, names, units) for name, node in top["limits"].pairs()},
         controller_matrix=controller["matrix"].matrix(count, count),
         controller_offset=controller["offset"].numbers(count) * units,
@@ -172,12 +193,15 @@ def _parse(top: Node) -> Machine:
         posts=controller["posts"].texts() if controller.has("posts") else None,
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
+        max_acceleration=np.array([_most(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
+        shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)),
     )
     if MAKER not in machine.limit_sets:
         raise top["limits"].bad(f"the set {MAKER!r} is missing")
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
         raise controller["matrix"].bad("the matrix has no inverse")
-    for array in (machine.base, machine.max_speed, machine.controller_matrix, machine.controller_offset):
+    rates = (machine.max_speed, machine.max_acceleration)
+    for array in (machine.base, *rates, machine.controller_matrix, machine.controller_offset):
         array.flags.writeable = False
     _check(machine, top["check_poses"])
     return machine
@@ -198,13 +222,13 @@ def _slides(joint: Node) -> bool:
     return kind == "prismatic"
 
 
-def _speed(joint: Node) -> float:
-    if not joint.has("max_speed"):
+def _most(joint: Node, key: str, what: str) -> float:
+    if not joint.has(key):
         return math.inf
-    speed = joint["max_speed"].number()
-    if speed <= 0.0:
-        raise joint["max_speed"].bad(f"{speed:g} is not a speed; give more than 0, or null where not known")
-    return speed
+    most = joint[key].number()
+    if most <= 0.0:
+        raise joint[key].bad(f"{most:g} is not {what}; give more than 0, or null where not known")
+    return most
 
 
 def _opw(node: Node, count: int) -> OpwArm:
@@ -244,23 +268,39 @@ def _limits(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limit
 
 def _check(machine: Machine, node: Node) -> None:
     """Refuse a file whose check poses are not those of its own geometry."""
-    poses = [pose.only("q", "origin", "rotation") for pose in node.items()]
+    poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
         raise node.bad(f"there are {len(poses)}; a machine needs at least 3 joint vectors with their flange poses")
     q = np.array([pose["q"].numbers(len(machine.axes)) for pose in poses]) * machine.unit_values
     if not (q == 0.0).all(axis=1).any():
         raise node.bad("the pose at all zeros is missing")
     wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
+    allowed = np.array([_within(pose) for pose in poses])
     solvers = {"the joint frames give": machine.chain.forward}
     if machine.opw is not None:
         solvers["opw gives"] = machine.opw.forward
     for solver_gives, forward in solvers.items():
         off = np.abs(forward(q) - wanted)
         position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
-        wrong = (position > POSITION_TOLERANCE) | (rotation > ROTATION_TOLERANCE)
+        wrong = (position > allowed[:, 0]) | (rotation > allowed[:, 1])
         if wrong.any():
             index = int(np.argmax(wrong))
             raise poses[index].bad(
                 f"{solver_gives} a flange {position[index]:.6g} mm and "
                 f"{rotation[index]:.3g} (largest entry of the rotation) from it; correct the geometry or the pose"
             )
+
+
+def _within(pose: Node) -> tuple[float, float]:
+    """How far the rounding of a check pose may leave it, mm and as entries of the rotation: what `within` says of one
+    that was read from a display."""
+    if not pose.has("within"):
+        return POSITION_TOLERANCE, ROTATION_TOLERANCE
+    node = pose["within"].only("mm", "deg")
+    found = []
+    for key, most in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
+        value = node[key].number()
+        if not 0.0 <= value <= most:
+            raise node[key].bad(f"{value:g} is more than the rounding of a display leaves; give 0 to {most:g}")
+        found.append(value)
+    return max(found[0], POSITION_TOLERANCE), max(math.radians(found[1]), ROTATION_TOLERANCE)

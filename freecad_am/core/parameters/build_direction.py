@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from ..issues import InputError
 from . import field as f
 
+TURN_ON_WALLS, TURN_ON_HUBS = math.radians(30.0), math.radians(3.0)  # rad/mm, what max_turn = auto stands for
 
 @dataclass(frozen=True)
 class BuildDirectionParameters:
@@ -31,9 +32,9 @@ class BuildDirectionParameters:
         math.pi / 2, f.ANGLE, "Largest angle between the tool axis and the vertical of the part.", low=0.0, high=math.pi
     )
     max_turn: float | str = f.parameter(
-        math.radians(30.0), f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an "
-        "existing part; where they would turn faster, at corners, they are spread, and how far they depart is told.",
-        low=0.0, open_low=True, words=("inf",),
+        "auto", f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an existing part "
+        "and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told.",
+        low=0.0, open_low=True, words=("auto", "inf"),
     )
     plane: str = f.parameter(
         "auto", f.TEXT, "Normal of the plane of symmetry-plane, as x y z in the part's coordinates; auto: the plane of a "
@@ -49,6 +50,10 @@ class BuildDirectionParameters:
             object.__setattr__(self, "max_turn", "inf")
         f.check(self, "build_direction")
         self.plane_normal()
+
+    def turn(self, auto: float = TURN_ON_WALLS) -> float:
+        """`max_turn`, rad/mm, infinite for inf; for auto that of walls, or the one given."""
+        return auto if self.max_turn == "auto" else float(self.max_turn)
 
     def plane_normal(self) -> tuple[float, float, float] | None:
         """`plane` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no vector."""

@@ -112,10 +112,11 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
         raise InputError("BAD_VALUE", key, f"{value!r} is not a whole number")
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):
-        raise InputError("BAD_VALUE", key, f"{outer_text(spec, value)} is out of range; give {_range_text(spec)}")
+        raise InputError("BAD_VALUE", key, f"{outer_text(spec, value)} is out of range; give {range_text(spec)}")
 
 
-def _range_text(spec: Spec) -> str:
+def range_text(spec: Spec) -> str:
+    """The allowed range in outer units, '' where there is none."""
     parts = []
     if spec.low is not None:
         parts.append(("more than " if spec.open_low else "at least ") + outer_text(spec, spec.low))

@@ -3,11 +3,17 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
+from ..issues import InputError
 from . import field as f
 
+BRANCHES = tuple("-".join(words) for words in itertools.product(("front", "back"), ("up", "down"), ("noflip", "flip")))
+OF_CELL = "cell"
+HIGHEST = 6  # degree of a polynomial
+EVERY = "*"
 METHODS = ("layer-by-layer", "point-by-point", "constant")
 OBJECTIVES = (
     "displacement", "limits-liegeois", "limits-fournier", "limits-klein", "manipulability", "condition",
@@ -23,7 +29,12 @@ class JointParameters:
         choices=METHODS,
     )
     rz: float | str = f.parameter("auto", f.ANGLE, "Method constant: the one RZ, or auto to search it.", words=("auto",))
-    degree: int = f.parameter(1, f.COUNT, "Degree of the polynomial of a layer.", low=0, high=6)
+    degree: int = f.parameter(1, f.COUNT, "Degree of the polynomial of a layer.", low=0, high=HIGHEST)
+    given: tuple[str, ...] = f.parameter(
+        (), f.TEXT,
+        "Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other "
+        "bead, in deg and deg per turn.",
+    )
     parameter: str = f.parameter(
         "rotation", f.CHOICE,
         "What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.",
@@ -61,11 +72,50 @@ class JointParameters:
         math.radians(45.0), f.ANGLE, "Four axes only: by how much the tool may miss the direction asked for.",
         low=0.0, high=math.pi,
     )
+    own_branch: str = f.parameter(
+        OF_CELL, f.CHOICE, "Shoulder, elbow and wrist of this joint path; cell: as the cell says.",
+        choices=(OF_CELL, *BRANCHES), advanced=True,
+    )
     compare: tuple[str, ...] = f.parameter((), f.TEXT, "Further methods planned for the comparison of the report.")
 
     def __post_init__(self) -> None:
-        f.check(self, "joints", skip=frozenset({"compare"}))
+        f.check(self, "joints", skip=frozenset({"compare", "given"}))
         object.__setattr__(self, "compare", tuple(self.compare))
+        object.__setattr__(self, "given", tuple(self.given))
+        given_polynomials(self.given)
         for method in self.compare:
             if method not in METHODS:
                 raise f.unknown_choice("joints.compare", method, METHODS)
+
+
+def given_polynomials(given: tuple[str, ...]) -> dict[tuple[int, int] | None, tuple[float, ...]]:
+    """The polynomials of the parameter `given` by (layer, bead), that of every other bead by None.
+
+    Their coefficients, the constant first, are in rad and rad per power of the bead's parameter, of which a turn has 2 pi.
+    Raises InputError 'BAD_VALUE' for what cannot be read or is there twice.
+    """
+    found: dict[tuple[int, int] | None, tuple[float, ...]] = {}
+    for entry in given:
+        place, *numbers = entry.split(":") if isinstance(entry, str) else ("", "")
+        try:
+            layer, slash, bead = place.strip().partition("/")
+            key = None if place.strip() == EVERY else (int(layer), int(bead) if slash else 0)
+            values = [float(number) for number in numbers]
+        except ValueError:
+            values = []
+        if not values or len(values) > HIGHEST + 1 or not all(map(math.isfinite, values)) or (key and min(key) < 0):
+            raise InputError(
+                "BAD_VALUE", "joints.given", f"{entry!r} is not understood; give layer/bead:constant:slope with up to "
+                f"{HIGHEST + 1} coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead",
+            )
+        if key in found:
+            raise InputError("BAD_VALUE", "joints.given", f"{place.strip()} is there twice; give each bead one")
+        found[key] = tuple(math.radians(value) / (2.0 * math.pi) ** power for power, value in enumerate(values))
+    return found
+
+
+def given_text(place: tuple[int, int] | None, coefficients: tuple[float, ...]) -> str:
+    """An entry of the parameter `given`, of coefficients as `given_polynomials` has them."""
+    name = EVERY if place is None else f"{place[0]}/{place[1]}"
+    shown = [math.degrees(value) * (2.0 * math.pi) ** power for power, value in enumerate(coefficients)]
+    return ":".join([name, *(f"{round(value, 9) + 0.0:.12g}" for value in shown)])

@@ -25,6 +25,10 @@ class WireParameters:
 
     diameter: float = f.parameter(1.2, f.LENGTH, "Diameter of the wire.", low=0.0, open_low=True)
     feed: float = f.parameter(10.0, f.SPEED, "Speed of the wire.", low=0.0)
+    feed_mode: str = f.parameter(
+        "constant", f.CHOICE, "Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so "
+        "that beads keep their section.", choices=("constant", "proportional"),
+    )
 
     def __post_init__(self) -> None:
         f.check(self, "process.wire")
@@ -48,6 +52,25 @@ class BetweenLayersParameters:
 
 
 @dataclass(frozen=True)
+class CoolingParameters:
+    """The sensor that tells how hot a place is that the torch returns to."""
+
+    below: float | None = f.parameter(
+        None, f.NUMBER, "Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the "
+        "torch waits above where that begins.", low=0.0, open_low=True, optional=True,
+    )
+    input: int = f.parameter(1, f.COUNT, "Number of the analogue input that the sensor is on.", low=1, high=64)
+    gain: float = f.parameter(
+        1.0, f.NUMBER, "By how much the input's value in a program rises with a degree.", low=0.0, open_low=True,
+        advanced=True,
+    )
+    zero: float = f.parameter(0.0, f.NUMBER, "The input's value in a program at 0 degrees Celsius.", advanced=True)
+
+    def __post_init__(self) -> None:
+        f.check(self, "process.cooling")
+
+
+@dataclass(frozen=True)
 class ProcessParameters:
     """Speeds, seams and the switching of the deposit. mm, mm/s, s, rad."""
 
@@ -61,9 +84,14 @@ class ProcessParameters:
         "Direction of closed beads seen against the build direction; open beads run as found unless alternate.",
         choices=("counter-clockwise", "clockwise", "alternate", "as found"),
     )
-    bead_width: float = f.parameter(8.0, f.LENGTH, "Width of the bead; held by the bead model, only reported without one.",
-                                    low=0.0, open_low=True)
+    bead_width: float = f.parameter(
+        8.0, f.LENGTH, "Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.", low=0.0,
+        open_low=True,
+    )
     wire: WireParameters = f.group(WireParameters, "The feedstock.")
+    density: float = f.parameter(
+        7.85, f.NUMBER, "Density of the deposit in g/cm\u00b3; tells its mass.", low=0.0, open_low=True
+    )
     temperature: float | None = f.parameter(None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True)
     gas: str | None = f.parameter(None, f.TEXT, "Shielding gas; carried along.", optional=True)
     stand_off: float | None = f.parameter(None, f.LENGTH, "Stand-off of the nozzle; carried along.", optional=True)
@@ -71,6 +99,7 @@ class ProcessParameters:
     lead_off: float = f.parameter(0.0, f.TIME, "Deposit switched off this long after a bead ends.", low=0.0)
     overlap: float = f.parameter(0.0, f.LENGTH, "How far a closed bead runs on past its seam.", low=0.0)
     between_layers: BetweenLayersParameters = f.group(BetweenLayersParameters, "What happens between two layers.")
+    cooling: CoolingParameters = f.group(CoolingParameters, "A temperature to wait for before returning to a place.")
     bead_model: str = f.parameter(
         "none", f.TEXT, "Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, "
         "csw, or the path of a calibration table."

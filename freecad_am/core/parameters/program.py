@@ -38,6 +38,12 @@ class NcParameters:
         optional=True,
     )
     deposit_off: str | None = f.parameter(None, f.TEXT, "M or H word that switches the deposit off.", optional=True)
+    wire_output: int = f.parameter(
+        1, f.COUNT, "Analogue output that tells the speed of the wire where it follows the travel speed.", low=1, high=64
+    )
+    wire_gain: float = f.parameter(
+        1.0, f.NUMBER, "Value of that output at 1 m/min of wire.", low=0.0, open_low=True, high=1e6
+    )
     switch_kinematics: bool = f.parameter(
         True, f.FLAG, "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone."
     )

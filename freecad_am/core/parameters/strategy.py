@@ -138,6 +138,10 @@ class DevelopableParameters(LayerParameters):
     bead_spacing: float = f.parameter(
         5.0, f.LENGTH, "Distance between neighbouring beads of a layer.", low=0.0, open_low=True
     )
+    bead_overlap: float | None = f.parameter(
+        None, f.RATIO, "Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.",
+        low=0.0, high=0.9, optional=True,
+    )
     fill: str = f.parameter(
         "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: spiral, zigzag.",
         choices=("contours", "lines", "spiral", "zigzag"),
@@ -171,8 +175,14 @@ class DevelopableParameters(LayerParameters):
         0.2, f.RATIO, "Widest gap that may stay open between beads, as a share of the bead spacing.",
         low=0.01, high=1.0, advanced=True,
     )
+    longest_link: float = f.parameter(
+        3.0, f.RATIO, "Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be "
+        "longer another zigzag begins.",
+        low=1.0, high=100.0, advanced=True,
+    )
     shortest: float = f.parameter(
-        2.0, f.LENGTH, "Beads shorter than this are left out.", low=0.0, advanced=True
+        2.0, f.LENGTH, "Beads that close gaps are made no shorter than this; others that are shorter are left out.", low=0.0,
+        advanced=True,
     )
 
     def __post_init__(self) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import Issue, has_errors
+from ..motion import Motion
 from ..toolpath import Bead, Toolpath
 
 Array = NDArray[np.float64]
@@ -64,6 +65,16 @@ class JointPath:
     def joints(self) -> Array:
         """(T, axes) joints of all deposit points, rad."""
         return np.concatenate([bead.joints for bead in self.beads])
+
+    def judged(self, motion: Motion) -> tuple[Array, Array]:
+        """Condition and its threshold at the deposit rows of its motion; NaN where a bead runs on over its own beginning."""
+        starts = np.flatnonzero(motion.point[motion.deposit] == 0)
+        condition = np.full(int(motion.deposit.sum()), np.nan)
+        threshold = condition.copy()
+        for start, path in zip(starts.tolist(), self.beads):
+            condition[start : start + len(path.condition)] = path.condition
+            threshold[start : start + len(path.threshold)] = path.threshold
+        return condition, threshold
 
     def toolpath(self, planned: Toolpath) -> Toolpath:
         """The toolpath with its beads as they will be run: seams moved, courses split."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..issues import Issue
 from ..toolpath import Bead
-from . import refine, room, search, valley
+from . import given, refine, room, search, valley
 from .joint_path import BeadPath
 from .judged import judged
 from .points import gather
@@ -32,7 +32,24 @@ NOT_MUCH_WORSE = 2.0
 def plan(
     task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths of all beads with their layer and index, and what was done to make them fit."""
+    """The paths of all beads with their layer and index, and what was done to make them fit.
+
+    Beads with a polynomial that is given have that one, and are judged like the others.
+    """
+    fixed = given.coefficients(task.parameters, places)
+    free = [k for k in range(len(beads)) if k not in fixed]
+    paths, helped = _searched(task, [beads[k] for k in free], [places[k] for k in free], progress) if free else ([], {})
+    of_bead = dict(zip(free, paths)) | given.paths(task, beads, places, fixed)
+    together, issues = room.put_in(
+        task, [of_bead[k] for k in range(len(beads))], {free[k]: some for k, some in helped.items()}
+    )
+    return together, issues
+
+
+def _searched(
+    task: Task, beads: Sequence[Bead], places: Sequence[Place], progress: Progress
+) -> tuple[list[BeadPath], dict[int, list[BeadPath]]]:
+    """The path of every bead, and of those that another seam or a cut helps what to put in its place."""
     coarse, full = gather(beads, task.cell, search.POINTS_PER_BEAD), gather(beads, task.cell)
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
@@ -68,7 +85,7 @@ def plan(
         k: found for k, found in zip(late, room.for_beads(task, [beads[k] for k in late], [places[k] for k in late]))
         if found is not None
     })
-    return room.put_in(task, paths, helped)
+    return paths, helped
 
 
 def _with_other_turns(start: Array, found: search.Found) -> Array:

@@ -28,8 +28,9 @@ RAPID_SHARE = 0.8
 SHORTEST = 0.05
 # largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
 LARGEST_TURN = np.radians(170.0)
-# how many times the lift is tried where the nozzle would meet the deposit
+# how many times the lift is tried where the nozzle would meet the deposit, and further, beyond everything that is there
 HIGHER = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+FURTHER = 1.5
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,7 @@ class _Rows:
     width: Array
     joints: Array
     duration: Array
+    wire: Array
 
 
 def assemble(
@@ -56,17 +58,18 @@ def assemble(
     Between two beads the tool is withdrawn along its axis by `between_layers.lift`, goes to the same height above the
     next start and down onto it; an endless axis that turns far on the way does so in several moves. Where the nozzle
     would meet the deposit, the platform or one of the bodies (in part coordinates) on its way it is withdrawn further, as
-    far as it takes; where no height does, or the robot cannot reach it, that is an issue.
+    far as it takes, up to beyond the sphere about all of these; where no height does, or the robot cannot reach it, that is
+    an issue.
     """
     lift = process.between_layers.lift
     lifts = np.full(len(joint_path.beads), lift)
     motion = _with_rapids(joint_path, cell, process, lifts)
     met = collisions(motion, cell, bodies=bodies)
-    for factor in HIGHER if lift > 0.0 else ():
+    for height in _heights(joint_path, cell, lift, bodies):
         if not met:
             break
         higher = lifts.copy()
-        higher[_numbers(joint_path, met)] = factor * lift
+        higher[_numbers(joint_path, met)] = height
         tried = _with_rapids(joint_path, cell, process, higher)
         lost = ~tried.reachable & ~tried.deposit
         # a height out of reach is no help: those beads stay as they were
@@ -78,6 +81,22 @@ def assemble(
         motion = _with_rapids(joint_path, cell, process, lifts)
         met = collisions(motion, cell, {(int(i.layer or 0), int(i.bead or 0)) for i in met}, bodies)
     return motion, (*met, *_out_of_reach(joint_path, motion), *_lift_notes(joint_path, lifts, lift))
+
+
+def _heights(joint_path: JointPath, cell: Cell, lift: float, bodies: Sequence[Body]) -> list[float]:
+    """The lifts to try after the given one, mm, up to where the nozzle is beyond the sphere about all that is there."""
+    if lift <= 0.0 or not joint_path.beads:
+        return []
+    radius = 0.5 * cell.platform_diameter
+    x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
+    platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    points = np.vstack([*(path.bead.points for path in joint_path.beads), platform, *(body.vertices for body in bodies)])
+    # from anywhere inside, a way of the diameter along any direction leads out of it
+    furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+    heights = [factor * lift for factor in HIGHER]
+    while heights[-1] < furthest:
+        heights.append(min(FURTHER * heights[-1], furthest))
+    return heights
 
 
 def _numbers(joint_path: JointPath, met: Sequence[Issue]) -> list[int]:
@@ -162,14 +181,14 @@ def _rapid(path: BeadPath, waypoints: Sequence[Array], cell: Cell, lift: float) 
     build = tool.copy()
     build[-1] = path.bead.build[0]
     none = np.full(len(joints), np.nan)
-    return _Rows(False, path.layer, path.index, position, build, tool, none, none, joints, none)
+    return _Rows(False, path.layer, path.index, position, build, tool, none, none, joints, none, none)
 
 
 def _retract(path: BeadPath, joints: Array, lift: float) -> _Rows:
     tool = path.bead.tool[-1:]
     none = np.full(1, np.nan)
     return _Rows(False, path.layer, path.index, path.bead.points[-1:] + lift * tool, path.bead.build[-1:], tool, none,
-                 none, joints[None], none)
+                 none, joints[None], none, none)
 
 
 def _deposit(path: BeadPath) -> _Rows:
@@ -177,7 +196,10 @@ def _deposit(path: BeadPath) -> _Rows:
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     duration = np.concatenate([[0.0], length / bead.speed[1:]])
     width = np.full(len(bead), np.nan) if bead.width is None else bead.width
-    return _Rows(True, path.layer, path.index, bead.points, bead.build, bead.tool, bead.speed, width, path.joints, duration)
+    wire = np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
+    return _Rows(
+        True, path.layer, path.index, bead.points, bead.build, bead.tool, bead.speed, width, path.joints, duration, wire
+    )
 
 
 def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> Motion:
@@ -202,5 +224,5 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
         layer=number["layer"], bead=number["bead"],
         point=np.concatenate([np.arange(count) for count in counts]),
         position=position, build=columns["build"], tool=columns["tool"], speed=speed, width=columns["width"],
-        joints=joints, duration=duration,
+        joints=joints, duration=duration, wire=columns["wire"],
     )

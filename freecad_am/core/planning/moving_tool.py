@@ -55,6 +55,11 @@ def kept_straight(motion: Motion, cell: Cell, chord_error: float, beads: Sequenc
     return Motion(**columns)
 
 
+def origins(motion: Motion, cell: Cell, chord_error: float) -> Rows:
+    """(m,) the row of the motion that each row of `kept_straight` is, or that it is on the way to."""
+    return np.repeat(np.arange(len(motion)), _pieces(motion, cell, chord_error))
+
+
 def _on_curves(motion: Motion, beads: Sequence[Bead], end: Rows, share: Array) -> Array:
     """(n, 3) points of the beads a share (n,) of the way along the segments that end at the rows (n,)."""
     number = np.cumsum(motion.deposit & (motion.point == 0)) - 1

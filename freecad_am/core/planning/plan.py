@@ -10,16 +10,17 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..issues import ERROR, WARNING, InputError, Issue, has_errors
+from ..issues import ERROR, NOTE, WARNING, InputError, Issue, has_errors
 from ..kinematics import opw
 from ..kinematics.cell import Cell
-from ..parameters.joints import JointParameters
+from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import comparison, constant, layer_by_layer, point_by_point, search, table, turns
+from . import comparison, constant, given, layer_by_layer, point_by_point, search, table, turns
 from .findings import findings
 from .joint_path import BeadPath, JointPath
 from .overlap import run_on
 from .points import gather
+from .speeds import corners_slowed, rings_slowed, too_fast
 from .straight import kept_straight
 from .task import Task
 
@@ -27,10 +28,15 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_point.plan, "constant": constant.plan}
+# what there is to choose where a robot is free to turn about the tool
+OF_ROBOTS = (
+    "method", "rz", "degree", "parameter", "rotation_range", "objective", "min_condition", "characteristic_length",
+    "tolerance", "max_iterations", "compare", "given", "own_branch",
+)
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
 SCREENED, TRIED = 12, 3
-REVOLUTION = "revolution"
+REVOLUTION, ON_HUBS = "revolution", "developable"
 
 
 def _silent(fraction: float, text: str) -> None:
@@ -54,17 +60,21 @@ def plan_joints(
         raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
                          "with four; use none")
     joined = toolpath.family != REVOLUTION
-    branches = [cell.branch] if cell.branch is not None else best_branches(beads, cell, parameters, joined)
-    chosen = None
-    for branch in branches:
-        task = Task(cell, branch, parameters, joined)
-        paths, issues = _planned(task, toolpath, beads, places, progress)
-        if chosen is None or not has_errors(issues):
-            chosen = task, paths, issues
-        if not has_errors(issues):
+    wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
+    branches = [wanted] if wanted is not None else best_branches(beads, cell, parameters, joined)
+    task = Task(cell, branches[0], parameters, joined)
+    paths, issues = _planned(task, toolpath, beads, places, progress)
+    failed = _failed(paths, issues, places)
+    for branch in branches[1:] if has_errors(issues) else ():
+        other = Task(cell, branch, parameters, joined)
+        # most branches fail at the same beads: these alone are soon planned
+        some = [beads[k] for k in failed], [places[k] for k in failed]
+        if failed and has_errors(_planned(other, toolpath, *some, progress)[1]):
+            continue
+        found = _planned(other, toolpath, beads, places, progress)
+        if not has_errors(found[1]):
+            task, (paths, issues) = other, found
             break
-    assert chosen is not None
-    task, paths, issues = chosen
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
     )
@@ -74,13 +84,34 @@ def plan_joints(
     )
 
 
+def _failed(paths: Sequence[BeadPath], issues: Sequence[Issue], places: Sequence[tuple[int, int]]) -> list[int]:
+    """Which beads have errors, SCREENED of them at most; where some were divided, those of their layers."""
+    wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
+    if len(paths) != len(places):
+        wrong = {place for place in places if place[0] in {layer for layer, _ in wrong}}
+    found = [k for k, place in enumerate(places) if place in wrong]
+    return [found[k] for k in sorted({round(at) for at in np.linspace(0, len(found) - 1, SCREENED)})] if found else []
+
+
 def _on_table(toolpath: Toolpath, cell: Cell, parameters: JointParameters, progress: Progress) -> JointPath:
     """The same on a machine with rotary axes, which leaves nothing to optimise."""
     paths, issues = table.plan(cell, toolpath, parameters, progress)
     if not has_errors(issues):
-        paths, slowed = rings_slowed(cell, paths, toolpath.layer_height)
-        issues += slowed + too_fast(cell, paths)
-    return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), tuple(issues))
+        paths, found = _slowed(cell, paths, toolpath)
+        issues += found
+    return JointPath(table.METHOD, "none", (), cell.limits.name, tuple(paths), (*issues, *_not_used(parameters)))
+
+
+def _not_used(parameters: JointParameters) -> list[Issue]:
+    """A note on what was chosen about the rotation about the tool, which machines with rotary axes do not have."""
+    usual = JointParameters()
+    chosen = [f"joints.{name}" for name in OF_ROBOTS if getattr(parameters, name) != getattr(usual, name)]
+    if not chosen:
+        return []
+    return [Issue(
+        NOTE, "NOT_USED", f"{', '.join(chosen)}: of no effect on a machine with two rotary axes, which leaves no rotation "
+        "about the tool to choose; leave out what is meant for robots",
+    )]
 
 
 def best_branches(beads: Sequence[Bead], cell: Cell, parameters: JointParameters, joined: bool = False) -> list[int]:
@@ -115,13 +146,22 @@ def _planned(
     longer = [run_on(task, path, toolpath.overlap) for path in paths]
     straight = [kept_straight(task, path, toolpath.chord_error) for path in longer]
     paths, notes = turns.counted_on(task, [path for path, _ in straight])
-    issues = issues + notes + [issue for _, found in straight for issue in found]
+    issues = given.not_used(task.parameters, places) + issues + notes + [issue for _, found in straight for issue in found]
     for path in paths:
         issues += findings(task, path)
     if not has_errors(issues):
-        paths, slowed = rings_slowed(task.cell, paths, toolpath.layer_height)
-        issues += slowed + too_fast(task.cell, paths)
+        paths, found = _slowed(task.cell, paths, toolpath)
+        issues = issues + found
     return paths, issues
+
+
+def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:
+    """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
+    if toolpath.family == ON_HUBS:
+        done, told = corners_slowed(cell, paths, toolpath.layer_height, toolpath.law)
+    else:
+        done, told = rings_slowed(cell, paths, toolpath.layer_height)
+    return done, told + too_fast(cell, done)
 
 
 def _compared(
@@ -139,59 +179,3 @@ def _compared(
         "planning_time_s": time.perf_counter() - started,
         "issues": [issue.as_dict() for issue in issues if issue.level != WARNING][:20],
     }
-
-
-def rings_slowed(
-    cell: Cell, paths: Sequence[BeadPath], layer_height: float
-) -> tuple[list[BeadPath], list[Issue]]:
-    """The paths with the tightest turns at the speed the axes allow, and a warning that says so.
-
-    Where a wall closes, the last rings are as small as chance leaves them, and the axis that turns the part would have to
-    turn without bound. What runs at less than a layer from the axis of the part is slowed; the rest is not: that is for
-    the user to decide.
-    """
-    result, slowed = [], []
-    for path in paths:
-        bead, ratio = path.bead, (_axis_speeds(path) / cell.machine.max_speed).max(axis=1)
-        radius = np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / np.abs(np.diff(bead.parameter))
-        tight = (ratio > 1.0) & (radius < layer_height)
-        if tight.any():
-            speed = bead.speed.copy()
-            speed[1:][tight] *= (1.0 - 1e-9) / ratio[tight]
-            path = dataclasses.replace(path, bead=dataclasses.replace(bead, speed=speed))
-            slowed.append(path)
-        result.append(path)
-    if not slowed:
-        return result, []
-    slowest = min(float(path.bead.speed.min()) for path in slowed)
-    return result, [Issue(
-        WARNING, "SLOWED",
-        f"{len(slowed)} bead(s) where the wall closes are run at down to {slowest:.3g} mm/s: the axes turn no faster",
-        slowed[0].layer, slowed[0].index,
-    )]
-
-
-def _axis_speeds(path: BeadPath) -> Array:
-    """(n - 1, axes) rad/s at which the axes turn along a bead."""
-    length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
-    speed: Array = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
-    return speed
-
-
-def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
-    """An issue for every bead on which an axis would have to turn faster than it can."""
-    found = []
-    for path in paths:
-        speed = _axis_speeds(path)
-        ratio = speed / cell.machine.max_speed
-        point, axis = np.unravel_index(int(ratio.argmax()), ratio.shape)
-        if ratio[point, axis] > 1.0:
-            value, unit = cell.machine.unit_values[axis], cell.machine.units[axis]
-            found.append(Issue(
-                ERROR, "SPEED",
-                f"axis {cell.machine.axes[axis]} would move at {speed[point, axis] / value:.0f} {unit}/s, it can do "
-                f"{cell.machine.max_speed[axis] / value:.0f}; lower the travel speed to "
-                f"{path.bead.speed[point + 1] / ratio[point, axis]:.2f} mm/s",
-                path.layer, path.index, int(point) + 1,
-            ))
-    return found

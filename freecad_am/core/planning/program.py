@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,11 @@ from ..program import (
     Program,
     Six,
     Wait,
+    WaitBelow,
     WaitInput,
 )
+from ..toolpath import Toolpath
+from .joint_path import BeadPath
 
 Array = NDArray[np.float64]
 
@@ -42,20 +45,22 @@ FIRST_APPROACH = 10.0
 
 def build(
     motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, name: str,
-    waits: Sequence[float] = (),
+    waits: Sequence[float] = (), returns: Collection[tuple[int, int]] = (),
 ) -> Program:
     """The program of a motion.
 
+    returns: beads (layer, index) that return to a place, of `returning`; the torch waits above them until that has cooled.
     waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
     towards them. Before the first layer that is run there is nothing to wait for.
 
     Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read.
     """
     check_controller(cell.machine, parameters.post)
+    blocks = _blocks(motion, cell, process, parameters, waits, returns)
     return Program(
         name=name,
         machine=cell.machine.title,
-        blocks=_blocks(motion, cell, process, parameters, waits),
+        blocks=blocks,
         endless=tuple(bool(e) for e in cell.limits.endless),
         motion=parameters.motion,
         setup=cell.setup,
@@ -65,7 +70,7 @@ def build(
         tool_frame=parameters.tool_frame,
         deposit_output=parameters.deposit_output,
         dry_run=parameters.dry_run,
-        remarks=_remarks(cell, process, parameters),
+        remarks=_remarks(cell, parameters, [block for block in blocks if isinstance(block, Moves)]),
         max_speed=tuple(cell.machine.max_speed.tolist()),
         station=_six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0]),
         carried=_six(_frames(cell, parameters)[1]),
@@ -75,8 +80,19 @@ def build(
         nc=NcOptions(
             parameters.nc.feed == "path", parameters.nc.compress, parameters.nc.smooth, parameters.nc.tolerance,
             parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
+            parameters.nc.wire_output, parameters.nc.wire_gain,
         ),
     )
+
+
+def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[int, int]]:
+    """The beads (layer, index) of a joint path that are the first ones where something was deposited before: of the layers
+    of a solid on a hub, or of whole layers."""
+    if any(path.bead.returns for path in paths):
+        return frozenset((path.layer, path.index) for path in paths if path.bead.returns)
+    if any(bead.kind for _, _, bead in toolpath):
+        return frozenset()
+    return frozenset((k, 0) for k, layer in enumerate(toolpath.layers) if k and not layer.first)
 
 
 def _letter(axis: str) -> str:
@@ -90,6 +106,13 @@ def check_controller(machine: Machine, post: str) -> None:
         return
     known = f"use one of {', '.join(machine.posts)}" if machine.posts else "there is no post for it yet; leave program out"
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
+
+
+def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:
+    """Where the program's origin is on the table as a program tells it; None where it is known only with the toolpath."""
+    if not cell.machine.is_table or not isinstance(parameters.origin, str):
+        return None
+    return _six(_frames(cell, parameters)[1])
 
 
 def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
@@ -115,8 +138,19 @@ def _has_retract(motion: Motion, first: int) -> bool:
 
 
 def _blocks(
-    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, waits: Sequence[float]
+    motion: Motion, cell: Cell, process: ProcessParameters, parameters: ProgramParameters, waits: Sequence[float],
+    returns: Collection[tuple[int, int]],
 ) -> tuple[Block, ...]:
+    def approach(rows: NDArray[np.int64], arriving: bool = False) -> list[Block]:
+        """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
+        place = int(motion.layer[rows[-1]]), int(motion.bead[rows[-1]])
+        if process.cooling.below is None or place not in returns:
+            return [_moves(motion, cell, rows, RAPID, parameters, arriving)]
+        above = [_moves(motion, cell, rows[:-1], RAPID, parameters, arriving)] if len(rows) > 1 else []
+        value = process.cooling.zero + process.cooling.gain * process.cooling.below
+        down = _moves(motion, cell, rows[-1:], RAPID, parameters, arriving and not above)
+        return [*above, WaitBelow(process.cooling.input, value, *place), down]
+
     run = rows_from(motion, parameters.start_at)
     groups = _groups(motion, np.flatnonzero(run))
     blocks: list[Block] = []
@@ -124,26 +158,26 @@ def _blocks(
     for number, rows in enumerate(groups):
         first = int(rows[0])
         if motion.deposit[first]:
-            blocks += [
-                DepositOn(process.lead_on),
-                _moves(motion, cell, rows[1:], DEPOSIT, parameters),
-                DepositOff(process.lead_off),
-            ]
+            moves = _moves(motion, cell, rows[1:], DEPOSIT, parameters)
+            started = DepositOn(process.lead_on, None if moves.wire is None else float(moves.wire[0]))
+            blocks += [started, moves, DepositOff(process.lead_off)]
             continue
         here = int(motion.layer[first])
         last = number == len(groups) - 1
         if layer is None:
             blocks.append(LayerStart(here))
-            blocks.append(_moves(motion, cell, rows, RAPID, parameters, arriving=True))
-        elif here == layer or last:
+            blocks += approach(rows, arriving=True)
+        elif last:
             blocks.append(_moves(motion, cell, rows, RAPID, parameters))
+        elif here == layer:
+            blocks += approach(rows)
         else:
             withdrawal, onward = (rows[:1], rows[1:]) if len(rows) >= 3 else (rows[:0], rows)
             if len(withdrawal):
                 blocks.append(_moves(motion, cell, withdrawal, RAPID, parameters))
             blocks += _between(process.between_layers, waits[here] if len(waits) else 0.0)
             blocks.append(LayerStart(here))
-            blocks.append(_moves(motion, cell, onward, RAPID, parameters))
+            blocks += approach(onward)
         layer = here
     return tuple(blocks)
 
@@ -190,10 +224,12 @@ def _moves(
         arm = cell.machine.opw
         assert arm is not None
         configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(motion.joints[rows]))
+    wire = motion.wire[rows]
+    told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
     return Moves(
         kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
         joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
-        position=position, rotation=rotation, configuration=configuration, direction=direction,
+        position=position, rotation=rotation, configuration=configuration, direction=direction, wire=wire if told else None,
     )
 
 
@@ -213,7 +249,7 @@ def _six(pose: Array) -> Six:
     return (x, y, z, rx, ry, rz)
 
 
-def _remarks(cell: Cell, process: ProcessParameters, parameters: ProgramParameters) -> tuple[str, ...]:
+def _remarks(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) -> tuple[str, ...]:
     moved = not isinstance(parameters.origin, str)
     station, carried = _frames(cell, parameters)
     if cell.setup == ROTARY_TABLE:
@@ -226,9 +262,26 @@ def _remarks(cell: Cell, process: ProcessParameters, parameters: ProgramParamete
         f"Limits: {cell.limits.name}",
         *_pose_remarks(where, _six(frame)),
         *(() if isinstance(parameters.origin, str) else _pose_remarks("Program origin on the part", parameters.origin)),
-        f"Travel speed {process.travel_speed:g} mm/s",
+        *_ranges(moves),
         *((cell.machine.controller_remark,) if cell.machine.controller_remark else ()),
     )
+
+
+def _ranges(moves: Sequence[Moves]) -> list[str]:
+    """What the program itself tells: the speeds of its beads and, where it tells them, of their wire."""
+    beads = [run for run in moves if run.kind == DEPOSIT]
+    if not beads:
+        return []
+    wires = [run.wire for run in beads if run.wire is not None]
+    return [
+        f"Travel speed {_range(np.concatenate([run.speed for run in beads]))} mm/s",
+        *([f"Wire in proportion to it {_range(np.concatenate(wires))} mm/s"] if wires else []),
+    ]
+
+
+def _range(values: Array) -> str:
+    low, high = (f"{float(value):.4g}" for value in (values.min(), values.max()))
+    return low if low == high else f"{low} to {high}"
 
 
 def _pose_remarks(what: str, six: Six) -> tuple[str, str]:

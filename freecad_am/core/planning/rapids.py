@@ -14,13 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.frustum import Frustum
-from ..geometry.obstacles import of_bodies
+from ..geometry.obstacles import Obstacles, of_bodies
 from ..geometry.surroundings import Body
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 # largest turn of an axis between two looks, rad, and way of one that slides, mm; between neighbouring obstacle points, mm
 STEP = np.radians(5.0)
@@ -41,7 +43,8 @@ def collisions(
     Only the travels to the beads `among` (layer, bead) are looked at, where they are given.
 
     The withdrawal and the way down run along the tool axis, through room the nozzle itself keeps clear; their upper
-    ends belong to the travel and are looked at.
+    ends belong to the travel and are looked at. Where they are longer than the nozzle, its end enters further room: that
+    is looked at too.
     """
     travels = np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1
     # the way down onto a start is the last rapid row before the deposit: not a travel
@@ -51,21 +54,53 @@ def collisions(
         chosen = [(int(motion.layer[row]), int(motion.bead[row])) in among for row in travels]
         travels = travels[np.array(chosen, dtype=bool)]
     travels = travels[~np.isnan(motion.joints[travels - 1] + motion.joints[travels]).any(axis=1)]
-    if not len(travels):
-        return []
-    ways = [_way(motion, cell, row) for row in travels]
-    obstacles, laid = _obstacles(motion, cell)
-    met = np.array([_met(tip, axis, obstacles[laid < row], cell) for row, (tip, axis) in zip(travels, ways, strict=True)])
-    hit = _hits_bodies(ways, bodies, cell)
+    length = cell.nozzle.length
+    met = _met([_way(motion, cell, row) for row in travels], travels, motion, cell, bodies, TOUCH)
+    lifts = [lift for lift in _long_lifts(motion, length) if among is None or lift[2:] in among]
+    ends = [_along(motion, start, height) for start, height, _, _ in lifts]
+    met_above = _met(ends, np.array([lift[0] for lift in lifts], dtype=np.intp), motion, cell, bodies, length - SLIDE)
+    places = [(int(motion.layer[row]), int(motion.bead[row])) for row in travels[met]]
+    places += [lift[2:] for lift, hit in zip(lifts, met_above, strict=True) if hit]
     what = ", ".join(["the deposit", *(body.name for body in bodies)]) + " or the platform"
     return [
         Issue(
             ERROR, "RAPID_COLLISION",
             f"on its way from the bead before the nozzle would meet {what}; raise process.between_layers.lift",
-            int(motion.layer[row]), int(motion.bead[row]),
+            layer, bead,
         )
-        for row in travels[met | hit]
+        for layer, bead in dict.fromkeys(places)
     ]
+
+
+def _met(
+    ways: Sequence[tuple[Array, Array]], rows: Index, motion: Motion, cell: Cell, bodies: Sequence[Body], low: float
+) -> Mask:
+    """Whether the nozzle above the height `low` meets anything on each of the ways."""
+    if not ways:
+        return np.zeros(0, dtype=bool)
+    hit: Mask = _hits_deposit(ways, rows, motion, cell, low) | _hits_bodies(ways, bodies, cell, low)
+    return hit
+
+
+def _long_lifts(motion: Motion, length: float) -> list[tuple[int, float, int, int]]:
+    """The ways from beads up and down onto them that are longer than `length`: row of the deposit, height, layer, bead."""
+    laid, joints = motion.deposit, motion.joints
+    found = []
+    for bead_row, lifted in (
+        *((row, row + 1) for row in np.flatnonzero(laid[:-1] & ~laid[1:])),
+        *((row, row - 2) for row in np.flatnonzero(~laid[:-1] & laid[1:]) + 1 if row > 1 and not laid[row - 2]),
+    ):
+        height = float(np.linalg.norm(motion.position[lifted] - motion.position[bead_row]))
+        if height > length and not np.isnan(joints[lifted]).any():
+            found.append((int(bead_row), height, int(motion.layer[lifted]), int(motion.bead[lifted])))
+    return found
+
+
+def _along(motion: Motion, row: int, height: float) -> tuple[Array, Array]:
+    """Tip and tool axis (k, 3) at looks from a point of the deposit up along its tool axis."""
+    axis = motion.tool[row]
+    tip = motion.position[row] + np.append(np.arange(0.0, height, SLIDE), height)[:, None] * axis
+    return tip, np.broadcast_to(axis, tip.shape)
 
 
 def _way(motion: Motion, cell: Cell, row: int) -> tuple[Array, Array]:
@@ -77,22 +112,39 @@ def _way(motion: Motion, cell: Cell, row: int) -> tuple[Array, Array]:
     return cell.tip_in_part(cell.machine.chain.forward(joints))
 
 
-def _hits_bodies(ways: Sequence[tuple[Array, Array]], bodies: Sequence[Body], cell: Cell) -> NDArray[np.bool_]:
-    """Whether the nozzle meets a body on each of the ways."""
+def _hits_bodies(ways: Sequence[tuple[Array, Array]], bodies: Sequence[Body], cell: Cell, low: float) -> Mask:
+    """Whether the nozzle, above the height `low`, meets a body on each of the ways."""
     if not bodies:
         return np.zeros(len(ways), dtype=bool)
     nozzle = cell.nozzle
     solid = Frustum(
-        max(0.5 * nozzle.diameter - BODY_TOUCH, 0.0), float(np.tan(nozzle.half_angle)), BODY_TOUCH, nozzle.length
+        max(0.5 * nozzle.diameter - BODY_TOUCH, 0.0), float(np.tan(nozzle.half_angle)), max(low, BODY_TOUCH),
+        nozzle.length,
     )
     tip, axis = (np.concatenate(parts) for parts in zip(*ways, strict=True))
     touched = of_bodies(bodies, tip, solid.reach).touched(solid, tip, axis)
     begin = np.r_[0, np.cumsum([len(way[0]) for way in ways])[:-1]]
-    hits: NDArray[np.bool_] = np.logical_or.reduceat(touched, begin)
+    hits: Mask = np.logical_or.reduceat(touched, begin)
     return hits
 
 
-def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, NDArray[np.int64]]:
+def _hits_deposit(
+    ways: Sequence[tuple[Array, Array]], rows: Index, motion: Motion, cell: Cell, low: float = TOUCH
+) -> Mask:
+    """Whether the nozzle, above the height `low`, meets the platform or what is deposited before the row, on each way."""
+    nozzle = cell.nozzle
+    solid = Frustum(0.5 * nozzle.diameter - TOUCH, float(np.tan(nozzle.half_angle)), max(low, TOUCH), nozzle.length)
+    points, laid = _obstacles(motion, cell)
+    tip, axis = (np.concatenate(parts) for parts in zip(*ways, strict=True))
+    count = np.array([len(way[0]) for way in ways])
+    touched = Obstacles(points[:, None], laid).touched(solid, tip, axis, np.repeat(rows, count))
+    local = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :3]
+    touched |= (local[:, 2] < -TOUCH) & (np.hypot(local[:, 0], local[:, 1]) < 0.5 * cell.platform_diameter)
+    hits: Mask = np.logical_or.reduceat(touched, np.cumsum(count) - count)
+    return hits
+
+
+def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, Index]:
     """Points (m, 3) of deposit and platform in part coordinates, and the row (m,) from which each is there."""
     rows = np.flatnonzero(motion.deposit)
     along = np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0, prepend=motion.position[rows[:1]]), axis=1))
@@ -104,28 +156,3 @@ def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, NDArray[np.int64]]:
     disc = np.stack([x, y, np.zeros(len(x))], axis=1)[inside] @ cell.mount[:3, :3].T + cell.mount[:3, 3]
     points = np.concatenate([disc, motion.position[rows[kept]]])
     return points, np.concatenate([np.full(len(disc), -1), rows[kept]])
-
-
-def _met(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
-    """Whether any obstacle point (m, 3) is inside the nozzle at any of the looks: tip and tool axis (k, 3)."""
-    nozzle = cell.nozzle
-    reach = nozzle.length + 0.5 * nozzle.diameter + nozzle.length * np.tan(nozzle.half_angle)
-    near = ((obstacles > tip.min(axis=0) - reach) & (obstacles < tip.max(axis=0) + reach)).all(axis=1)
-    if near.any() and _inside(tip, axis, obstacles[near], cell):
-        return True
-    below = (tip - cell.mount[:3, 3]) @ cell.mount[:3, 2] < -TOUCH
-    across = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :2]
-    return bool((below & (np.linalg.norm(across, axis=1) < 0.5 * cell.platform_diameter)).any())
-
-
-def _inside(tip: Array, axis: Array, obstacles: Array, cell: Cell) -> bool:
-    """Whether any of the points (m, 3) is inside the nozzle."""
-    nozzle = cell.nozzle
-    # heights over the tip plane and squared distances from the tip, (m, k), as products of matrices
-    height = obstacles @ axis.T - (tip * axis).sum(axis=1)
-    centre = obstacles.mean(axis=0)
-    local, seat = obstacles - centre, tip - centre
-    square = (local * local).sum(axis=1)[:, None] - 2.0 * local @ seat.T + (seat * seat).sum(axis=1)
-    room = np.maximum(0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - TOUCH, 0.0)
-    inside = (height > TOUCH) & (height <= nozzle.length)
-    return bool((inside & (square - height * height < room * room)).any())

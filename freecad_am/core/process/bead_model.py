@@ -9,12 +9,14 @@ apart.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import InputError
+from ..toolpath import SpeedLaw
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -69,6 +71,22 @@ class BeadModel:
         """Height (...,) mm of the bead, the same way."""
         return self.height.at(speed, np.maximum(radius, self.radii[0]))
 
+    def law(self, acceleration: float) -> SpeedLaw:
+        """What the model says of beads at other speeds than theirs; speeds change by `acceleration` mm/s^2 at most."""
+        root = float(np.cbrt(1.0 / MINUTE))
+        return SpeedLaw(self.width.m * root, self.height.m * root, self.speeds[0], acceleration)
+
+    def straight_speed(self, width: float) -> float:
+        """The speed, mm/s, that keeps `width` mm where a bead is straight: there the wire runs at its nominal feed."""
+        return float(self.speed_for(width, np.array([np.inf])).speed[0])
+
+    def heights_of_section(self, widths: Array, width: float) -> Array:
+        """Height (n,) mm of beads of these widths (n,) mm that have the section of a straight one of `width` mm, as with a
+        wire feed in proportion to the speed. Sections of the same shape: height times width is the same."""
+        speed, straight = np.array([self.straight_speed(width)]), np.array([np.inf])
+        section: Array = self.heights(speed, straight) * self.widths(speed, straight)
+        return section / widths
+
     def speed_for(self, width: float, radius: Array) -> Asked:
         """The travel speed that keeps `width` mm at radii of curvature (n,) mm, kept within the speeds of the table."""
         tight = radius < self.radii[0] * (1.0 - 1e-9)
@@ -82,33 +100,54 @@ class BeadModel:
         )
 
 
-def fit(radius: Array, speed: Array, width: Array, height: Array, wire_feed: float, label: str = "table") -> BeadModel:
-    """The model of a calibration table: columns (n,) in mm and mm/s. Least squares, linear in the three coefficients.
+def fit(
+    radius: Array, speed: Array, width: Array, height: Array, wire_feed: float, label: str = "table",
+    lines: Sequence[int] = (),
+) -> BeadModel:
+    """The model of a calibration table: columns (n,) in mm and mm/s, and where each row stands in its file, for messages.
+    Least squares, linear in the three coefficients.
 
     InputError 'TOO_FEW_ROWS', 'BAD_TABLE' (values that are no beads: not positive, not finite), 'COLLINEAR_TABLE' (radii
     or speeds do not vary, or only together) or 'NO_MODEL' (width does not fall with speed).
     """
-    columns = {"radius": radius, "travel speed": speed, "width": width, "height": height}
+    columns = {
+        "radius": (radius, "mm"), "travel speed": (MINUTE * speed, "mm/min"), "width": (width, "mm"),
+        "height": (height, "mm"),
+    }
     if len(radius) < FEWEST:
-        raise InputError("TOO_FEW_ROWS", label, f"it has {len(radius)} rows; measure at least {FEWEST} beads")
-    for name, column in columns.items():
+        rows = "1 row" if len(radius) == 1 else f"{len(radius)} rows"
+        raise InputError("TOO_FEW_ROWS", label, f"it has {rows}; measure at least {FEWEST} beads")
+    for name, (column, unit) in columns.items():
         wrong = np.flatnonzero(~(np.isfinite(column) & (column > 0.0)))
         if len(wrong):
-            where = f"{label} row {wrong[0] + 1}"
-            raise InputError("BAD_TABLE", where, f"{name} {column[wrong[0]]:g} is not a positive number")
+            told = f"{name} {column[wrong[0]]:.9g} {unit} is not a positive number; mend the row, or leave it out"
+            raise InputError("BAD_TABLE", row_name(label, int(wrong[0]), lines), told)
     terms = np.stack([np.cbrt(1.0 / (MINUTE * speed)), 1.0 / radius, np.ones(len(radius))], axis=1)
     scaled = terms / np.linalg.norm(terms, axis=0)
     singular = np.linalg.svd(scaled, compute_uv=False)
     if singular[-1] < FLATTEST * singular[0]:
-        raise InputError(
-            "COLLINEAR_TABLE", label, "speeds and radii do not vary independently; measure at least two speeds and two radii"
-        )
+        raise InputError("COLLINEAR_TABLE", label, f"{_alike(radius, speed)}; measure at least two speeds and two radii")
     fits = [_fit(terms, column) for column in (width, height)]
     if fits[0].m <= 0.0:
         raise InputError("NO_MODEL", label, f"beads get wider with speed (m = {fits[0].m:.4g}); check the table's columns")
     return BeadModel(
         fits[0], fits[1], (float(speed.min()), float(speed.max())), (float(radius.min()), float(radius.max())), wire_feed
     )
+
+
+def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
+    """How messages name a row, from 0, of a table: counted from 1, and by its line in the file where that is known."""
+    return f"{label} row {row + 1}" + (f" (line {lines[row]})" if len(lines) else "")
+
+
+def _alike(radius: Array, speed: Array) -> str:
+    """Why speeds and radii of a table do not determine the coefficients."""
+    same = [
+        f"all beads have the {name} {column[0]:.9g} {unit}"
+        for name, column, unit in (("radius", radius, "mm"), ("travel speed", MINUTE * speed, "mm/min"))
+        if np.ptp(column) <= FLATTEST * column.max()
+    ]
+    return ", and ".join(same) or "speeds and radii vary only together"
 
 
 def _fit(terms: Array, values: Array) -> Fit:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..issues import InputError
-from .bead_model import MINUTE, Array, BeadModel, fit
+from .bead_model import MINUTE, Array, BeadModel, fit, row_name
 
 BUILT_IN = {"csw": "dai-2020.csv"}
 FOLDER = Path(__file__).resolve().parents[2] / "beads"
@@ -22,7 +22,8 @@ COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_fe
 
 
 class Measured(NamedTuple):
-    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, mm/s. label: the file's name."""
+    """Beads of a calibration table: columns (n,) in mm and mm/s, and the wire feed of all, mm/s. label: the file's name;
+    lines: where in it each row stands, from 1."""
 
     radius: Array
     speed: Array
@@ -30,6 +31,7 @@ class Measured(NamedTuple):
     height: Array
     wire_feed: float
     label: str
+    lines: tuple[int, ...]
 
 
 def load(name: str, folder: Path | None = None) -> BeadModel:
@@ -40,37 +42,55 @@ def load(name: str, folder: Path | None = None) -> BeadModel:
 def measured(name: str, folder: Path | None = None) -> Measured:
     """The beads of a built-in table ('csw': table 1 of Dai 2020) or of the table at a path, relative to `folder`.
 
-    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column).
+    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is no text).
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeError) as error:
+        if isinstance(error, UnicodeError):
+            raise InputError(
+                "BAD_TABLE", name, "it is no table: it holds bytes that are no text in UTF-8; save it as CSV in UTF-8",
+            ) from None
+        why = (error.strerror or "no access").lower()
         raise InputError(
-            "NO_FILE", name,
-            f"the calibration table cannot be read ({type(error).__name__}); give none, csw or the path of one",
+            "NO_FILE", name, f"the calibration table cannot be read ({why}); give none, csw or the path of one",
         ) from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    numbered = enumerate(text.splitlines(), 1)
+    told = [(number, line) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
+    lines, numbers = [line for _, line in told], tuple(number for number, _ in told[1:])
     rows = list(csv.DictReader(lines))
     header = [] if not lines else next(csv.reader(lines[:1]))
     missing = [column for column in COLUMNS if column not in header]
     if missing:
         raise InputError("BAD_TABLE", path.name, f"it has no column {missing[0]}; its first line names {', '.join(COLUMNS)}")
-    table = np.array([[_number(row, column, path.name, number) for column in COLUMNS] for number, row in enumerate(rows, 1)])
+    table = np.array([
+        [_number(row, column, row_name(path.name, number, numbers)) for column in COLUMNS] for number, row in enumerate(rows)
+    ])
     if not len(rows):
         table = np.empty((0, len(COLUMNS)))
     radius, speed, width, height, feed = table.T
+    wrong = np.flatnonzero(~(np.isfinite(feed) & (feed > 0.0)))
+    if len(wrong):
+        where = row_name(path.name, int(wrong[0]), numbers)
+        raise InputError(
+            "BAD_TABLE", where, f"wire feed {feed[wrong[0]]:g} m/min is not a positive number; mend the row, or leave it out"
+        )
     if len(feed) and np.ptp(feed) > 1e-9 * feed.max():
         raise InputError(
             "BAD_TABLE", path.name, f"its beads were laid at wire feeds from {feed.min():g} to {feed.max():g} m/min; the "
             "model is of one: keep the rows of one",
         )
     wire_feed = float(feed[0]) * 1000.0 / MINUTE if len(feed) else 0.0
-    return Measured(radius, speed / MINUTE, width, height, wire_feed, path.name)
+    return Measured(radius, speed / MINUTE, width, height, wire_feed, path.name, numbers)
 
 
-def _number(row: dict[str, str | None], column: str, name: str, number: int) -> float:
+def _number(row: dict[str, str | None], column: str, where: str) -> float:
+    if None in row:
+        raise InputError("BAD_TABLE", where, "it has more values than there are columns; write decimals with a point")
+    text = (row[column] or "").strip()
     try:
-        return float((row[column] or "").strip())
+        return float(text)
     except ValueError:
-        raise InputError("BAD_TABLE", f"{name} row {number}", f"{column} {row[column]!r} is not a number") from None
+        told = f"{column} {text!r} is not a number" if text else f"there is no {column}"
+        raise InputError("BAD_TABLE", where, f"{told}; mend the row, or leave it out") from None

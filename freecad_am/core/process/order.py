@@ -44,7 +44,12 @@ def ordered(beads: Sequence[Laid], order: str) -> Course:
         return (laid.group, laid.solid if order == "feature" else 0, laid.layer)
 
     layers: list[list[Laid]] = []
+    reached: dict[tuple[int, int], int] = {}  # the layer each solid has come to
     for laid in sorted(beads, key=place):
+        solid = laid.group, laid.solid
+        if reached.get(solid, laid.layer) != laid.layer:
+            laid = laid._replace(bead=dataclasses.replace(laid.bead, returns=True))
+        reached[solid] = laid.layer
         if not layers or layer_of(layers[-1][0]) != layer_of(laid):
             layers.append([])
         layers[-1].append(laid)

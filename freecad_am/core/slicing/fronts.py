@@ -13,6 +13,7 @@ layers' errors up; here each layer starts from the one before, as the deposit do
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any, NamedTuple, Protocol
@@ -161,14 +162,19 @@ class Sliced(NamedTuple):
     closing: list[list[SpaceCurve]]
 
 
-def layers(wall: FrontWall, height: float, smoothing: Smoothing | None = None) -> Sliced:
-    """All layers, from the first until the wall is covered or its edges are reached."""
+def layers(
+    wall: FrontWall, height: float, smoothing: Smoothing | None = None,
+    progress: Callable[[float, str], None] = lambda fraction, text: None,
+) -> Sliced:
+    """All layers, from the first until the wall is covered or its edges are reached. progress(fraction, text) is told the
+    share of the wall that is covered."""
     state, rims = start(wall), Rims.of(wall.rims)
     ends = np.vstack([np.empty((0, 3)), *(rim.points for rim in wall.rims if rim.end)])
     widest = 1.0 if smoothing is None else 1.0 + smoothing.band
     done, closed = [state.fronts], [list[SpaceCurve]()]
     left = len(state.behind) - len(state.passed)
     while left:
+        progress(1.0 - left / len(state.behind), f"finding layer {len(done)}")
         below = state
         state = step(wall, rims, below, height, smoothing)
         left -= len(state.passed)

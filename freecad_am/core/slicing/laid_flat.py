@@ -22,6 +22,7 @@ from .equidistant import Facets, Loop
 STEP = math.radians(11.0)
 TRIES = 360
 ASIDE = 2.0  # chord errors; a cut keeps that far from facets that lie in its surface
+TOUCH = 0.004  # chord errors of cuts; a face that comes that near to a surface touches it
 REACH = 0.05  # mm; a solid that begins no further from a surface stands on it
 
 
@@ -42,17 +43,16 @@ def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
     """The loops (in the base's frame) of the solid just outside of the surface at `distance` mm, moved onto it.
 
     Where facets lie in that surface, as the foot of a blade does in its hub, or the solid begins a hair outside of it, it
-    is cut further out: a cut through them would be what noise makes of it.
+    is cut further out: a cut through them would be what noise makes of it. A face that only touches the surface, as a
+    flat top does along a generatrix, touches it within TOUCH, wherever rounding has put it: it is not cut.
     """
     corners = facets.away[facets.faces]
     low, high = corners.min(axis=1), corners.max(axis=1)
     lying = (low > distance - chord_error) & (high < distance + chord_error)
     lowest = float(facets.away.min())
     gap = lowest - distance if distance < lowest < distance + REACH else 0.0
-    aside = gap + ASIDE * chord_error if gap or lying.any() else 0.0
+    aside = gap + ASIDE * chord_error if gap or lying.any() else -TOUCH * chord_error
     found = facets.cut(distance + aside, chord_error)
-    if aside == 0.0:
-        return found
     return [moved(facets.base, loop, -aside) for loop in found]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.columns import columns
-from ..geometry.frustum import Frustum
+from ..geometry.frustum import Frustum, beside_tip
 from ..geometry.obstacles import Obstacles, of_bodies
 from ..geometry.surroundings import Body
 from ..parameters.cell import NozzleParameters
@@ -54,8 +54,7 @@ class Room:
 
 def left_out(nozzle: NozzleParameters) -> float:
     """Height (mm) over the tip plane at which the nozzle's side is one nozzle diameter from the deposit point."""
-    a, k = 0.5 * nozzle.diameter, np.tan(nozzle.half_angle)
-    return float(a * (np.sqrt(k * k + 3.0 * (1.0 + k * k)) - k) / (1.0 + k * k))
+    return beside_tip(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)))
 
 
 def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float) -> Room:

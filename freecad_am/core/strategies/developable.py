@@ -3,17 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from ..filling.curve import PlaneCurve
 from ..geometry.developable import Array
 from ..geometry.on_hub import Base, SolidsOnHub, downwards, middle_azimuth, upright
-from ..geometry.plane_curve import doubled_area
-from ..geometry.region import Region
-from ..geometry.strip import Strip
 from ..geometry.surroundings import Body
 from ..issues import InfeasibleError, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
@@ -23,33 +18,32 @@ from ..process.bead_model import BeadModel
 from ..process.order import Laid, ordered, waited
 from ..toolpath import Toolpath
 from .hub_beads import Rolled, reversed_curve, rolled
-from .hub_layers import Slice, filled, slices
+from .hub_filling import Filled, Pictures, bead_width, spaced
+from .hub_layers import Slice, slices
 from .hub_notes import notes
+from .hub_outlines import leaning
+from .lean_notes import lean_notes
+from .progress import Progress, silent
 
-BESIDE = 0.6  # of the bead spacing; that far outside of a contour there is no material
 FAMILY = "developable"
-
-Progress = Callable[[float, str], None]
-
-
-def _silent(fraction: float, text: str) -> None:
-    """Tells nobody."""
 
 
 def plan(
     solids: SolidsOnHub, strategy: DevelopableParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    model: BeadModel | None, progress: Progress = _silent,
+    model: BeadModel | None, progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of solids on a hub, in part coordinates; layer i lies i layer heights outside of the hub.
 
     model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
-    InputError APEX_INSIDE, TOO_FAR_ROUND, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, InfeasibleError THIN_REGION.
+    InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, InfeasibleError THIN_REGION.
     """
     if build.mode != "local":
         raise InputError(
             "NOT_FOR_FAMILY", "build_direction.mode", f"{build.mode} is not for solids on a hub, which grow along its "
             "normals; use local",
         )
+    strategy = spaced(strategy, process)
+    pictures = Pictures(strategy, process, bead_width(strategy, process, model))
     laid: list[Laid] = []
     made: list[Rolled] = []
     mended: list[Issue] = []
@@ -61,11 +55,13 @@ def plan(
             for layer in slices(one.base, body, strategy):
                 mended += layer.issues
                 progress(share * done, f"{body.name} layer {layer.layer}")
-                for curve in _filled(layer, centre, body, strategy, process):
-                    deflection = _deflection(curve, layer, strategy)
+                beads = _filled(layer, centre, body, one.base, pictures)
+                mended += beads.issues
+                for curve in beads.curves:
                     if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
-                        curve, deflection = reversed_curve(curve), -deflection
-                    bead = rolled(curve, layer.surface, layer.middle, one.base, strategy, build, process, model, deflection)
+                        curve = reversed_curve(curve)
+                    lean = leaning(curve, layer, strategy, build)
+                    bead = rolled(curve, layer.surface, layer.middle, one.base, strategy, build, process, model, lean)
                     made.append(bead)
                     laid.append(Laid(group, number, layer.layer, curve.ring, bead.bead))
             done += 1
@@ -76,42 +72,21 @@ def plan(
         )
     course = ordered(laid, strategy.order)
     layers = waited(course, strategy.wait, process.rapid_speed)
-    issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model))
+    issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap, FAMILY,
-        solids.surroundings,
+        solids.surroundings, None if model is None else model.law(process.acceleration),
     )
 
 
-def _filled(
-    layer: Slice, centre: float, body: Body, strategy: DevelopableParameters, process: ProcessParameters
-) -> list[PlaneCurve]:
+def _filled(layer: Slice, centre: float, body: Body, base: Base, pictures: Pictures) -> Filled:
     try:
-        return filled(layer, centre, strategy, process)
+        return pictures.filled(layer, centre, base)
     except InfeasibleError as error:
         where = f"{body.name} layer {layer.layer}"
         raise InfeasibleError(
             error.code, where, error.message, (Issue("error", error.code, f"{body.name}: {error.message}", layer.layer),)
         ) from None
-
-
-def _deflection(curve: PlaneCurve, layer: Slice, strategy: DevelopableParameters) -> float:
-    """The deflection of the torch to the right of a bead: outwards on outer contours, none on others."""
-    if strategy.deflection == 0.0 or curve.kind != "contour" or curve.ring > 0:
-        return 0.0
-    strip = next((one for one in layer.regions if isinstance(one, Strip)), None)
-    regions = [one for one in layer.regions if isinstance(one, Region)]
-    if strip is not None and curve.turns:
-        height = float(strip.period.unrolled(curve.points)[:, 1].mean())
-        return strategy.deflection if (height < 0.5 * sum(strip.levels)) == (curve.turns > 0) else -strategy.deflection
-    if not regions:  # a hole in a strip
-        return -strategy.deflection if doubled_area(curve.points) > 0.0 else strategy.deflection
-    edge = np.roll(curve.points, -1, axis=0) - curve.points
-    longest = np.argsort(np.hypot(*edge.T))[-9:]
-    right = np.stack([edge[longest, 1], -edge[longest, 0]], axis=1) / np.hypot(*edge[longest].T)[:, None]
-    probes = curve.points[longest] + 0.5 * edge[longest] + BESIDE * strategy.bead_spacing * right
-    inside = np.any([region.contains(probes) for region in regions], axis=0)
-    return -strategy.deflection if inside.mean() > 0.5 else strategy.deflection
 
 
 def _frame(solids: SolidsOnHub) -> Array:

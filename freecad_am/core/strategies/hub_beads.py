@@ -14,6 +14,7 @@ from ..filling.curve import PlaneCurve
 from ..geometry.columns import columns
 from ..geometry.developable import TURN, Array, Developable
 from ..geometry.on_hub import Base
+from ..geometry.region import simplified
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import DevelopableParameters
@@ -21,49 +22,70 @@ from ..process.bead_model import BeadModel
 from ..process.bead_speed import followed, radii
 from ..toolpath import Bead
 from .hub_layers import period
+from .hub_lean import Course, Lean, Turned, held, unrolled
 
 Mask = NDArray[np.bool_]
 
 ROLLED = 0.5  # share of the chord error between a bead's chords and the surface
+GRID = 6  # decimals of mm that decide between points
+NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
 CLOSE = 2e-3  # mm; points nearer together are one: no controller tells the time of such a move
 
 
 class Rolled(NamedTuple):
-    """A bead, its predicted heights (n,) mm, where (n,) the speed is not what the width asks for, and where it bends more
-    than the table's beads; None without a bead model."""
+    """A bead, where (n,) the speed is not what the width asks for, and where it bends more than the table's beads; None
+    without a bead model."""
 
     bead: Bead
-    height: Array | None = None
     clamped: Mask | None = None
     tight: Mask | None = None
+    turned: Turned | None = None
 
 
 def rolled(
     curve: PlaneCurve, surface: Developable, middle: float, base: Base, strategy: DevelopableParameters,
-    build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, deflection: float = 0.0,
+    build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None = None,
 ) -> Rolled:
     """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
 
-    deflection: rad, of the torch to the right of the bead, besides the tilt.
+    lean: of the torch, by default that of the build direction.
     """
     start = period(surface).moved(curve.points[:1], curve.turns) if curve.turns else curve.points[:1]
     ended = np.vstack([curve.points, start]) if curve.closed else curve.points
     flat = dense(ended, surface, ROLLED * strategy.chord_error)
-    local = _rolled(flat, surface, middle)
-    if curve.closed:
-        local[-1] = local[0]
-    normal = _unit(surface.normals(local))
-    along = _along(local, normal, curve.closed)
-    tool = directed(normal, along, build, deflection)
+    course = Course(flat, curve.closed, surface, middle + _behind(flat, surface, curve.sheet))
+    lean = Lean(build.lead, build.tilt) if lean is None else lean
+    flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
     points = base.placed(local)
     if curve.closed:
         points[-1] = points[0]
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     bead = Bead(
         points, base.turned(normal), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
-        curve.closed,
+        curve.closed, kind=curve.kind, ring=curve.ring,
     )
-    return Rolled(bead) if model is None else _at_speed(bead, flat, curve.closed and not curve.turns, process, model)
+    if model is None:
+        return Rolled(bead, turned=turned)
+    return _at_speed(bead, flat, curve.closed and not curve.turns, process, model)._replace(turned=turned)
+
+
+def _behind(flat: Array, surface: Developable, sheet: float) -> float:
+    """By what azimuth, rad, a curve (n, 2) that lies about u = `sheet` mm is farther round than the plane alone tells: on a
+    wide cone it may have come round behind the apex."""
+    if surface.is_cylinder:
+        return 0.0
+    sine = math.sin(surface.taper)
+    away = sheet / surface.slant - float(unrolled(flat, surface)[0].mean()) * sine
+    return TURN * round(away / TURN) / sine
+
+
+def _needed(flat: Array, tolerance: float) -> Array:
+    """A polyline (n, 2) without the points that it does without within `tolerance` mm."""
+    grid = np.ascontiguousarray(np.round(flat, GRID) + 0.0)  # of points alike the same wherever the hub stands
+    chosen = np.ascontiguousarray(simplified(grid, tolerance))
+    kept = np.isin(grid.view(np.complex128).ravel(), chosen.view(np.complex128).ravel())
+    kept[[0, -1]] = True
+    return flat[kept]
 
 
 def _apart(flat: Array) -> Array:
@@ -83,10 +105,10 @@ def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
 
     An edge is a geodesic: its curvature is that of the surface around the axis, by the square of its share of that way.
     """
-    flat = _apart(flat)
+    flat = _apart(_needed(flat, NEEDLESS * chord_error))
     edge = np.diff(flat, axis=0)
     length = np.linalg.norm(edge, axis=1)
-    theta, z = _unrolled(flat, surface)
+    theta, z = unrolled(flat, surface)
     phi = theta * math.sin(surface.taper)
     along, across = columns(edge)
     heading = np.arctan2(across, along)
@@ -103,57 +125,18 @@ def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
     return np.vstack([points, flat[-1:]])
 
 
-def _unrolled(flat: Array, surface: Developable) -> tuple[Array, Array]:
-    """Azimuth and height (n,) along a curve (n, 2) on the plane, the azimuth counted on where the curve goes far round."""
-    theta, z = surface.unrolled(flat)
-    if surface.is_cylinder:
-        return theta, z
-    sine = math.sin(surface.taper)
-    return np.unwrap(theta * sine) / sine, z
-
-
-def _rolled(flat: Array, surface: Developable, middle: float) -> Array:
-    theta, z = _unrolled(flat, surface)
-    rho = np.full(len(z), surface.radius) if surface.is_cylinder else (surface.height - z) * math.tan(surface.taper)
-    angle = theta + middle
-    return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
-
-
-def directed(normal: Array, along: Array, build: BuildDirectionParameters, deflection: float) -> Array:
-    """Tool axes (n, 3): the normals turned forward by the lead, then about the bead by tilt and deflection (rad), towards
-    its right where positive."""
-    right = np.cross(along, normal)
-    side = build.tilt + deflection
-    ahead = math.cos(build.lead) * normal + math.sin(build.lead) * along
-    return _unit(math.cos(side) * ahead + math.sin(side) * right)
-
-
-def _along(points: Array, normal: Array, closed: bool) -> Array:
-    """Unit tangents (n, 3) within the surface, at corners halfway."""
-    step = np.diff(points, axis=0)
-    step /= np.linalg.norm(step, axis=1)[:, None]
-    before = np.vstack([step[-1:] if closed else step[:1], step])
-    after = np.vstack([step, step[:1] if closed else step[-1:]])
-    mean = before + after
-    mean = np.where(np.linalg.norm(mean, axis=1)[:, None] > 1e-6, mean, after)
-    return _unit(mean - (mean * normal).sum(axis=1)[:, None] * normal)
-
-
 def _at_speed(bead: Bead, flat: Array, closed: bool, process: ProcessParameters, model: BeadModel) -> Rolled:
     """The bead, laid flat (n, 2) where it may be closed or not, at the speeds that keep its width."""
     radius = radii(flat, closed, process.bead_width)
     asked = model.speed_for(process.bead_width, radius)
     speed = followed(flat, asked.speed, closed, process.acceleration)
     segment = np.r_[speed[0], 0.5 * (speed[:-1] + speed[1:])]
-    return Rolled(
-        replace(bead, speed=segment, width=model.widths(speed, radius)), model.heights(speed, radius),
-        asked.too_slow | asked.too_fast, asked.too_tight,
-    )
-
-
-def _unit(vectors: Array) -> Array:
-    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return unit
+    widths, heights, share = model.widths(speed, radius), model.heights(speed, radius), None
+    if process.wire.feed_mode == "proportional":
+        heights = model.heights_of_section(widths, process.bead_width)
+        share = process.wire.feed / model.straight_speed(process.bead_width)
+    at_speed = replace(bead, speed=segment, width=widths, height=heights, wire_share=share)
+    return Rolled(at_speed, asked.too_slow | asked.too_fast, asked.too_tight)
 
 
 def reversed_curve(curve: PlaneCurve) -> PlaneCurve:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers of one solid on a hub: cut, laid flat, grown by the margin, filled (Dai 2020, section 2)."""
+"""Layers of one solid on a hub: cut, laid flat, grown by the margin (Dai 2020, section 2)."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ..filling.curve import Beads, PlaneCurve
-from ..filling.fill import fill
+import numpy as np
+
 from ..geometry.developable import TURN, Array, Developable
 from ..geometry.on_hub import Base, middle_azimuth
-from ..geometry.region import Region, mended, regions
+from ..geometry.region import Region, joined, mended, regions
 from ..geometry.strip import Period, Strip, strips
 from ..geometry.surroundings import Body
+from ..geometry.told import place
 from ..issues import InputError, Issue
-from ..parameters.process import ProcessParameters
 from ..parameters.strategy import DevelopableParameters
 from ..slicing.equidistant import Facets, Loop
 from ..slicing.laid_flat import count, cut, moved, opened
@@ -46,7 +46,7 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
         loops = cut(facets, layer * height, CUT * error)
         where = f"{body.name} layer {layer}"
         surface = base.surface.offset(layer * height)
-        _refuse_apex(loops, where)
+        _refuse_apex(loops, surface, base, where)
         below.append(loops)
         near = _within_margin(base.surface, below, height, strategy.margin)
         if any(loop.turns for _, some in near for loop in some):
@@ -65,11 +65,14 @@ def period(surface: Developable) -> Period:
     return Period(surface.flat_turn, surface.slant)
 
 
-def _refuse_apex(loops: Sequence[Loop], where: str) -> None:
+def _refuse_apex(loops: Sequence[Loop], surface: Developable, base: Base, where: str) -> None:
     if sum(loop.turns for loop in loops):
+        round_it = np.vstack([loop.points for loop in loops if loop.turns])
+        z = float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height
+        at = place(base.placed(np.array([[0.0, 0.0, z]]))[0])
         raise InputError(
-            "APEX_INSIDE", where, "the solid reaches over the end of the hub's axis, where equidistant surfaces have "
-            "an apex or an end; let it end beside the axis",
+            "APEX_INSIDE", where, f"the solid reaches over the end of the hub's axis, at {at}, where equidistant surfaces "
+            "have an apex or an end; let it end beside the axis",
         )
 
 
@@ -94,7 +97,7 @@ def _within_margin(
 def _grown(
     near: Sequence[tuple[float, list[Loop]]], flat: Sequence[Array], strategy: DevelopableParameters, layer: int
 ) -> tuple[tuple[Region, ...], tuple[Issue, ...]]:
-    """The regions of a layer, and what was mended."""
+    """The regions of a layer, without slits thinner than the chord error, and what was mended."""
     first = 0
     issues: tuple[Issue, ...] = ()
     rings: list[Array] = []
@@ -107,6 +110,7 @@ def _grown(
         rings += [ring for region in whole for ring in region.rings()]
     if strategy.margin > 0.0:
         whole = regions(rings)
+    whole = joined(whole, strategy.chord_error)
     return tuple(region.simple(BORDER * strategy.chord_error) for region in whole), issues
 
 
@@ -119,17 +123,3 @@ def _all_round(
     if margin == 0.0:
         return found
     return tuple(part for one in found for part in one.grown(margin, ARCS * strategy.chord_error))
-
-
-def filled(one: Slice, centre: float, strategy: DevelopableParameters, process: ProcessParameters) -> list[PlaneCurve]:
-    """The beads of a layer on the plane. InfeasibleError THIN_REGION."""
-    seam = process.seam.angle + one.layer * process.seam.step
-    turned = (one.middle - centre) * math.sin(one.surface.taper)  # of the picture, by the cutting line
-    beads = Beads(
-        strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.shortest, strategy.thin,
-        process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error,
-    )
-    angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
-    return [
-        curve for region in one.regions for curve in fill(region, beads, strategy.fill, angle, strategy.contour)
-    ]

@@ -26,6 +26,7 @@ def notes(
     found = _mended(mended)
     if model is not None:
         found += _of_model(made, strategy, process, model)
+    found += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
     if waits:
         found.append(Issue(
@@ -33,6 +34,19 @@ def notes(
             f"{sum(waits):.5g} s in all, so that no solid is returned to sooner than after {strategy.wait:g} s",
         ))
     return found
+
+
+def _single_layers(layers: Sequence[Layer], strategy: DevelopableParameters) -> list[Issue]:
+    """Solids, or groups of them laid in turn, that get one layer alone."""
+    starts = [*(index for index, layer in enumerate(layers) if layer.first), len(layers)]
+    single = [start for start, end in zip(starts, starts[1:]) if end - start == 1]
+    if not single:
+        return []
+    return [Issue(
+        NOTE, "SINGLE_LAYER",
+        f"{len(single)} of {len(starts) - 1} solids or groups of solids get one layer alone, on the hub: "
+        f"they are no higher than strategy.layer_height, {strategy.layer_height:g} mm", single[0],
+    )]
 
 
 def _mended(issues: Sequence[Issue]) -> list[Issue]:
@@ -50,14 +64,14 @@ def _of_model(
 ) -> list[Issue]:
     length = np.concatenate([np.linalg.norm(np.diff(one.bead.points, axis=0), axis=1) for one in made])
     speed = np.concatenate([one.bead.speed[1:] for one in made]) * MINUTE
-    height = np.concatenate([one.height[1:] for one in made if one.height is not None])
+    height = np.concatenate([one.bead.height[1:] for one in made if one.bead.height is not None])
     fit = model.width
     found = [Issue(
         NOTE, "BEAD_MODEL", f"w = {fit.m:.4g} v^(-1/3) + {fit.p:.4g} / r + {fit.t:.4g} with R2 = {fit.r_squared:.4f} "
         f"and RMSE = {fit.rmse:.3g} mm; a width of {process.bead_width:g} mm takes travel speeds of {speed.min():.4g} to "
         f"{speed.max():.4g} mm/min",
     )]
-    found += _outside(made, length, model)
+    found += _outside(made, length, process.bead_width, model)
     mean = float((height * length).sum() / length.sum())
     drift = abs(mean - strategy.layer_height) / strategy.layer_height
     found.append(Issue(
@@ -65,7 +79,7 @@ def _of_model(
         f"beads are predicted {height.min():.3g} to {height.max():.3g} mm high, {mean:.3g} mm in the mean, at layers of "
         f"{strategy.layer_height:g} mm"
         + ("; set strategy.layer_height to what the beads make" if drift > DRIFT else "")
-        + _sections(speed, model),
+        + _sections(made, speed, process, model),
     ))
     if abs(process.wire.feed - model.wire_feed) > 0.01 * model.wire_feed:
         found.append(Issue(
@@ -75,7 +89,7 @@ def _of_model(
     return found
 
 
-def _outside(made: Sequence[Rolled], length: Array, model: BeadModel) -> list[Issue]:
+def _outside(made: Sequence[Rolled], length: Array, wanted: float, model: BeadModel) -> list[Issue]:
     """Where beads are not such as the table has."""
     clamped = np.concatenate([one.clamped[1:] for one in made if one.clamped is not None])
     tight = np.concatenate([one.tight[1:] for one in made if one.tight is not None])
@@ -83,10 +97,14 @@ def _outside(made: Sequence[Rolled], length: Array, model: BeadModel) -> list[Is
     slow, bent = (float(length[some].sum() / length.sum()) for some in (clamped, tight))
     found = []
     if slow > 0.0:
+        beads = sum(bool(one.clamped[1:].any()) for one in made if one.clamped is not None)
+        width = np.concatenate([one.bead.width[1:] for one in made if one.bead.width is not None])[clamped]
+        worst = float(width[np.abs(width - wanted).argmax()])
         found.append(Issue(
-            WARNING if slow > CLAMPED else NOTE, "OUTSIDE_TABLE", f"on {100.0 * slow:.3g} % of the length the width "
-            f"asked for takes a speed outside of the table's {low:.4g} to {high:.4g} mm/min; it is kept within, and the "
-            "width is not held",
+            WARNING if slow > CLAMPED else NOTE, "OUTSIDE_TABLE", f"on {100.0 * slow:.3g} % of the length, in {beads} of "
+            f"{len(made)} beads and {len(width)} segments, the width asked for takes a speed outside of the table's "
+            f"{low:.4g} to {high:.4g} mm/min; it is kept within, and the width is not held: it is {worst:.3g} mm at its "
+            f"farthest from the {wanted:g} mm",
         ))
     if bent > 0.0:
         found.append(Issue(
@@ -96,12 +114,15 @@ def _outside(made: Sequence[Rolled], length: Array, model: BeadModel) -> list[Is
     return found
 
 
-def _sections(speed: Array, model: BeadModel) -> str:
-    """What a wire feed in proportion to the speed would be, where speeds vary."""
-    if speed.max() < 1.05 * speed.min():
+def _sections(made: Sequence[Rolled], speed: Array, process: ProcessParameters, model: BeadModel) -> str:
+    """What a wire feed in proportion to the speed is, or would be, where speeds vary."""
+    per_mm = process.wire.feed / model.straight_speed(process.bead_width)
+    slowest, fastest = (per_mm * float(value) / MINUTE for value in (speed.min(), speed.max()))
+    if any(one.bead.wire_share is not None for one in made):
+        return f". The wire runs in proportion to the speed, at {slowest:.3g} to {fastest:.3g} mm/s, and keeps their section"
+    if fastest < 1.05 * slowest:
         return ""
-    feeds = model.wire_feed * speed / np.median(speed)
     return (
-        f". At one wire feed faster stretches are lower; a feed in proportion to the speed, {feeds.min():.3g} to "
-        f"{feeds.max():.3g} mm/s, would keep the section"
+        ". At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at "
+        f"{slowest:.3g} to {fastest:.3g} mm/s of wire"
     )

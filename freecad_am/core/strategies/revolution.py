@@ -20,6 +20,7 @@ from ..process import seam
 from ..slicing import arc_length, iso_height
 from ..toolpath import Bead, Layer, Toolpath
 from . import platform, spiral
+from .progress import Progress, silent
 from .tilt import Tilting
 
 SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
@@ -37,7 +38,7 @@ class Slices:
 
 def plan(
     wall: RevolvedWall, strategy: RevolutionParameters, build: BuildDirectionParameters, process: ProcessParameters,
-    nozzle: NozzleParameters, platform_diameter: float, platform_frame: Array | None = None,
+    nozzle: NozzleParameters, platform_diameter: float, platform_frame: Array | None = None, progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of a wall of revolution, in part coordinates.
 
@@ -51,6 +52,7 @@ def plan(
             "NOT_FOR_FAMILY", "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
+    progress(0.0, "cutting layers")
     under = platform.under(wall, platform_diameter, platform_frame)
     tilting = Tilting(wall, build, nozzle, under)
     issues: list[Issue] = []
@@ -58,7 +60,9 @@ def plan(
         layers, found = spiral.layers(wall, strategy, process, tilting)
     else:
         slices, issues = sliced(wall, strategy)
+        progress(0.2, f"build directions of {slices.layer[-1] + 1} layers, keeping the nozzle clear")
         layers, found = _layers(wall, slices, strategy, process, tilting)
+    progress(0.9, "checking")
     issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
     return Toolpath(layers, wall.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap)
 

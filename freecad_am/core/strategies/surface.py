@@ -20,6 +20,7 @@ from ..slicing.first_layer import on_polyline
 from ..slicing.wall_layer import WallLayer, local_distances
 from ..toolpath import Layer, Toolpath
 from . import surface_directions
+from .progress import Progress, silent
 from .surface_directions import Along
 from .surface_end import Stretch, trimmed
 from .wall_beads import Traced, along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
@@ -28,7 +29,8 @@ FINER = 4  # places per arc of a layer at which its distance from the one below 
 
 
 def plan(
-    wall: SurfaceWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters
+    wall: SurfaceWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of a wall around a closed direction, in part coordinates.
 
@@ -38,11 +40,14 @@ def plan(
     """
     normal = surface_directions.plane(wall, build)
     surface = wall.surface()
+    progress(0.0, "finding layers")
     curves = sliced(wall, surface, strategy)
     stretches, notes = _stretches(wall, surface, curves, strategy)
     curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
+    progress(0.5, f"measuring {len(curves)} layers")
     distances = [local_distances(above, below, FINER)[1] for below, above in zip(curves[:-1], curves[1:], strict=True)]
     issues = spacing_issues(distances, strategy) + _corner_notes(surface, curves, stretches, strategy)
+    progress(0.7, "build directions")
     layers, found = _layers(wall, surface, stretches, strategy, build, process, normal)
     return Toolpath(
         layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface"

@@ -79,7 +79,7 @@ def directions(
         up, tool = in_plane(up, normal, label), in_plane(tool, normal, label)
     up, lowered = capped(up, build.max_tilt)
     tool, back = (up, lowered) if alike else capped(tool, build.max_tilt)
-    rate, spread = float(build.max_turn), 0.0
+    rate, spread = build.turn(), 0.0
     if rate < np.inf:  # last, for turned back beyond the level they turn faster
         up, departure = limited(points, up, closed, rate, most=build.max_tilt)
         tool, other = (up, departure) if alike else limited(points, tool, closed, rate, most=build.max_tilt)

@@ -89,7 +89,7 @@ def _tilted(
     tool, tilt, stuck = _cleared(room, rows, closed, asked, plane, free)
     lost = np.zeros(len(asked), dtype=bool)
     lost[stuck] = True
-    turned = _slowed(room, rows, closed, asked, plane, float(build.max_turn), tool, tilt, lost)
+    turned = _slowed(room, rows, closed, asked, plane, build.turn(), tool, tilt, lost)
     between = touched_between(room, beads, tool, ~lost)
     if between.any() and not last:
         return toolpath, between
@@ -102,7 +102,7 @@ def _tilted(
             dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, tool=next(layers)) for bead in layer.beads))
             for layer in toolpath.layers
         ),
-        issues=(*toolpath.issues, *tilt_issues(places, begin, tilt, lost), *turn_issues(turned, float(build.max_turn))),
+        issues=(*toolpath.issues, *tilt_issues(places, begin, tilt, lost), *turn_issues(turned, build.turn())),
     ), np.zeros(len(asked), dtype=bool)
 
 

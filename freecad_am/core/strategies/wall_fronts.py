@@ -28,6 +28,7 @@ from ..toolpath import Bead, Layer, Toolpath
 from . import surface_directions
 from .front_seams import Middle, seam
 from .front_tree import Piece, events, shorn, tree, whole
+from .progress import Progress, silent
 from .wall_beads import along, bead, corner_notes, short_note, spacing_issues, traced, turn_notes
 
 Array = NDArray[np.float64]
@@ -35,8 +36,12 @@ Array = NDArray[np.float64]
 FINER = 4  # places per arc of a front at which its distance from the layer below is measured
 
 
+FINDING = 0.7  # of the time goes into finding the layers
+
+
 def plan(
-    wall: PatchWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters
+    wall: PatchWall, strategy: SurfaceParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    progress: Progress = silent,
 ) -> Toolpath:
     """The toolpath of a wall of any connected smooth pieces, in part coordinates.
 
@@ -49,7 +54,7 @@ def plan(
     normal = surface_directions.plane(wall, build)
     height = strategy.layer_height
     smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None
-    curves, closing = fronts.layers(wall, height, smooth)
+    curves, closing = fronts.layers(wall, height, smooth, lambda done, text: progress(FINDING * done, text))
     pieces = tree(curves, Rims.of(wall.rims))
     full = [len(layer) for layer in pieces]
     pieces, notes = _kept(wall, pieces, strategy)
@@ -60,6 +65,7 @@ def plan(
     ]
     issues = spacing_issues(distances, strategy) + _turns(wall, laid, strategy) + events(pieces)
     notes += _close(pieces, closing, full)
+    progress(FINDING, "build directions")
     layers, found = _layers(wall, pieces, strategy, build, process, normal)
     return Toolpath(layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface")
 

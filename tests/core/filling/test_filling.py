@@ -93,14 +93,18 @@ def test_lines_are_parallel_and_a_spacing_apart(angle):
 
 
 def test_levels_of_lines():
-    assert levels_between(0.0, 20.1, BEADS) == pytest.approx([0, 5.025, 10.05, 15.075, 20.1], abs=1e-5)
-    assert levels_between(0.0, 21.0, BEADS) == pytest.approx([0, 5, 10, 16, 21], abs=1e-5)
+    assert levels_between(0.0, 19.9, BEADS) == pytest.approx([0, 4.975, 9.95, 14.925, 19.9], abs=1e-5)
+    assert levels_between(0.0, 20.02, BEADS) == pytest.approx([0, 5.005, 10.01, 15.015, 20.02], abs=1e-5)
+    assert levels_between(0.0, 20.1, BEADS) == pytest.approx([0, 5, 10, 12.55, 15.1, 20.1], abs=1e-5)
+    assert levels_between(0.0, 21.0, BEADS) == pytest.approx([0, 5, 10, 13, 16, 21], abs=1e-5)
     assert levels_between(0.0, 19.0, BEADS) == pytest.approx([0, 5, 9.5, 14, 19], abs=1e-5)
     assert levels_between(3.0, 3.0, BEADS) == pytest.approx([3.0])
     for breadth in np.random.default_rng(3).uniform(0.0, 80.0, 300):
         levels = levels_between(0.0, breadth, BEADS)
-        assert (np.diff(levels) > 0.0).all() and np.diff(levels, prepend=0.0).max() < S + GAP + 1e-6
-        assert breadth - levels[-1] < GAP + 1e-6
+        gaps = np.diff(levels)
+        assert (gaps > 0.0).all() and gaps.max(initial=0.0) < 1.002 * S + 1e-5
+        assert levels[0] < 1e-5 and breadth - levels[-1] < 1e-5
+        assert (gaps < 0.99 * S - 1e-5).sum() <= 2, "what is left over is in one place"
 
 
 @pytest.mark.parametrize("name", ["circle", "comb", "wavy 2"])
@@ -162,12 +166,19 @@ def test_thin_regions_and_necks():
         assert refused.value.code == "THIN_REGION"
 
 
-def test_short_beads_are_dropped():
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
     least = 12.0
-    for pattern in PATTERNS:
-        every, kept = filled("wavy 1", pattern), filled("wavy 1", pattern, Beads(S, GAP, least))
-        long = [c for c in every if np.hypot(*np.diff(dense(c.points, c.closed, 1e9), axis=0).T).sum() >= least]
-        assert len(long) == len(kept) <= len(every)
+    curves = filled("wavy 1", pattern, Beads(S, GAP, least), ring=True)
+    lines = [np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points for curve in curves]
+    lengths = [np.hypot(*np.diff(line, axis=0).T).sum() for line in lines]
+    assert min(lengths) >= least - 1e-9
+    grid, within = raster(SHAPES["wavy 1"], PITCH)
+    border = tree([(loop, True) for loop in SHAPES["wavy 1"]], STEP).query(grid)[0]
+    away = tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
+    core = within & (border >= 0.5 * S)
+    reach = tree([(grid[core], False)], 1e9).query(grid)[0] < 0.5 * S - PITCH
+    assert away[reach].max() < 0.5 * (S + GAP) + PITCH
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)

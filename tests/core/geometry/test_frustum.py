@@ -76,16 +76,18 @@ def test_the_tree_finds_what_a_look_at_every_one_finds(seed):
     frustum = Frustum(0.5, 0.36, 0.7, 15.0)
     tip, axis = rng.uniform(-30, 30, (300, 3)), unit(rng.normal(size=(300, 3)))
     centre = rng.uniform(-40, 40, (900, 1, 3))
-    for kind in (2, 3):
+    for kind in (1, 2, 3):
         corners = centre + rng.normal(size=(900, kind, 3)) * 1.5
         since, moment = rng.integers(0, 900, 900), rng.integers(0, 1000, 300)
         found = Obstacles(corners, since).touched(frustum, tip, axis, moment)
         wanted = np.zeros(300, dtype=bool)
         for k in range(300):
             offset, axes = corners[since < moment[k]] - tip[k], np.tile(axis[k], ((since < moment[k]).sum(), 1))
-            meets = frustum.meets_segments(offset[:, 0], offset[:, 1], axes) if kind == 2 else (
-                frustum.meets_triangles(offset, axes))
-            wanted[k] = meets.any()
+            if kind == 3:
+                wanted[k] = frustum.meets_triangles(offset, axes).any()
+            else:
+                meets = frustum.holds if kind == 1 else frustum.meets_segments
+                wanted[k] = meets(*offset.transpose(1, 0, 2), axes).any()
         assert (found == wanted).all() and 0 < wanted.sum() < 300
 
 

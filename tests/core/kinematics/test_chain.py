@@ -54,3 +54,17 @@ def test_any_leading_dimensions(skewed):
     assert skewed.forward(q[:0]).shape == (0, 5, 4, 4)
     many = np.tile(q.reshape(-1, 3), (500, 1))
     assert np.abs(skewed.forward(many)[-20:] - flange.reshape(-1, 4, 4)).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["skewed", "staubli-rx60bl", "head-table-xyzbc"])
+def test_links_of_one_vector_are_the_product_of_matrices(name, skewed):
+    chain = skewed if name == "skewed" else machine.load(name).chain
+    q = np.random.default_rng(8).uniform(-7, 7, chain.axes)
+    links = chain.links(q)
+    assert np.array_equal(links[0], np.eye(4))
+    assert np.abs(links[-1] @ chain.flange - chain.forward(q)).max() < 1e-10
+    at = chain.frames(q)
+    for axis, link in enumerate(links[1:]):
+        assert np.abs(at.directions[axis] - link[:3, :3] @ chain.directions[axis]).max() < 1e-13
+        slid = q[axis] * at.directions[axis] if chain.sliding[axis] else 0.0
+        assert np.abs(at.origins[axis] + slid - link[:3, 3]).max() < 1e-10

@@ -168,6 +168,20 @@ BAD = {
         changed("controller", "matrix", 2, value=[0, 1, 0, 0, 0, 0]),
         "controller.matrix", "no inverse",
     ),
+    "acceleration of nought": (
+        changed("joints", 5, "max_acceleration", value=0), "joints[5].max_acceleration", "more than 0",
+    ),
+    "shape of no link": (changed("shapes", value={"joint_9": {"file": "a.stl"}}), "shapes", "'joint_9' is not known"),
+    "shape without a file": (changed("shapes", value={"base": {"scale": 2}}), "shapes.base", "'file' is missing"),
+    "shape of a wrong format": (
+        changed("shapes", value={"joint_2": {"file": "a.dae"}}), "shapes.joint_2.file", "a.dae is no shape",
+    ),
+    "shape of no size": (
+        changed("shapes", value={"base": {"file": "a.stl", "scale": 0}}), "shapes.base.scale", "1000 for m",
+    ),
+    "shape of no colour": (
+        changed("shapes", value={"base": {"file": "a.stl", "colour": [255, 0, 0]}}), "shapes.base.colour", "from 0 to 1",
+    ),
     "no title": (changed("title", value=""), "title", "not a text"),
     "not an object": ([1, 2], "", "not an object"),
 }
@@ -226,3 +240,27 @@ def test_decimal_commas_of_a_locale_change_nothing(tmp_path, root):
     )
     assert run.returncode == 0, run.stderr
     assert float(run.stdout.strip()) == np.radians(127.5)
+
+
+def test_shapes_of_links_and_accelerations_are_read(tmp_path):
+    content = copy.deepcopy(GOOD)
+    content["shapes"] = {
+        "base": {"file": "looks/base.STEP"},
+        "joint_3": {
+            "file": str(tmp_path / "3.stl"), "origin": [1, 2, 3], "rpy": [0, 0, 90], "scale": 1000, "colour": [1, 0, 0.5],
+        },
+    }
+    for joint, most in zip(content["joints"], (10, 20, None, 40, 50, 60)):
+        joint["max_acceleration"] = most
+    path = tmp_path / "mine.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    loaded = machine.load(path)
+    base, third = loaded.shapes[0], loaded.shapes[3]
+    assert [shape is None for shape in loaded.shapes] == [False, True, True, False, True, True, True]
+    assert base.path == tmp_path / "looks" / "base.STEP" and (base.pose == np.eye(4)).all() and base.colour is None
+    assert third.path == tmp_path / "3.stl" and (third.scale, third.colour) == (1000.0, (1.0, 0.0, 0.5))
+    assert np.abs(third.pose @ [1, 0, 0, 1] - [1, 3, 3, 1]).max() < 1e-12
+    assert third.where == f"{path}: shapes.joint_3.file"
+    assert np.allclose(np.degrees(loaded.max_acceleration), [10, 20, np.inf, 40, 50, 60])
+    plain = machine.load("fanuc-arcmate120ic")
+    assert plain.shapes == (None,) * 7 and np.isinf(plain.max_acceleration).all()

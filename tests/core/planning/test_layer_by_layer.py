@@ -9,6 +9,7 @@ import pytest
 from freecad_am.core.kinematics import opw
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import comparison, constant, refine, search
+from freecad_am.core.planning import plan as planner
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.task import RESERVE, Task
@@ -173,6 +174,36 @@ def test_a_branch_is_found_where_none_is_given(sliced, cell_of):
     toolpath = sliced("sphere", 10.0)
     found = plan_joints(toolpath, cell_of(toolpath, branch="auto"), JointParameters())
     assert found.feasible
+
+
+def test_other_branches_are_planned_whole_where_they_serve_the_beads_that_failed(sliced, cell_of, monkeypatch):
+    toolpath = sliced("sphere", 10.0)
+    cell = cell_of(toolpath, branch="auto")
+    lower = np.where(np.arange(6) == 4, 0.01, cell.limits.lower)  # no more than one way of the wrist
+    cell = dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower))
+    alone = {}
+    for branch in range(8):
+        monkeypatch.setattr(planner, "best_branches", lambda *given, branch=branch: [branch])
+        alone[branch] = plan_joints(toolpath, cell, JointParameters())
+    good = [branch for branch, found in alone.items() if found.feasible]
+    bad = [branch for branch, found in alone.items() if not found.feasible]
+    assert good and len(bad) >= 2
+    monkeypatch.setattr(planner, "SCREENED", 3)
+    calls, planned = [], planner._planned
+    monkeypatch.setattr(planner, "_planned", lambda task, path, beads, *rest: (
+        calls.append((task.branch, len(beads))), planned(task, path, beads, *rest))[1])
+    whole = toolpath.bead_count
+    for order in ([good[0], bad[0]], [bad[0], bad[1], good[0]], [bad[0], bad[1]]):
+        calls.clear()
+        monkeypatch.setattr(planner, "best_branches", lambda *given, order=order: order)
+        found = plan_joints(toolpath, cell, JointParameters())
+        served = [branch for branch in order if branch in good]
+        wanted = alone[served[0] if served else order[0]]
+        assert found.branch == wanted.branch and found.issues == wanted.issues
+        np.testing.assert_array_equal(found.joints, wanted.joints)
+        assert [branch for branch, count in calls if count == whole] == list(dict.fromkeys([order[0], *served]))
+        tried = [branch for branch, count in calls if count < whole]
+        assert tried == ([] if order[0] in good else order[1:])
 
 
 def test_too_high_a_travel_speed_is_refused_with_the_speed_that_would_do(sliced, cell_of):

@@ -15,7 +15,7 @@ from freecad_am.core.parameters.program import ProgramParameters, StartParameter
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import FIRST_APPROACH, build, check_controller
-from freecad_am.core.planning.rapids import _met, _obstacles, collisions
+from freecad_am.core.planning.rapids import _hits_deposit, collisions
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
@@ -111,8 +111,7 @@ def test_a_rapid_through_the_part_is_refused(planned):
 def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, met):
     """Tips over, under and beside the platform, upright and laid over: 60 mm of nozzle, opening by 20 deg."""
     _, cell, _, motion = planned()
-    disc, laid = _obstacles(motion, cell)
-    assert _met(np.array([tip]), np.array([axis]), disc[laid < 0], cell) is met
+    assert _hits_deposit([(np.array([tip]), np.array([axis]))], np.array([0]), motion, cell)[0] == met
 
 
 def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):

@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rapids import collisions
@@ -74,6 +74,35 @@ def test_the_tool_is_withdrawn_further_to_pass_a_body_or_it_says_so(planned):
     assert not has_errors(issues) and [issue.code for issue in issues] == ["RAPID_LIFTED"]
     for k in travels_of(passed):
         assert not inside(low.vertices.mean(axis=0), *looks(passed, cell, k), cell.nozzle)
-    stack = [spike(tip[200] + height * axis[200], 12.0, "stack") for height in range(15, 400, 20)]
-    _, issues = assemble(joint_path, cell, ProcessParameters(), stack)
+    # far higher than eight times the lift, and still passed
+    little = ProcessParameters(between_layers=BetweenLayersParameters(lift=0.5))
+    motion, _ = assemble(joint_path, cell, little)
+    tip, axis = looks(motion, cell, travels_of(motion)[0])
+    stack = [spike(tip[200] + height * axis[200], 0.2, "stack") for height in range(1, 15)]
+    passed, issues = assemble(joint_path, cell, little, stack)
+    assert [issue.code for issue in issues] == ["RAPID_LIFTED"]
+    rows = travels_of(passed)
+    lifted = np.linalg.norm(passed.position[rows] - passed.position[rows + 1], axis=1)
+    assert lifted.max() > 8.0 * 0.5 + 1.0
+    for k in rows:
+        for body in stack:
+            assert not inside(body.vertices.mean(axis=0), *looks(passed, cell, k), cell.nozzle)
+    # higher than the robot reaches
+    wall = [spike(tip[200] + height * axis[200], 100.0, "wall") for height in range(15, 4000, 60)]
+    _, issues = assemble(joint_path, cell, ProcessParameters(), wall)
     assert "RAPID_COLLISION" in [issue.code for issue in issues]
+
+
+def test_what_is_above_the_nozzle_counts_where_it_is_withdrawn_further_than_it_is_long(planned):
+    cell, joint_path = planned
+    lift = 1.5 * cell.nozzle.length
+    high = ProcessParameters(between_layers=BetweenLayersParameters(lift=lift))
+    motion, issues = assemble(joint_path, cell, high)
+    assert not has_errors(issues)
+    row = np.flatnonzero(motion.deposit[:-1] & ~motion.deposit[1:])[0]
+    at = motion.position[row] + (cell.nozzle.length + 0.25 * lift) * motion.tool[row]
+    found = collisions(motion, cell, bodies=[spike(at, 0.3, "beam")])
+    assert (int(motion.layer[row + 1]), int(motion.bead[row + 1])) in {(issue.layer, issue.bead) for issue in found}
+    # what is beside the way is not in it
+    aside = np.cross(motion.tool[row], [1.0, 0.0, 0.0])
+    assert not collisions(motion, cell, bodies=[spike(at + 3000.0 * aside, 0.3, "beam")])

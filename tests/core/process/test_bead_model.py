@@ -85,6 +85,39 @@ def test_tables_that_are_none(rows, code):
     assert caught.value.code == code
 
 
+@pytest.mark.parametrize("rows, told", [
+    (TABLE[:1], "it has 1 row; measure at least 4 beads"),
+    (TABLE[:3] + TABLE[:3], "all beads have the radius 30 mm; measure at least two speeds and two radii"),
+    (TABLE[1::3], "all beads have the travel speed 600 mm/min; measure"),
+    ([(30, 300, 12, 3), (30, 300, 12.5, 3), (60, 600, 9, 2.5), (60, 600, 9.5, 2.6)], "speeds and radii vary only together;"),
+    (TABLE[:-1] + [(90, -300, 7.46, 2.14)], "travel speed -300 mm/min is not a positive number; mend the row, or leave"),
+    (TABLE[:-1] + [(-90, 300, 7.46, 2.14)], "radius -90 mm is not"),
+    (TABLE[:-1] + [(90, 300, 7.46, -2.5)], "height -2.5 mm is not"),
+])
+def test_tables_that_are_none_are_told_in_the_units_of_the_table(rows, told):
+    with pytest.raises(InputError) as caught:
+        fit(*columns(rows), 100.0, "table.csv")
+    assert caught.value.message.startswith(told) and caught.value.where == (
+        "table.csv row 12" if "positive" in caught.value.message else "table.csv")
+
+
+def test_the_height_of_beads_of_one_section():
+    """Height times width is that of a straight bead wherever the wire follows the speed: the integral of the section along
+    a bead is the wire that went into it, whatever the bends."""
+    model = bead_table.load("csw")
+    rng = np.random.default_rng(8)
+    widths = rng.uniform(7.0, 13.0, 200)
+    heights = model.heights_of_section(widths, 9.5)
+    straight = model.straight_speed(9.5)
+    assert straight * 60.0 == pytest.approx((model.width.m / (9.5 - model.width.t)) ** 3, rel=1e-12)
+    section = 9.5 * float(model.height.at(np.array([straight]), np.array([np.inf]))[0])
+    np.testing.assert_allclose(heights * widths, section, rtol=1e-12)
+    # asked for outside of the table: the section of the straight bead that is really laid
+    slow = model.heights_of_section(widths, 50.0) * widths
+    at = np.array([5.0]), np.array([np.inf])
+    np.testing.assert_allclose(slow, float(model.heights(*at)[0] * model.widths(*at)[0]), rtol=1e-12)
+
+
 HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
 
 
@@ -92,6 +125,11 @@ HEAD = "radius_mm,travel_speed_mm_min,width_mm,height_mm,wire_feed_m_min\n"
     ("radius_mm,width_mm\n1,2\n", "travel_speed_mm_min"),
     ("", "radius_mm"),
     (HEAD + "30,300,12,3,6.5\n30,\"4,5\",12,3,6.5\n", "row 2"),
+    (HEAD + "# a remark\n\n30,300,12,3,6.5\n30,,12,3,6.5\n", r"row 2 \(line 5\): there is no travel_speed_mm_min; mend"),
+    (HEAD + "30,300,12,3,6.5\n30,300,12,5,3,6.5\n", r"row 2 \(line 3\): it has more values than there are columns"),
+    (HEAD + "30,300,12,3,6.5\n30,300,12,3,-6.5\n", r"row 2 \(line 3\): wire feed -6.5 m/min is not a positive number"),
+    (HEAD + "\n".join(f"{r},{v},{w},{h},6.5" for r, v, w, h in TABLE).replace("50,600", "50,-600"),
+     r"row 5 \(line 6\): travel speed -600 mm/min is not"),
     (HEAD + "".join(f"{r},{v},{w},{h},{5 + k % 2}\n" for k, (r, v, w, h) in enumerate(TABLE)), "wire feeds from 5 to 6"),
 ])
 def test_files_that_are_no_table(tmp_path, text, told):
@@ -108,6 +146,10 @@ def test_a_table_of_the_users_own(tmp_path):
     with pytest.raises(InputError) as caught:
         bead_table.load("other.csv", tmp_path)
     assert caught.value.code == "NO_FILE"
+    (tmp_path / "bin.csv").write_bytes(bytes(range(256)))
+    with pytest.raises(InputError, match="no text in UTF-8") as caught:
+        bead_table.load("bin.csv", tmp_path)
+    assert caught.value.code == "BAD_TABLE" and caught.value.where == "bin.csv"
 
 
 @pytest.mark.parametrize("radius", [3.0, 30.0, 90.0])

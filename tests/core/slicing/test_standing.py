@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.geometry.on_hub import Base, Seat, middle_azimuth, upright
+from freecad_am.core.geometry.on_hub import Base, Seat, Stretch, middle_azimuth, upright
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.equidistant import Facets
@@ -16,7 +16,7 @@ from freecad_am.core.slicing.standing import hub_among, on_hub
 
 LOWER = Base("Face1", Developable(50.0), np.eye(4))
 UPPER = Base("Face2", Developable(30.0), upright(np.array([0.0, 0.0, 100.0]), np.array([0.0, 0.0, 1.0])))
-SEATS = [Seat(LOWER, 0.0, 100.0), Seat(UPPER, 0.0, 80.0)]
+SEATS = [Seat(LOWER, (Stretch(0.0, 100.0),)), Seat(UPPER, (Stretch(0.0, 80.0),))]
 
 
 def sector(inner, outer, low, high, start=-0.3, end=0.3, steps=12, name="blade"):
@@ -77,6 +77,17 @@ def test_solids_beside_the_hub_are_refused():
     assert caught.value.code == "NO_BASE"
 
 
+@pytest.mark.parametrize("factor, unit", [(25.4, "inches"), (10.0, "cm"), (1000.0, "m")])
+def test_solids_in_another_unit_are_told_so(factor, unit):
+    body = sector(49.0, 70.0, 20.0, 60.0)
+    with pytest.raises(InputError) as caught:
+        on_hub([Body("small", body.vertices / factor, body.triangles)], SEATS, 0.01, "part")
+    assert f"Times {factor:g} it would reach Face1: is its file in {unit}?" in caught.value.message
+    with pytest.raises(InputError) as caught:
+        on_hub([sector(60.0, 70.0, 20.0, 60.0)], SEATS, 0.01, "part")
+    assert "Times" not in caught.value.message
+
+
 def test_the_hub_is_what_others_stand_on():
     blades = [sector(50.0, 70.0, 20.0, 60.0, start, start + 0.4, name=f"{start}") for start in (0.0, 1.0, 2.0)]
     shaft = sector(10.0, 50.0, 0.0, 100.0, 0.0, 6.0, 60, name="shaft")
@@ -91,3 +102,82 @@ def test_the_hub_is_what_others_stand_on():
 def test_the_middle_of_a_sector_is_opposite_to_its_gap(turn):
     body = sector(50.0, 60.0, 0.0, 10.0, turn - 0.4, turn + 0.4)
     assert math.remainder(middle_azimuth(LOWER, body.vertices) - turn, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-8)
+
+
+@pytest.mark.parametrize(("one", "other"), [
+    (((50, 70, 20, 60), (-0.3, 0.3)), ((50, 70, 20, 60), (0.25, 0.9))),  # a corner in the other
+    (((50, 70, 20, 60), (-0.3, 0.3)), ((50, 70, 20, 60), (-0.3, 0.3))),  # the same twice
+    (((50, 80, 10, 90), (-0.5, 0.5)), ((50, 70, 40, 60), (-0.1, 0.1))),  # one inside the other
+    (((50, 60, 40, 50), (-0.6, 0.6)), ((50, 70, 10, 90), (-0.1, 0.1))),  # crossed, no vertex of one in the other
+    (((50, 60, 40, 50), (-0.6, 0.6)), ((48, 55, 10, 90), (-0.1, 0.1))),
+])  # fmt: skip
+def test_solids_that_fill_the_same_place_are_refused_with_it(one, other):
+    bodies = [sector(*size, *turn, name=name) for (size, turn), name in ((one, "one"), (other, "other"))]
+    for pair in (bodies, bodies[::-1]):
+        with pytest.raises(InputError) as caught:
+            on_hub(pair, SEATS, 0.01, "part")
+        assert caught.value.code == "OVERLAP" and {"one", "other"} <= {caught.value.where, *caught.value.message.split()}
+        x, y, z = (float(text) for text in caught.value.message.partition("(")[2].partition(")")[0].split(","))
+        for (inner, outer, low, high), (start, end) in (one, other):
+            assert inner * 0.98 < math.hypot(x, y) < outer + 1e-3 and low - 1e-3 <= z <= high + 1e-3
+            assert start - 1e-4 <= math.atan2(y, x) <= end + 1e-4
+
+
+def test_solids_that_touch_or_meet_within_the_hub_are_not_refused():
+    one = sector(50.0, 70.0, 20.0, 60.0)
+    beside, above = sector(50.0, 70.0, 20.0, 60.0, 0.3, 0.9, name="beside"), sector(50.0, 80.0, 60.0, 70.0, name="above")
+    below = [sector(30.0, 49.9, 10.0, 90.0, -2.0, 2.0, 60, name="b")]
+    assert len(on_hub([one, beside, above], SEATS[:1], 0.01, "part").groups[0].bodies) == 3
+    with pytest.raises(InputError, match="inside of the hub"):
+        on_hub([one, *below], SEATS[:1], 0.01, "part")
+    deep = [sector(10.0, 70.0, 20.0, 60.0, *turn, name=str(turn)) for turn in ((-1.0, 0.0), (0.05, 1.0))]
+    assert len(on_hub(deep, SEATS[:1], 0.01, "part").groups[0].bodies) == 2
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.0, 3.0, -2.0])
+def test_a_solid_beside_part_of_a_cylinder_does_not_stand_on_it(turn):
+    """Half a cylinder of 50 mm, the other half of 49.5 mm: solids reach into both, their contour is as long on either."""
+    half = Seat(LOWER, (Stretch(0.0, 100.0, turn % (2.0 * math.pi), math.pi),))
+    inner = Base("inner", Developable(49.5), np.eye(4))
+    rest = Seat(inner, (Stretch(0.0, 100.0, (turn + math.pi) % (2.0 * math.pi), math.pi),))
+    on_half = [sector(40.0, 70.0, 10.0, 60.0, turn + a, turn + a + 0.5, name=f"half {a}") for a in (0.0, 1.3, math.pi - 0.5)]
+    on_rest = [sector(40.0, 70.0, 10.0, 60.0, turn - a, turn - a + 0.5, name=f"rest {a}") for a in (0.6, 1.8, 3.0)]
+    for seats in ([half, rest], [rest, half]):
+        found = on_hub([*on_half, *on_rest], seats, 0.01, "part")
+        assert {group.base.name: {body.name for body in group.bodies} for group in found.groups} == {
+            "Face1": {body.name for body in on_half}, "inner": {body.name for body in on_rest},
+        }
+    with pytest.raises(InputError, match="beside the face") as caught:
+        on_hub(on_rest[1:2], [half], 0.01, "part")
+    assert caught.value.code == "NOT_ON_HUB"
+    # the face that the user chose stands for all of its turn where nothing else does
+    assert len(on_hub(on_rest[1:2], [half._replace(chosen=True)], 0.01, "part").groups) == 1
+    both = [half._replace(chosen=True), rest._replace(chosen=True)]
+    assert len(on_hub([*on_half, *on_rest], both, 0.01, "part").groups) == 2
+
+
+def test_faces_of_one_cylinder_keep_their_own_ranges():
+    """All round at the bottom, a quarter above: a solid above, beside the quarter, stands on nothing."""
+    seat = Seat(LOWER, (Stretch(0.0, 30.0), Stretch(30.0, 100.0, 0.0, 0.5 * math.pi)))
+    for low, high, start, stands in ((5.0, 25.0, 2.0, True), (40.0, 90.0, 0.2, True), (40.0, 90.0, 2.0, False)):
+        body = sector(40.0, 70.0, low, high, start, start + 0.5)
+        if stands:
+            assert on_hub([body], [seat], 0.01, "part").groups[0].base.name == "Face1"
+        else:
+            with pytest.raises(InputError, match="beside the face"):
+                on_hub([body], [seat], 0.01, "part")
+
+
+def test_overlapping_boxes_along_the_axes_are_refused():
+    def box(name, low):
+        corners = np.array([[x, y, z] for x in (0, 30) for y in (0, 20) for z in (0, 20)], dtype=float) + low
+        sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        faces = [corner for a, b, c, d in sides for corner in ((a, b, c), (a, c, d))]
+        return Body(name, corners, np.array(faces, dtype=np.int64))
+
+    seats = [Seat(Base("hub", Developable(60.0), np.eye(4)), (Stretch(-math.inf, math.inf),))]
+    with pytest.raises(InputError, match="fill the same place") as caught:
+        on_hub([box("one", [50.0, -10.0, -10.0]), box("two", [55.0, -5.0, -5.0])], seats, 0.02, "part")
+    assert caught.value.code == "OVERLAP"
+    apart = [box("one", [50.0, -10.0, -10.0]), box("two", [55.0, 10.0, -5.0])]  # a common side is none
+    assert len(on_hub(apart, seats, 0.02, "part").groups[0].bodies) == 2

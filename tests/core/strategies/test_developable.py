@@ -268,13 +268,21 @@ def test_the_torch_leans_outwards_on_outer_contours_alone(direction):
 
 
 def test_lead_and_tilt_are_those_asked_for():
-    build = BuildDirectionParameters(lead=math.radians(10.0), tilt=math.radians(-7.0))
-    path = planned(solids(CONE, box()), build=build, fill="lines", contour=False)
-    bead = path.layers[1].beads[0]
+    build = BuildDirectionParameters(lead=math.radians(10.0), tilt=math.radians(-7.0), max_turn="inf")
+    lines = {"fill": "lines", "contour": False, "layer_height": 15.0, "chord_error": 0.2 * ERROR}
+    path = planned(solids(CONE, box()), build=build, **lines)
+    bead = max(path.layers[1].beads, key=lambda bead: bead.length)
     step = np.diff(bead.points, axis=0) / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)[:, None]
     along = step[1:] + step[:-1]
     along /= np.linalg.norm(along, axis=1)[:, None]
-    tool, normal = bead.tool[1:-1], bead.build[1:-1]
+    flat = np.diff(laid(CONE, bead.points), axis=0)
+    heading = np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))
+    turn = np.abs(np.diff(heading))
+    way = np.cumsum(np.hypot(*flat.T))[:-1]
+    bends = way[turn > np.radians(5.0)]  # about which the torch goes round the normal
+    straight = (turn < np.radians(0.15)) & (np.abs(way[:, None] - bends).min(axis=1, initial=np.inf) > 0.15)
+    assert straight.sum() > 3
+    along, tool, normal = along[straight], bead.tool[1:-1][straight], bead.build[1:-1][straight]
     forward = np.degrees(np.arctan2((tool * along).sum(axis=1), (tool * normal).sum(axis=1)))
     np.testing.assert_allclose(forward, 10.0, atol=0.05)
     np.testing.assert_allclose(np.degrees(np.arcsin((tool * np.cross(along, normal)).sum(axis=1))), -7.0, atol=0.05)

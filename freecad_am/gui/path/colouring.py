@@ -1,36 +1,45 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours of the points of a toolpath by what they tell - layer, local distance, tilt, speed, width of the bead, kind of
-bead - and how to read them."""
+"""Colours of the points of a path by what they tell - layer, local distance, tilt, speed, width of the bead, kind of bead,
+and of a joint path how near the machine comes to what it cannot do - and how to read them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..core.process.spacing import local_distances
-from ..core.toolpath import Bead, Toolpath
-from .colours import ramp
-from .lines import Array
+from ...core.process.spacing import local_distances
+from ...core.toolpath import Bead, Toolpath
+from ...objects import preferences
+from ..colours import ramp
+from ..lines import Array
 
 Colour = tuple[float, float, float]
 
 LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND = "layer", "local distance", "tilt", "speed", "width", "kind of bead"
 KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND)
+MARGIN, RATIO, CONDITION = "joint margin", "joint speed", "condition"
+JOINT_KINDS = (MARGIN, RATIO, CONDITION, *KINDS)
+UNREACHABLE = (0.90, 0.10, 0.20)
 TOO_NEAR, TOO_FAR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
-CLOSED, OPEN, CLOSING = ("closed, a contour", (0.13, 0.40, 0.80)), ("open, a fill", (0.93, 0.55, 0.10)), (
-    "closes a gap", (0.80, 0.20, 0.55))
+CLOSED, OPEN = ("contour, or closed", (0.13, 0.40, 0.80)), ("fill, or open", (0.93, 0.55, 0.10))
+CENTRE, CLOSING = ("in the middle", (0.20, 0.62, 0.35)), ("closes a gap", (0.80, 0.20, 0.55))
+_CLASSES = {
+    "contour": CLOSED, "line": OPEN, "zigzag": OPEN, "spiral": OPEN, "centre": CENTRE, "closing": CLOSING,
+}
 NO_WIDTH = ("no bead model", NONE)
 TICKS = 5
 _ALIKE = 1e-9
+_ROUNDED = 1e-9  # shares that differ by less are alike
 
 
 @dataclass(frozen=True)
 class Scale:
     """How to read colours: the ramp goes from low to high; `ticks` are numbers beside it with their texts.
 
-    `below` and `above`: some values are outside. `without`: what has no value, '' when all have one. least, most: of
-    all values. `classes`: names with their colours, where there is no ramp.
+    `below` and `above`: texts of values outside, '' when there are none. `without`: what has no value, '' when all have
+    one, and its colour. least, most: of all values. `classes`: names with their colours, where there is no ramp. values:
+    (n,) of all points, in the unit, NaN of those without one; None where there is nothing to be told.
     """
 
     title: str
@@ -40,10 +49,20 @@ class Scale:
     ticks: tuple[tuple[float, str], ...]
     least: float
     most: float
-    below: bool = False
-    above: bool = False
+    below: str = ""
+    above: str = ""
     without: str = ""
+    without_colour: Colour = NONE
     classes: tuple[tuple[str, Colour], ...] = ()
+    values: Array | None = field(default=None, compare=False, repr=False)
+
+    def told(self, row: int) -> str:
+        """The value of a point, in words; '' where there is none to be told."""
+        if self.values is None:
+            return ""
+        value = float(self.values[row])
+        told = f"{value:.3g} {self.unit}" if np.isfinite(value) else self.without
+        return f"{self.title} {told}".rstrip()
 
     def share(self, values: Array) -> Array:
         """Places of values on the ramp, 0..1; the middle where low is high."""
@@ -57,7 +76,7 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
         return _by_distance(toolpath, band)
     beads = [bead for _, _, bead in toolpath]
     if kind == KIND:
-        return _classed(beads, [CLOSING if bead.closing else CLOSED if bead.closed else OPEN for bead in beads], KIND)
+        return _classed(beads, [class_of(bead) for bead in beads], KIND)
     if kind == WIDTH and any(bead.width is None for bead in beads):
         return _classed(beads, [NO_WIDTH] * len(beads), WIDTH)
     if kind == WIDTH:
@@ -66,7 +85,8 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
         upright = np.concatenate([bead.tool for bead in beads]) @ toolpath.frame[:3, 2]
         values, title, unit = np.degrees(np.arccos(np.clip(upright, -1.0, 1.0))), "tilt", "deg"
     elif kind == SPEED:
-        values, title, unit = np.concatenate([bead.speed for bead in beads]), "speed", "mm/s"
+        speeds = preferences.speed(1.0) * np.concatenate([bead.speed for bead in beads])
+        values, title, unit = speeds, "speed", preferences.speed_unit()
     elif len(beads) == 1:
         values, title, unit = np.linspace(0.0, 100.0, len(beads[0])), "way", "%"
     else:
@@ -74,7 +94,14 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
         values = np.repeat([number[layer] for layer, _, _ in toolpath], [len(bead) for bead in beads]).astype(float)
         title, unit = "layer", ""
     scale = automatic(values, title, unit)
-    return ramp(scale.share(values)), scale
+    return ramp(scale.share(values)), replace(scale, values=values)
+
+
+def class_of(bead: Bead) -> tuple[str, Colour]:
+    """What a bead is, and its colour: by its kind in a filling, else by whether it closes."""
+    if bead.closing:
+        return CLOSING
+    return _CLASSES.get(bead.kind, CLOSED if bead.closed else OPEN)
 
 
 def numbered(toolpath: Toolpath) -> list[int]:
@@ -88,7 +115,7 @@ def numbered(toolpath: Toolpath) -> list[int]:
 def _classed(beads: list[Bead], classes: list[tuple[str, Colour]], title: str) -> tuple[Array, Scale]:
     """Each bead in the colour of its class."""
     colours = np.repeat(np.array([colour for _, colour in classes]), [len(bead) for bead in beads], axis=0)
-    present = tuple(one for one in (CLOSED, OPEN, CLOSING, NO_WIDTH) if one in classes)
+    present = tuple(one for one in (CLOSED, OPEN, CENTRE, CLOSING, NO_WIDTH) if one in classes)
     return colours, Scale(title, "", 0.0, 0.0, (), 0.0, 0.0, classes=present)
 
 
@@ -111,14 +138,46 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     found = values[known]
     within = 1e-9 * height  # of rounding
     below, above = known & (values < low - within), known & (values > high + within)
+    ticks = _texts(np.linspace(low, high, TICKS if high > low else 1))
     scale = Scale(
-        title, "mm", low, high, _texts(np.linspace(low, high, TICKS if high > low else 1)), float(found.min()),
-        float(found.max()), bool(below.any()), bool(above.any()), "" if known.all() else "first layer",
+        title, "mm", low, high, ticks, float(found.min()), float(found.max()),
+        f"< {ticks[0][1]}" if below.any() else "", f"> {ticks[-1][1]}" if above.any() else "",
+        "" if known.all() else "first layer", values=values,
     )
     colours = ramp(scale.share(np.where(known, values, height)))
     for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, NONE)):
         colours[chosen] = colour
     return colours, scale
+
+
+def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
+    """Colours (n, 3) of what a machine has left or uses up, one of MARGIN, RATIO, CONDITION, and their scale.
+
+    values: (n,) shares, NaN where the machine does not reach the point. Margins and speeds are told in percent; beyond a
+    limit, and faster than an axis can, is a colour of its own.
+    """
+    known = np.isfinite(values)
+    without = "" if known.all() else "unreachable"
+    unit, factor = ("", 1.0) if kind == CONDITION else ("%", 100.0)
+    told = factor * values
+    below = known & (values < -_ROUNDED) & (kind == MARGIN)
+    above = known & (values > 1.0 + _ROUNDED) & (kind == RATIO)
+    within = known & ~below & ~above
+    found = told[within] if within.any() else np.zeros(1)
+    scale = replace(
+        automatic(found, kind, unit), below="beyond a limit" if below.any() else "",
+        above="faster than it can" if above.any() else "", without=without, without_colour=UNREACHABLE,
+        values=told,
+    )
+    colours = ramp(scale.share(np.where(within, told, scale.low)))
+    for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, UNREACHABLE)):
+        colours[chosen] = colour
+    return colours, scale
+
+
+def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
+    """Grey (count, 3), and the scale that says why."""
+    return np.tile(np.array(NONE), (count, 1)), Scale(kind, "", 0.0, 0.0, (), 0.0, 0.0, classes=((why, NONE),))
 
 
 def round_numbers(low: float, high: float, least: float) -> Array:

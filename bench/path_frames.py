@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measures path views inside FreeCAD's window; run by `paths`, which says by FRAMES_TO where to write what is found."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+import traceback
+from statistics import median
+
+FRAMES = 6
+OPENINGS = 3
+SIZES = (10_000, 100_000, 300_000)
+OF_LAYER = 1000
+
+
+class Drawn:
+    """Tells when a view has drawn its scene."""
+
+    def __init__(self, view) -> None:
+        from pivy import coin
+
+        self.count, self.node, self.drawing = 0, coin.SoCallback(), coin.SoGLRenderAction.getClassTypeId()
+        self.node.setCallback(self._seen)
+        view.getSceneGraph().addChild(self.node)
+
+    def _seen(self, _: object, action) -> None:
+        self.count += action.isOfType(self.drawing)  # FreeCAD's own is derived from it
+
+    def after(self, act) -> float:
+        """ms from before the act until it is drawn."""
+        import FreeCADGui as Gui
+
+        start, count = time.perf_counter(), self.count
+        act()
+        while self.count == count and time.perf_counter() < start + 5.0:
+            Gui.updateGui()
+        return 1e3 * (time.perf_counter() - start)
+
+
+def settle(seconds: float) -> None:
+    """Let the window come to rest."""
+    import FreeCADGui as Gui
+
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        Gui.updateGui()
+        time.sleep(0.01)
+
+
+def vase(like, count: int):
+    """A toolpath of so many points."""
+    import dataclasses
+
+    import numpy as np
+
+    from freecad_am.core.toolpath import Bead, Layer
+
+    layers, angle = count // OF_LAYER, np.linspace(0.0, 2.0 * np.pi, OF_LAYER)
+    up, made = np.tile([0.0, 0.0, 1.0], (OF_LAYER, 1)), []
+    for height in np.linspace(0.0, 100.0, layers):
+        radius = 60.0 + 20.0 * np.sin(height / 20.0)
+        points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(OF_LAYER, height)])
+        points[-1] = points[0]
+        made.append(Layer((Bead(points, up, up, angle, np.full(OF_LAYER, 8.0), True),)))
+    return dataclasses.replace(like, layers=tuple(made), layer_height=100.0 / layers)
+
+
+def frames(saved: str) -> list[dict[str, object]]:
+    """Medians, ms, of ours and of the peer."""
+    import FreeCAD as App
+    import FreeCADGui as Gui
+    from pivy import coin
+
+    from freecad_am import api
+    from freecad_am.gui.lines import Lines
+    from freecad_am.gui.path import dock
+    from freecad_am.gui.path.colouring import coloured
+
+    document = App.openDocument(saved)
+    settle(1.0)
+    toolpath = document.getObject("Toolpath")
+    like = api.result(toolpath)
+    for obj in document.Objects:
+        obj.ViewObject.Visibility = obj is toolpath
+    drawing, view, found = toolpath.ViewObject.Proxy, Gui.activeDocument().activeView(), []
+    dock.show(toolpath)
+    drawn, camera = Drawn(view), view.getCameraNode()
+    spin = coin.SbRotation(coin.SbVec3f(0, 0, 1), 0.05)
+    plain = Lines()
+    view.getSceneGraph().addChild(plain.node)
+    slider = dock._dock.to.slider
+
+    def turn() -> None:
+        camera.orientation = spin * camera.orientation.getValue()
+
+    for count in SIZES:
+        path = vase(like, count)
+        toolpath.Proxy._kept = (toolpath.Key, path)
+        colours, _ = coloured(path, "layer", 0.2)
+        for look in ("lines", "tubes"):
+            toolpath.ViewObject.Look = look
+            drawing.draw(toolpath, path)
+            drawing.style(toolpath.ViewObject)
+            plain.set(drawing.rows.points, [OF_LAYER] * (count // OF_LAYER))
+            plain.paint(colours)
+            dock._dock.fill()
+            view.viewIsometric()
+            view.fitAll()
+            settle(0.5)
+            ours, moved, peer = [], [], []
+            for frame in range(FRAMES):
+                plain.show(True)
+                toolpath.ViewObject.Visibility = False
+                drawn.after(turn)
+                peer += [drawn.after(turn), drawn.after(turn)]
+                plain.show(False)
+                toolpath.ViewObject.Visibility = True
+                settle(0.02)
+                drawn.after(turn)
+                ours += [drawn.after(turn), drawn.after(turn)]
+                last = slider.maximum() - 1 - frame % max(1, slider.maximum() // 4)
+                moved.append(drawn.after(lambda last=last: slider.setValue(last)))
+            dock._dock._show_all()
+            for what, took in ((look, ours), ("slider" if look == "lines" else "slider, tubes", moved)):
+                found.append({"points": count, "what": what, "ours": median(took), "peer": median(peer)})
+    App.closeDocument(document.Name)
+    return found
+
+
+def opening(saved: str) -> dict[str, float]:
+    """Seconds until the path of the job is drawn, with its results and without."""
+    import FreeCAD as App
+
+    document = App.openDocument(saved)
+    settle(1.0)
+    points = document.getObject("Toolpath").Points
+    document.save()  # as the window leaves it
+    for obj in document.Objects:
+        if hasattr(obj, "ResultData"):
+            obj.ResultData, obj.ResultLayout, obj.Key = [], "", ""
+    bare = saved.replace(".FCStd", "-bare.FCStd")
+    document.saveAs(bare)
+    App.closeDocument(document.Name)
+    took: dict[str, list[float]] = {saved: [], bare: []}
+    for _ in range(OPENINGS + 1):
+        for path, times in took.items():
+            settle(0.3)
+            times.append(_opened(path, path == saved))
+    return {"points": points, "with": median(took[saved][1:]), "without": median(took[bare][1:])}
+
+
+def _opened(path: str, drawn: bool) -> float:
+    import FreeCAD as App
+    import FreeCADGui as Gui
+
+    start = time.perf_counter()
+    document = App.openDocument(path)
+    view = document.getObject("JointPath").ViewObject.Proxy
+    while drawn and not view.path.painted and time.perf_counter() < start + 30.0:
+        Gui.updateGui()
+    seen = Drawn(Gui.activeDocument().activeView())
+    seen.after(Gui.activeDocument().activeView().redraw)
+    took = time.perf_counter() - start
+    App.closeDocument(document.Name)
+    return took
+
+
+def go() -> None:
+    """Measure, write, end FreeCAD."""
+    code = 1
+    try:
+        sys.path.insert(0, os.environ["FRAMES_OF"])
+        found = {"frames": frames(os.environ["FRAMES_JOB"]), **opening(os.environ["FRAMES_JOB"])}
+        with open(os.environ["FRAMES_TO"], "w", encoding="utf-8") as file:
+            json.dump(found, file)
+        code = 0
+    except BaseException:
+        print(traceback.format_exc(), file=sys.__stderr__)
+    finally:
+        sys.__stderr__.flush()
+        os._exit(code)
+
+
+if "FreeCAD" in sys.modules:
+    from PySide import QtCore
+
+    QtCore.QTimer.singleShot(0, go)

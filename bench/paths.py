@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The view of a path at 10,000, 100,000 and 300,000 points, and opening a saved job of 100,000 points.
+
+In FreeCAD's window under Xvfb, drawn by the processor (llvmpipe). Peer of the frames: a plain Coin SoLineSet of the same
+points and colours in the same window, in turns; a frame is the camera turned, or the slider moved, until it is drawn. Of
+opening: what our results add to opening the same document without them until its path is drawn, against what is allowed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from rows import Row
+
+ROOT = Path(__file__).resolve().parent.parent
+SCRIPT = Path(__file__).resolve().parent / "path_frames.py"
+LONGEST = 600  # s
+ALLOWED = 0.3  # s
+# a frame of ours has the legend too; tubes have some hundred thousand triangles
+REQUIRED = {"lines": 0.6, "slider": 0.5, "tubes": 0.12, "slider, tubes": 0.12}
+JOB = """import sys
+sys.path.insert(0, {root!r})
+from freecad_am.batch import host
+host.find_freecad()
+import FreeCAD as App, Part
+from freecad_am import api
+document = App.newDocument("Job")
+part = document.addObject("Part::Feature", "Part")
+part.Shape = Part.makeCylinder(45, 70)
+cell = api.make_cell(document)
+toolpath = api.make_toolpath(document, api.make_feature(document, part, min_points=1420), cell)
+api.make_program(document, api.make_joint_path(document, toolpath, cell, method="constant"))
+document.saveAs({saved!r})
+"""
+
+
+def run() -> list[Row]:
+    """Frames for every number of points, then opening."""
+    freecad = shutil.which("freecad") or shutil.which("FreeCAD")
+    if not freecad or not shutil.which("xvfb-run"):
+        print("bench: no freecad or no xvfb-run: frames are not measured", file=sys.stderr)
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        saved = str(Path(folder) / "job.FCStd")
+        plain = {key: value for key, value in os.environ.items() if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
+        subprocess.run([sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved)], check=True, env=plain,
+                       stdin=subprocess.DEVNULL)
+        found = _in_window(freecad, Path(folder), saved)
+    rows = [
+        Row(f"frame of {one['points']:,} points, {one['what']}; one SoLineSet", one["ours"], one["peer"], "ms",
+            REQUIRED[one["what"]])
+        for one in found["frames"]
+    ]
+    added = max(found["with"] - found["without"], 1e-3)
+    return [*rows, Row(
+        f"opening a job of {found['points']:,} points, {found['with']:.2f} s; what results add, and what is allowed", added,
+        ALLOWED, "s", 1.0)]
+
+
+def _in_window(freecad: str, folder: Path, saved: str) -> Any:
+    sys.path.insert(0, str(ROOT))
+    from tests.run import SCREEN, private_home
+
+    told = folder / "told.json"
+    env = {**private_home(folder), "FRAMES_TO": str(told), "FRAMES_OF": str(ROOT), "FRAMES_JOB": saved}
+    for name in ("VIRTUAL_ENV", "BENCH_INSIDE"):
+        env.pop(name, None)
+    window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", str(LONGEST)]
+    done = subprocess.run([*window, freecad, str(SCRIPT)], env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          check=False)
+    if not told.is_file():
+        print(done.stderr[-2000:], file=sys.stderr)
+        raise AssertionError("no frames were measured")
+    return json.loads(told.read_text(encoding="utf-8"))

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measures frames inside FreeCAD's window; run by `simulation`, which says by FRAMES_TO where to write them."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+import traceback
+from statistics import mean
+
+FRAMES = 40
+SIZES = ((10_000, 1.0, 140), (100_000, 1.0, 1420), (300_000, 1.0, 4280))  # points, layer height, points of a turn
+
+
+def run_of_points(layer_height: float, points: int, document: str):
+    """A hemisphere of many points as a simulation plays it."""
+    import numpy as np
+
+    from freecad_am.core.geometry.profile import Meridian, RevolvedWall
+    from freecad_am.core.geometry.sampling import sampled
+    from freecad_am.core.kinematics import cell as cells
+    from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+    from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+    from freecad_am.core.parameters.joints import JointParameters
+    from freecad_am.core.parameters.process import ProcessParameters
+    from freecad_am.core.parameters.strategy import RevolutionParameters
+    from freecad_am.core.planning.motion import assemble
+    from freecad_am.core.planning.plan import plan_joints
+    from freecad_am.core.simulation.pace import pace
+    from freecad_am.core.simulation.timeline import timeline
+    from freecad_am.core.simulation.totals import totals
+    from freecad_am.core.simulation.watch import watch
+    from freecad_am.core.strategies import revolution
+    from freecad_am.gui.simulation.run import Run
+
+    def dome(t):
+        return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
+
+    wall = RevolvedWall(Meridian.chained([sampled(dome, [0, np.pi / 2])]), np.eye(4))
+    process, looks = ProcessParameters(), CellParameters(limits="paper")
+    toolpath = revolution.plan(
+        wall, RevolutionParameters(layer_height=layer_height, min_points=points), BuildDirectionParameters(clearance="none"),
+        process, NozzleParameters(), 113.0, None,
+    )
+    cell = cells.resolve(looks, toolpath.frame)
+    motion, _ = assemble(plan_joints(toolpath, cell, JointParameters(method="constant", rz=0.0)), cell, process)
+    times, kept = timeline(motion, process), pace(motion, cell.machine.max_speed, cell.machine.max_acceleration)
+    unknown = np.full(len(motion), np.nan)
+    return Run(
+        document=document, title="frames", objects=(), cell=cell, looks=looks, toolpath=toolpath, width=1.0, motion=motion,
+        times=times, pace=kept, watch=watch(motion, cell, kept, unknown, unknown),
+        totals=totals(motion, times, process, toolpath.layer_height),
+    )
+
+
+def measured(layer_height: float, points: int) -> dict[str, float]:
+    """Means and the longest frame, ms."""
+    import FreeCAD as App
+    import FreeCADGui as Gui
+
+    from freecad_am.gui.simulation import dock
+
+    document = App.newDocument("Frames")
+    view = Gui.activeDocument().activeView()
+    view.viewIsometric()
+    run = run_of_points(layer_height, points, document.Name)
+    simulation = dock.show(run, view)
+    settle(0.5)
+
+    def play(frame: int) -> None:
+        # near the end nearly all of the deposit is there
+        simulation.player.go((0.9 + 0.1 * frame / FRAMES) * run.times.total)
+        simulation.show()
+
+    ours = frames_of(play)
+    peer = frames_of(lambda frame: simulation.scene.nozzle.touch())
+    found = {"points": int(run.motion.deposit.sum()), "ours": mean(ours), "peer": mean(peer), "longest": max(ours)}
+    simulation.close()
+    App.closeDocument(document.Name)
+    return found
+
+
+def frames_of(act) -> list[float]:
+    """ms of each frame of an act, done again and again: what a window puts off falls into the next one."""
+    import FreeCADGui as Gui
+
+    times = []
+    for frame in range(FRAMES):
+        start = time.perf_counter()
+        act(frame)
+        Gui.updateGui()
+        Gui.updateGui()
+        times.append(1e3 * (time.perf_counter() - start))
+    return times[3:]
+
+
+def settle(seconds: float) -> None:
+    """Let the window come to rest."""
+    import FreeCADGui as Gui
+
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        Gui.updateGui()
+        time.sleep(0.01)
+
+
+def go() -> None:
+    """Measure all sizes, write them, end FreeCAD."""
+    code = 1
+    try:
+        sys.path.insert(0, os.environ["FRAMES_OF"])
+        found = [measured(layer_height, points) for _, layer_height, points in SIZES]
+        with open(os.environ["FRAMES_TO"], "w", encoding="utf-8") as file:
+            json.dump(found, file)
+        code = 0
+    except BaseException:
+        print(traceback.format_exc(), file=sys.__stderr__)
+    finally:
+        sys.__stderr__.flush()
+        os._exit(code)
+
+
+if "FreeCAD" in sys.modules:
+    from PySide import QtCore
+
+    QtCore.QTimer.singleShot(0, go)

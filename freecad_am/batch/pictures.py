@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The pictures of the report that matplotlib draws, as elements of its page; without it there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from types import ModuleType
+
+import numpy as np
+
+from freecad_am.core.toolpath import Array
+from freecad_am.plots import joints, process
+from freecad_am.plots.chart import Chart, together
+from freecad_am.plots.fit import fit
+from freecad_am.plots.look import PAGE
+from freecad_am.plots.rows import Rows, rows
+from freecad_am.plots.source import Source
+
+HALF, WHOLE, TALL = 460, 940, 230  # pixels
+MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
+
+
+class Pictures:
+    """The pictures of one job, each list empty where there is nothing to draw, or nothing to draw with."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.layers = (0, len(source.toolpath.layers) - 1)
+
+    @cached_property
+    def modules(self) -> tuple[ModuleType, ModuleType] | None:
+        """What draws; None without matplotlib, whose import takes longer than the drawing of a picture."""
+        try:
+            from freecad_am.plots import draw, files
+        except ImportError:
+            return None
+        return draw, files
+
+    @cached_property
+    def rows(self) -> Rows:
+        """The rows of the job over time."""
+        return rows(self.source)
+
+    def angles(self) -> list[str]:
+        """Each axis against its limits."""
+        return self._half(joints.angles(self.source, self.rows))
+
+    def rates(self) -> list[str]:
+        """Joint speeds as shares of the limits; accelerations and jerks, all axes in one; the condition."""
+        accelerations = together("Joint accelerations while depositing", joints.accelerations(self.source, self.rows))
+        jerks = together("Joint jerks while depositing", joints.jerks(self.source, self.rows))
+        charts = (*joints.shares(self.source, self.rows), accelerations, jerks, *joints.condition(self.source, self.rows))
+        return self._drawn(charts, WHOLE)
+
+    def process(self, spacing: Sequence[Array]) -> list[str]:
+        """Distances (points of layers, in mm) between layers, speed along the path, deposit rate and mass."""
+        source = self.source
+        first = [process.distances(np.concatenate(spacing), source.toolpath.layer_height, source.band)] if spacing else []
+        return self._half((*first, *process.travel(source, self.rows), *process.deposit(source, self.rows)))
+
+    def beads(self) -> list[str]:
+        """What a bead model predicts, and its fit."""
+        source = self.source
+        charts = (*process.spread(source, self.layers), *process.heights(source, self.layers))
+        if charts and source.model is not None:
+            charts = (*charts, fit(*source.model, source.process.bead_width))
+        return self._half(charts)
+
+    def _half(self, charts: Sequence[Chart]) -> list[str]:
+        return self._drawn(charts, HALF)
+
+    def _drawn(self, charts: Sequence[Chart], width: int) -> list[str]:
+        if self.modules is None:
+            return []
+        draw, files = self.modules
+        return [files.inline(draw.figure([chart], PAGE, width, TALL)[0], chart.title) for chart in charts]

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lines round a hub and along it, in regions that run all the way round."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.plane_curve import Array, dense
+from ..geometry.region import Region, regions
+from ..geometry.strip import Strip
+from .curve import Beads, PlaneCurve, long_enough
+from .lines import levels_between
+from .strip_closing import strip_closing
+from .strips import borders, grown, round_count, single
+
+PROBE, HALVES = 0.1, 10  # of the spacing, between places that tell where lines are inside; and how often that is halved
+
+
+class _Frame(NamedTuple):
+    """curves: contours round the lines; ends: what lines run through; inset: mm of the outermost lines from the borders."""
+
+    curves: list[PlaneCurve]
+    ends: tuple[Strip | Region, ...]
+    inset: float
+
+
+def _frame(strip: Strip, beads: Beads, ring: bool) -> _Frame:
+    """See `lines.frame`; without anything where the strip is nowhere as wide as a bead."""
+    half, error = 0.5 * beads.spacing, beads.chord_error
+    inner = strip.grown(-beads.inset, error)
+    if not ring or not inner:
+        return _Frame([], inner, beads.inset)
+    return _Frame(borders(inner, beads, 0), grown(inner, -half, error), beads.inset + 2.0 * half)
+
+
+def lines_round(strip: Strip, beads: Beads, ring: bool = False) -> list[PlaneCurve]:
+    """Lines round the hub, half a bead inside the borders' farthest places and at the spacing between, see `lines`.
+    Closed where nothing interrupts them."""
+    place = _frame(strip, beads, ring)
+    if not place.ends and not place.curves:
+        return single(strip, beads)
+    low, high = strip.levels
+    turn, room = strip.period.around, _Room(strip, place.ends)
+    curves = list(place.curves)
+    for row, level in enumerate(levels_between(low + place.inset, high - place.inset, beads)):
+        count = round_count(strip, level, beads)
+        u = -0.5 * turn + turn / count * np.arange(count + 1)
+        inside = room.contains(np.stack([u, np.full(len(u), level)], axis=1))
+        for a, b in _runs(inside[:-1]):
+            cover = np.stack([u[0] + turn / count * np.arange(a, b), np.full(b - a, level)], axis=1)
+            points, whole = strip.period.laid(cover), b - a == count
+            back = (row % 2 == 1) if not whole else beads.clockwise
+            sense = 0 if not whole else (-1 if back else 1)
+            sheet = float(cover[:, 0].mean())
+            curves.append(PlaneCurve(points[::-1] if back else points, whole, "line", int(ring), sense, sheet))
+    curves = long_enough(curves, beads.shortest)
+    return curves + strip_closing(strip, curves, beads, int(ring), "closing")
+
+
+def lines_along(strip: Strip, beads: Beads, ring: bool = False) -> list[PlaneCurve]:
+    """Lines along generatrices, evenly round the hub, no farther apart than the spacing; on a cone that is where they are
+    farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
+    place = _frame(strip, beads, ring)
+    if not place.ends and not place.curves:
+        return single(strip, beads)
+    turn, room = strip.period.around, _Room(strip, place.ends)
+    count = max(1, math.ceil(turn * _stretch(strip) / beads.spacing - 0.01 * turn / beads.spacing))
+    low, high = strip.levels
+    v: Array = np.linspace(low, high, max(2, math.ceil((high - low) / (PROBE * beads.spacing))))
+    u: Array = np.asarray(-0.5 * turn + turn / count * (np.arange(count) + 0.5), dtype=np.float64)
+    inside = room.contains(np.stack(np.broadcast_arrays(u[:, None], v), axis=-1).reshape(-1, 2)).reshape(count, -1)
+    runs = [(number, a, b) for number in range(count) for a, b in _runs(inside[number], closed=False)]
+    line, first, past = np.array(runs, dtype=np.intp).reshape(-1, 3).T
+    bottom, top = (
+        room.border(u[line], v[within], v[np.clip(beyond, 0, len(v) - 1)])
+        for within, beyond in ((first, first - 1), (past - 1, past))
+    )
+    curves = list(place.curves)
+    for number, *levels in zip(line.tolist(), bottom, top):
+        ends = strip.period.laid(np.stack([np.full(2, u[number]), levels], axis=1))
+        curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", int(ring)))
+    curves = long_enough(curves, beads.shortest)
+    return curves + strip_closing(strip, curves, beads, int(ring), "closing")
+
+
+class _Room:
+    """Parts of a strip that are asked often what lies in them."""
+
+    def __init__(self, strip: Strip, parts: Sequence[Strip | Region]) -> None:
+        turn = strip.period.around
+        reach = 0.75 * turn
+        self.unrolled = [piece for part in parts if isinstance(part, Strip) for piece in part.between(-reach, reach)]
+        for part in (part for part in parts if isinstance(part, Region)):
+            covers = [strip.period.followed(dense(ring, 0.001 * turn), part.sheet) for ring in part.rings()]
+            for hole in covers[1:] if math.isfinite(strip.period.whole) else ():
+                away = 0.5 * (covers[0][:, 0].min() + covers[0][:, 0].max()) - hole[0, 0]
+                hole[:, 0] += strip.period.whole * np.round(away / strip.period.whole)
+            for k in (-1, 0, 1):
+                self.unrolled += regions([cover + np.array([k * turn, 0.0]) for cover in covers])
+
+    def contains(self, cover: Array) -> NDArray[np.bool_]:
+        """Which of (u, v) (n, 2) within one turn lie in one of them."""
+        inside = np.zeros(len(cover), dtype=bool)
+        for piece in self.unrolled:
+            inside |= piece.contains(cover)
+        return inside
+
+    def border(self, u: Array, within: Array, beyond: Array) -> Array:
+        """Heights (n,), inside, where generatrices leave between a height inside and one outside."""
+        for _ in range(HALVES):
+            middle = 0.5 * (within + beyond)
+            inside = self.contains(np.stack([u, middle], axis=1))
+            within, beyond = np.where(inside, middle, within), np.where(inside, beyond, middle)
+        return within
+
+
+def _runs(inside: NDArray[np.bool_], closed: bool = True) -> list[tuple[int, int]]:
+    """First and one past the last of each run of members; one across the end of a closed list goes past its length."""
+    count = len(inside)
+    if inside.all():
+        return [(0, count)]
+    change = np.diff(np.r_[False, inside, False].astype(int))
+    runs = [(int(a), int(b)) for a, b in zip(np.flatnonzero(change > 0), np.flatnonzero(change < 0))]
+    if closed and len(runs) > 1 and runs[0][0] == 0 and runs[-1][1] == count:
+        runs = [*runs[1:-1], (runs[-1][0], count + runs[0][1])]
+    return [run for run in runs if run[1] - run[0] > 1]
+
+
+def _stretch(strip: Strip) -> float:
+    """How much longer a turn is where it is longest than at the reference."""
+    return 1.0 if math.isinf(strip.period.apex) else (strip.period.apex - strip.levels[0]) / abs(strip.period.apex)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads as bodies to be looked at: tubes of their width and height along polylines, standing on the points.
+
+The section is a rounded rectangle of exactly the width and the height. Corners are mitred, ends closed.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+TURN = np.radians(20.0)  # a section is kept wherever the course has turned by this since the last one
+_SHARPEST = 0.5  # of the cosine of half a turn: mitres grow no longer than twice the width
+# corners of half the section, by the number of sides; the first is beside
+SECTIONS = {
+    4: ((1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)),
+    6: ((1.0, 0.0), (0.62, 1.0), (-0.62, 1.0), (-1.0, 0.0), (-0.62, -1.0), (0.62, -1.0)),
+    8: ((1.0, -0.45), (1.0, 0.45), (0.66, 1.0), (-0.66, 1.0), (-1.0, 0.45), (-1.0, -0.45), (-0.66, -1.0), (0.66, -1.0)),
+}
+
+
+class Frames(NamedTuple):
+    """At every point the unit vectors `side` and `up` (n, 3) across the course, and how much longer mitres are (n,)."""
+
+    side: Array
+    up: Array
+    mitre: Array
+    turn: Array
+
+
+class Mesh(NamedTuple):
+    """points, normals (k * sides, 3), triangles (t, 3) their indices."""
+
+    points: Array
+    normals: Array
+    triangles: NDArray[np.int32]
+
+
+def frames(points: Array, build: Array, starts: Index, closed: NDArray[np.bool_]) -> Frames:
+    """The frames of beads one after the other.
+
+    points, build: (n, 3). starts: (m + 1,) first row of each bead, and n. closed: (m,), whether the last point is the first.
+    turn: (n,) rad by which the course turns at the point.
+    """
+    step = np.diff(points, axis=0)
+    length = np.linalg.norm(step, axis=1, keepdims=True)
+    step = np.divide(step, length, out=np.zeros_like(step), where=length > 0.0)
+    first, last = starts[:-1], starts[1:] - 1
+    after, before = np.concatenate([step, step[-1:]]), np.concatenate([step[:1], step])
+    after[last], before[first] = before[last], after[first]
+    round_ = np.flatnonzero(closed)
+    after[last[round_]], before[first[round_]] = after[first[round_]], before[last[round_]]
+    along = before + after
+    cosine = np.linalg.norm(along, axis=1)
+    along = np.where(cosine[:, None] > 1e-6, along, before)  # the course goes back where it came from
+    side = _unit(np.cross(build, along))
+    up = _unit(np.cross(along, side))
+    turn = np.arccos(np.clip(np.einsum("ij,ij->i", before, after), -1.0, 1.0))
+    return Frames(side, up, 1.0 / np.maximum(0.5 * cosine, _SHARPEST), turn)
+
+
+def kept(turn: Array, starts: Index, stride: int) -> NDArray[np.bool_]:
+    """(n,) which points get a section: each `stride`-th, the ends of beads, and more where the course turns."""
+    keep: NDArray[np.bool_] = np.arange(len(turn)) % stride == 0
+    turned = np.floor(np.cumsum(turn) / TURN)
+    keep[1:] |= np.diff(turned) > 0.0
+    keep[np.concatenate([starts[:-1], starts[1:] - 1])] = True
+    return keep
+
+
+def mesh(points: Array, across: Frames, width: Array, height: Array, ends: NDArray[np.bool_], sides: int) -> Mesh:
+    """Tubes through points (k, 3), which are in the middle of their foot.
+
+    across: of these points. width, height: (k,) mm. ends: (k,) True at the last point of a tube. sides: a key of SECTIONS.
+    """
+    section = np.array(SECTIONS[sides])
+    half_width, half_height = 0.5 * width * across.mitre, 0.5 * height
+    beside = section[None, :, :1] * across.side[:, None]
+    above = section[None, :, 1:] * across.up[:, None]
+    centre = points + half_height[:, None] * across.up
+    corners = centre[:, None] + beside * half_width[:, None, None] + above * half_height[:, None, None]
+    normals = beside / np.maximum(half_width, 1e-9)[:, None, None] + above / np.maximum(half_height, 1e-9)[:, None, None]
+    return Mesh(corners.reshape(-1, 3), _unit(normals).reshape(-1, 3), _triangles(ends, sides))
+
+
+def _triangles(ends: NDArray[np.bool_], sides: int) -> NDArray[np.int32]:
+    """Seen from outside, counterclockwise where `side`, `up` and the course are right-handed."""
+    number, turn = np.arange(sides), np.roll(np.arange(sides), -1)
+    rows = np.flatnonzero(~ends[:-1])[:, None] * sides
+    low, next_low = rows + number, rows + turn
+    skin = np.stack([low, next_low, next_low + sides, low, next_low + sides, low + sides], axis=-1).reshape(-1, 3)
+    last = np.flatnonzero(ends)
+    first = np.concatenate([[0], last[:-1] + 1])
+    fan = np.stack([np.zeros(sides - 2, dtype=np.intp), number[1:-1], number[2:]], axis=-1)
+    front = (first[:, None, None] * sides + fan[:, ::-1]).reshape(-1, 3)
+    back = (last[:, None, None] * sides + fan).reshape(-1, 3)
+    return np.concatenate([skin, front, back]).astype(np.int32)
+
+
+def _unit(vectors: Array) -> Array:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    unit: Array = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
+    return unit

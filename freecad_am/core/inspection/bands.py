@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bands of deviations and their colours: green within tolerance, to red outside of it and to blue inside, alike on both
+sides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+STEPS = 3  # tolerances at which bands end
+_COLOURS = (
+    (0.19, 0.21, 0.58), (0.10, 0.45, 0.82), (0.35, 0.75, 0.93), (0.25, 0.68, 0.30), (0.98, 0.83, 0.22), (0.96, 0.53, 0.12),
+    (0.80, 0.09, 0.13),
+)
+NOT_COUNTED = (0.55, 0.55, 0.57)
+
+
+@dataclass(frozen=True)
+class Band:
+    """A band of deviations: what a legend says, its colour (red, green, blue 0..1)."""
+
+    text: str
+    colour: tuple[float, float, float]
+
+
+def bands(tolerance: float) -> tuple[Band, ...]:
+    """The bands from the most inside to the most outside."""
+    limits = [f"{step * tolerance:g}" for step in range(1, STEPS + 1)]
+    inside = [f"< -{limits[-1]}", *(f"-{limits[k]} … -{limits[k - 1]}" for k in range(STEPS - 1, 0, -1))]
+    outside = [*(f"{limits[k - 1]} … {limits[k]}" for k in range(1, STEPS)), f"> {limits[-1]}"]
+    texts = [*inside, f"within ±{limits[0]}", *outside]
+    return tuple(Band(text, colour) for text, colour in zip(texts, _COLOURS, strict=True))
+
+
+def band_of(deviation: Array, tolerance: float) -> NDArray[np.int64]:
+    """The number in `bands` (n,) of deviations (n,)."""
+    step = np.clip(np.ceil(np.abs(deviation) / tolerance - 1e-12) - 1.0, 0.0, STEPS)
+    return (STEPS + np.sign(deviation) * step).astype(np.int64)
+
+
+def colours(deviation: Array, counted: NDArray[np.bool_], tolerance: float) -> Array:
+    """Colours (n, 3) of deviations (n,); grey where they do not count."""
+    found = np.array(_COLOURS)[band_of(deviation, tolerance)]
+    found[~counted] = NOT_COUNTED
+    return found

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What deviations amount to: their spread, sphericity, circularity at heights, thickness (Chalvin 2020, table 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..geometry.profile import Meridian
+from ..issues import InputError
+from .planned import Planned
+from .roundness import Round, least, narrowest
+
+Array = NDArray[np.float64]
+
+BARS = 40  # of a histogram at most
+FEW = 600  # points from each end and from all over that a narrowest zone is begun with
+ROUND = 1e-3  # of the radius: what is planned within is a sphere
+FLAT = 0.1  # of a normal along the radius: a surface that lies flatter has no circle at a height
+ALL_ROUND = 0.25  # turns between neighbours on a circle beyond which it is not measured all round
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Of the deviations that count: how many, mean, standard deviation, root mean square, extremes, and what 95 % of their
+    amounts do not exceed, mm; the share within tolerance. edges: (k + 1,) mm of the bars of a histogram with counts (k,)."""
+
+    count: int
+    mean: float
+    deviation: float
+    rms: float
+    least: float
+    most: float
+    within_95: float
+    within: float
+    edges: Array
+    counts: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Circle:
+    """Of count points at a height, mm: the circles of least squares and of the narrowest zone in the plane there, relative
+    to the part's axis. gap: the largest angle between neighbours, rad."""
+
+    height: float
+    count: int
+    fitted: Round
+    zone: Round
+    gap: float
+
+    @property
+    def eccentricity(self) -> float:
+        """Distance of the fitted circle's centre from the axis, mm."""
+        return float(np.hypot(*self.fitted.centre))
+
+
+@dataclass(frozen=True)
+class Ball:
+    """The spheres of least squares and of the narrowest zone, their centres in part coordinates; planned: mm, its radius."""
+
+    count: int
+    fitted: Round
+    zone: Round
+    planned: float
+
+
+@dataclass(frozen=True)
+class Thickness:
+    """Of a wall measured on both sides, at count pairs of places, mm."""
+
+    count: int
+    mean: float
+    deviation: float
+    least: float
+    most: float
+
+
+def spread(deviation: Array, tolerance: float) -> Spread:
+    """The figures of deviations (n,), n >= 1."""
+    low, high = float(deviation.min()), float(deviation.max())
+    step = _nice(max(high - low, 1e-9) / BARS)
+    first, last = np.floor(low / step), max(np.floor(low / step) + 1, np.ceil(high / step))
+    edges = step * np.arange(first, last + 1)
+    edges[0], edges[-1] = min(edges[0], low), max(edges[-1], high)
+    amount = np.abs(deviation)
+    return Spread(
+        len(deviation), float(deviation.mean()), float(deviation.std()), float(np.sqrt((deviation**2).mean())), low, high,
+        float(np.quantile(amount, 0.95)), float((amount <= tolerance).mean()), edges,
+        np.histogram(deviation, edges)[0].astype(np.int64),
+    )
+
+
+def ball(points: Array, feet: Array, where: str) -> Ball | None:
+    """Sphericity of points (n, 3) whose places on the planned surface (n, 3) lie on a sphere; None where they do not."""
+    try:
+        planned = least(feet, where)
+        if planned.zone > ROUND * planned.radius:
+            return None
+        return Ball(len(points), least(points, where), zone_of(points, where), planned.radius)
+    except InputError:  # too few, or in a plane
+        return None
+
+
+def circle(planned: Planned, points: Array, normal: Array, height: float, band: float, where: str) -> Circle:
+    """Circularity of those of the points (n, 3), with the planned normals (n, 3), that are within a band of a height, mm.
+
+    They are slid to the height by what the planned radius differs there, along the meridian of a part of revolution, else
+    along the slope of the planned surface, so that a point at the height stays what it is. InputError FEW_POINTS.
+    """
+    own = (points - planned.frame[:3, 3]) @ planned.frame[:3, :3]
+    near = np.abs(own[:, 2] - height) <= band
+    own, side = own[near], normal[near] @ planned.frame[:3, :3]
+    radius = np.hypot(own[:, 0], own[:, 1])
+    if planned.wall is not None:
+        grown = _grown(planned.wall.meridian, own[:, 2], radius, height)
+    else:
+        outward = (own[:, :2] * side[:, :2]).sum(axis=1) / np.maximum(radius, 1e-9)
+        slope = np.where(np.abs(outward) > FLAT, -side[:, 2] / np.where(np.abs(outward) > FLAT, outward, 1.0), 0.0)
+        grown = slope * (height - own[:, 2])
+    slid = own[:, :2] * (1.0 + grown / np.maximum(radius, 1e-9))[:, None]
+    if len(slid) < 4:
+        raise InputError(
+            "FEW_POINTS", where, f"{len(slid)} points lie within {band:g} mm of the height {height:g} mm; measure more "
+            "there, choose other heights, or a wider band"
+        )
+    angle = np.sort(np.arctan2(slid[:, 1], slid[:, 0]))
+    gap = float(np.diff(angle, append=angle[0] + 2.0 * np.pi).max())
+    return Circle(height, len(slid), least(slid, where), zone_of(slid, where), gap)
+
+
+def _grown(meridian: Meridian, heights: Array, radius: Array, height: float) -> Array:
+    """By how much (n,) the planned radius at a height differs from that at heights (n,), on the stretch of the meridian that
+    is nearest to the measured radius (n,); nothing where it does not reach both."""
+    there = meridian.s_at_height([height])[0]
+    grown = np.zeros(len(heights))
+    if not len(there):
+        return grown
+    end = meridian.at(there)[0]
+    for k, here in enumerate(meridian.s_at_height(heights)):
+        if len(here):
+            own = meridian.at(here)[0]
+            chosen = int(np.argmin(np.abs(own - radius[k])))
+            grown[k] = end[np.argmin(np.abs(there - here[chosen]))] - own[chosen]
+    return grown
+
+
+def thickness(
+    feet: Array, deviation: Array, outer: NDArray[np.bool_], planned: float, reach: float
+) -> Thickness | None:
+    """Thickness where places (n, 3) of the planned surface that were measured on its outer side have others of the inner
+    side within `reach` mm: `planned` mm and both deviations (n,). None where there are no such pairs."""
+    one, other = np.flatnonzero(outer), np.flatnonzero(~outer)
+    if not len(one) or not len(other):
+        return None
+    found_at = cKDTree(feet[other]).query(feet[one])
+    off, at = np.asarray(found_at[0]), np.asarray(found_at[1])
+    met = off <= reach
+    if not met.any():
+        return None
+    found = planned + deviation[one[met]] + deviation[other[at[met]]]
+    return Thickness(int(met.sum()), float(found.mean()), float(found.std()), float(found.min()), float(found.max()))
+
+
+def zone_of(points: Array, where: str) -> Round:
+    """The narrowest zone of points (n, d) as `roundness.narrowest` finds it, of many by those that matter: what holds all
+    others too is the narrowest of all."""
+    if len(points) <= 4 * FEW:
+        return narrowest(points, where)
+    distance = np.linalg.norm(points - least(points, where).centre, axis=1)
+    order = np.argsort(distance)
+    chosen = np.unique(np.r_[order[:FEW], order[-FEW:], np.linspace(0, len(points) - 1, FEW).astype(np.intp)])
+    for _ in range(20):
+        found = narrowest(points[chosen], where)
+        distance = np.linalg.norm(points - found.centre, axis=1)
+        if np.ptp(distance) <= found.zone + 1e-9 * found.outer:
+            break
+        order = np.argsort(distance)
+        chosen = np.unique(np.r_[chosen, order[:FEW], order[-FEW:]])
+    inner, outer = float(distance.min()), float(distance.max())
+    return Round(found.centre, 0.5 * (inner + outer), inner, outer)
+
+
+def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
+    """A sixth, a half and five sixths of the heights of points (n, 3) above the part's base, mm, as the paper has them of
+    10 to 40 mm: 15, 25 and 35."""
+    height = (points - planned.frame[:3, 3]) @ planned.frame[:3, 2]
+    low, high = float(height.min()), float(height.max())
+    return tuple(round(low + share * (high - low), 3) for share in (1.0 / 6.0, 0.5, 5.0 / 6.0))
+
+
+def warnings_of(circles: Sequence[Circle]) -> list[str]:
+    """What to know about circles that were not measured all round."""
+    return [
+        f"the circle at {one.height:g} mm was not measured all round: {np.degrees(one.gap):.0f} deg between neighbours"
+        for one in circles if one.gap > 2.0 * np.pi * ALL_ROUND
+    ]
+
+
+def _nice(step: float) -> float:
+    """The next of 1, 2, 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(step))
+    return float(next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= step * (1.0 - 1e-9)))

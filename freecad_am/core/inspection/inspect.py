@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measured points against the plan: laid onto it, and what their deviations amount to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import NOTE, WARNING, InputError, Issue
+from ..parameters.inspection import AXIS, BEST, BOTH, NONE, SHIFT, InspectionParameters
+from . import figures
+from .figures import Ball, Circle, Spread, Thickness
+from .planned import Planned, sided
+from .point_file import Measured
+from .registration import (
+    ALIKE,
+    LEAST_POINTS,
+    Registration,
+    Surface,
+    as_measured,
+    by_extents,
+    by_pairs,
+    mean_square,
+    register,
+    roughly,
+)
+
+Array = NDArray[np.float64]
+Report = Callable[[float, str], None]
+
+SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
+
+
+@dataclass(frozen=True)
+class Inspected:
+    """Measured points laid onto the part.
+
+    points: (n, 3) mm in part coordinates, where the surface was met: a ball's radius from its centre. deviation: (n,) mm
+    from what was planned, plus where there is more. counted: (n,) False for points past the edges of what was planned, which
+    no figure counts; fitted: (n,) False for those and for what the fit left out. motion: (4, 4) from where points were
+    measured. free: motions that the deviations do not feel. tolerance: mm. file, against: what was compared with what.
+    """
+
+    points: Array
+    deviation: Array
+    counted: NDArray[np.bool_]
+    fitted: NDArray[np.bool_]
+    motion: Array
+    free: tuple[str, ...]
+    tolerance: float
+    file: str
+    against: str
+    spread: Spread
+    ball: Ball | None
+    circles: tuple[Circle, ...]
+    thickness: Thickness | None
+    issues: tuple[Issue, ...]
+
+
+def inspect(measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report) -> Inspected:
+    """Lay measured points onto the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
+    report(0.05, "laying the points onto the part")
+    found, counted, distances = _laid(measured, planned, parameters)
+    report(0.6, "sphericity and circularity")
+    laid = measured.points @ found.motion[:3, :3].T + found.motion[:3, 3]
+    distance, normal = distances(laid)
+    deviation = distance - parameters.probe_radius
+    points = laid - parameters.probe_radius * normal
+    # what is farther off than all that was fitted was left out, too
+    fitted = counted & (np.abs(deviation) <= np.abs(found.distance[found.used]).max() + 1e-9)
+    kept, where = points[counted], measured.label
+    ball = figures.ball(kept, kept - deviation[counted, None] * normal[counted], where)
+    issues = [*measured.issues, *_told(found, planned, counted, fitted, ball is not None)]
+    levels = parameters.levels() or figures.default_heights(planned, kept)
+    circles = []
+    for height in levels:
+        try:
+            circles.append(figures.circle(planned, kept, normal[counted], height, parameters.band, where))
+        except InputError as error:
+            if parameters.heights:
+                issues.append(Issue(WARNING, error.code, error.message))
+    if planned.wall is None and not parameters.heights:
+        circles = []  # nothing says that it is round
+    issues += [Issue(WARNING, "NOT_ALL_ROUND", text) for text in figures.warnings_of(circles)]
+    report(0.8, "figures")
+    return Inspected(
+        points, deviation, counted, fitted, found.motion, found.free, parameters.tolerance, where, planned.name,
+        figures.spread(deviation[counted], parameters.tolerance),
+        ball, tuple(circles),
+        _thickness(laid, deviation, counted, planned, parameters), tuple(issues),
+    )
+
+
+def _laid(
+    measured: Measured, planned: Planned, parameters: InspectionParameters
+) -> tuple[Registration, NDArray[np.bool_], Surface]:
+    """The fit, which points are not past the edges, and the surface that was fitted to."""
+    radius, trim, where = parameters.probe_radius, parameters.trim, measured.label
+    points = measured.points
+    few = points[np.unique(np.linspace(0, len(points) - 1, planned.most).astype(np.intp))]
+    exact = sided(planned.exact, parameters.side, parameters.thickness)
+    if parameters.fit == NONE:
+        start = np.eye(4)
+    else:
+        nearest = sided(planned.nearest, parameters.side, parameters.thickness)
+        start = _begun(few, nearest, exact, planned, parameters, where)
+    for _ in range(2):  # which points are past the edges, the fit tells
+        on_part = few[planned.counted(few @ start[:3, :3].T + start[:3, 3])]
+        if len(on_part) < LEAST_POINTS:
+            raise InputError(
+                "NOT_ON_PART", where, f"{len(on_part)} of its points lie on {planned.name}; choose the object that was "
+                "measured, its unit, or pairs of points to begin with"
+            )
+        if parameters.fit == NONE:
+            distance, _ = exact(on_part)
+            found = Registration(np.eye(4), on_part, distance - radius, np.ones(len(on_part), dtype=np.bool_), ())
+        else:
+            found = register(on_part, exact, start[None], where, trim, radius, _allowed(planned, parameters), planned.free)
+            start = found.motion
+    return found, planned.counted(points @ start[:3, :3].T + start[:3, 3]), exact
+
+
+def _begun(
+    points: Array, nearest: Surface, exact: Surface, planned: Planned, parameters: InspectionParameters, where: str
+) -> Array:
+    """The motion (4, 4) to begin with: from pairs of points where they are given. Else, where that does about as well as the
+    best of many attitudes, from as it was measured by shifts first, so that what deviations do not feel is not turned."""
+    trim, radius = parameters.trim, parameters.probe_radius
+    pairs = parameters.start_pairs()
+    if pairs:
+        start = by_pairs(np.array([one for one, _ in pairs]), np.array([other for _, other in pairs]), where)
+        return roughly(points, nearest, start, trim, radius, _allowed(planned, parameters))
+    if parameters.fit != BEST:
+        return roughly(points, nearest, as_measured(), trim, radius, _allowed(planned, parameters))
+    start = roughly(points, exact, as_measured(), trim, radius, SHIFTS, planned.free)
+    start = roughly(points, exact, start[None], trim, radius, None, planned.free)
+    other = roughly(points, nearest, by_extents(points, planned.spread), trim, radius)
+    few = points[:: max(1, len(points) // 400)]
+    first, second = (mean_square(few, nearest, one, trim, radius) for one in (start, other))
+    return start if first <= ALIKE * second + planned.chord**2 + 1e-18 else other
+
+
+def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None:
+    """The motions that the fit may make, as `register` takes them."""
+    if parameters.fit == SHIFT:
+        return SHIFTS
+    if parameters.fit == AXIS:
+        axis, origin = planned.frame[:3, 2], planned.frame[:3, 3]
+        turn, shift = np.r_[axis, np.cross(origin, axis)], np.r_[np.zeros(3), axis]
+        return np.column_stack([turn, shift])
+    return None
+
+
+def _thickness(
+    laid: Array, deviation: Array, counted: NDArray[np.bool_], planned: Planned, parameters: InspectionParameters
+) -> Thickness | None:
+    if parameters.side != BOTH:
+        return None
+    raw, normal = planned.exact(laid[counted])
+    feet = laid[counted] - raw[:, None] * normal
+    return figures.thickness(feet, deviation[counted], raw >= 0.0, parameters.thickness, max(parameters.band, 0.5))
+
+
+def _told(
+    found: Registration, planned: Planned, counted: NDArray[np.bool_], fitted: NDArray[np.bool_], is_ball: bool
+) -> list[Issue]:
+    free = ("turning it about the centre of the sphere",) if is_ball and len(found.free) == 3 else found.free
+    issues = [Issue(NOTE, "FREE_MOTION", f"{text} changes no deviation: the points do not tell it") for text in free]
+    past = int((~counted).sum())
+    if past:
+        issues.append(Issue(NOTE, "PAST_EDGES", f"{past} points lie past the edges of {planned.name} and count nowhere"))
+    out = int((counted & ~fitted).sum())
+    if out:
+        text = f"{out} points were left out of the fit, the farthest off; the figures have them"
+        issues.append(Issue(NOTE, "LEFT_OUT", text))
+    if planned.chord > 0.0 and planned.exact is planned.nearest:
+        issues.append(Issue(NOTE, "CHORD", f"{planned.name} is known to {planned.chord:g} mm, by triangles"))
+    return issues

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Planned surfaces that measured points are laid onto: how far points are from them, and whether past their edges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..geometry.profile import RevolvedWall
+from ..geometry.solid_mesh import SolidMesh
+from ..geometry.surface import dot
+from ..parameters.inspection import BOTH, INNER
+from .registration import Mask, Surface
+
+Array = NDArray[np.float64]
+
+PAST = 0.5  # mm past an edge that a point may be and still count
+FACETED = 0.03  # how much a turn of something round is felt at most where its surface is of facets
+TOUCHING = 1e-9  # mm; nearer than this, what leads away from a surface is its normal
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A surface in part coordinates, mm.
+
+    name: how messages call it. nearest: distances from what there is of it, edges included, to begin with. exact: distances
+    along its normals, past its edges from what goes on there. past: (n,) how far points (n, 3) are past its edges, mm.
+    spread: (m, 3) points all over it. frame: (4, 4) whose Z is its axis, at the height of its base. wall: where it is of
+    revolution, with its exact meridian. chord: mm within which it is known. most: points that it is worth fitting with.
+    free: share of the most that a motion may be felt by without being told from none, as facets have other normals than
+    what they are of.
+    """
+
+    name: str
+    nearest: Surface
+    exact: Surface
+    past: Callable[[Array], Array]
+    spread: Array
+    frame: Array
+    wall: RevolvedWall | None = None
+    chord: float = 0.0
+    most: int = 20_000
+    free: float = 1e-5
+
+    def counted(self, points: Array) -> Mask:
+        """Which of points (n, 3) are not past its edges."""
+        return np.asarray(self.past(points) <= PAST)
+
+
+def sided(surface: Surface, side: str, thickness: float) -> Surface:
+    """The surface of a wall's outer side, inner side, or the nearer of both, half a thickness, mm, off its planned one."""
+    if side == BOTH:
+        def both(points: Array) -> tuple[Array, Array]:
+            distance, normal = surface(points)
+            sense = np.where(distance < 0.0, -1.0, 1.0)
+            return np.abs(distance) - 0.5 * thickness, normal * sense[:, None]
+
+        return both
+    sense = -1.0 if side == INNER else 1.0
+
+    def one(points: Array) -> tuple[Array, Array]:
+        distance, normal = surface(points)
+        return sense * distance - 0.5 * thickness, sense * normal
+
+    return one
+
+
+def of_triangles(
+    name: str, vertices: Array, triangles: NDArray[np.intp], frame: Array | None = None, exact: Surface | None = None,
+    chord: float = 0.0, most: int = 20_000,
+) -> Planned:
+    """A surface of triangles, those of a solid counter-clockwise seen from outside; or what they stand for, by `exact`."""
+    mesh = SolidMesh(vertices, triangles)
+    extent = float(np.ptp(vertices, axis=0).max())
+    search = mesh.searched(0.02 * extent)
+
+    def nearest(points: Array) -> tuple[Array, Array]:
+        distance, foot, triangle = search.signed(points)
+        return distance, _away(points, foot, distance, mesh.units[triangle])
+
+    def past(points: Array) -> Array:
+        if exact is None:
+            return np.zeros(len(points))
+        away, normal = exact(points)
+        foot = points - away[:, None] * normal
+        off = np.linalg.norm(foot - search.signed(points)[1], axis=1)
+        return np.asarray(np.where(off > 4.0 * chord, off, 0.0))
+
+    corners = vertices[triangles]
+    area = np.linalg.norm(mesh.normals, axis=1)
+    place = (np.arange(4000) + 0.5) / 4000.0 * area.sum()
+    chosen = np.searchsorted(np.cumsum(area), place).clip(max=len(area) - 1)
+    own, middles = np.eye(4) if frame is None else frame, corners[chosen].mean(axis=1)
+    free = 1e-5 if exact is not None else FACETED
+    return Planned(name, nearest, exact or nearest, past, middles, own, chord=chord, most=most, free=free)
+
+
+def of_beads(name: str, samples: Array, normals: Array, frame: Array, step: float) -> Planned:
+    """Planned beads as points (n, 3) along them with the wall's normals (n, 3) there, no farther apart than `step` mm."""
+    tree = cKDTree(samples)
+
+    def surface(points: Array) -> tuple[Array, Array]:
+        _, at = tree.query(points)
+        return dot(points - samples[at], normals[at]), normals[at]
+
+    def off(points: Array) -> tuple[Array, NDArray[np.intp], Array]:
+        found = tree.query(points)
+        distance, at = np.asarray(found[0]), np.asarray(found[1])
+        along = dot(points - samples[at], normals[at])
+        return along, at, np.maximum(np.sqrt(np.maximum(distance**2 - along**2, 0.0)) - step, 0.0)
+
+    def nearest(points: Array) -> tuple[Array, Array]:
+        along, at, over = off(points)
+        distance = np.hypot(along, over) * np.where(along < 0.0, -1.0, 1.0)
+        whole = np.linalg.norm(points - samples[at], axis=1) * np.where(along < 0.0, -1.0, 1.0)
+        away = _away(points, samples[at], whole, normals[at])
+        return distance, np.where((over > 0.0)[:, None], away, normals[at])
+
+    def past(points: Array) -> Array:
+        return off(points)[2]
+
+    chosen = np.unique(np.linspace(0, len(samples) - 1, 4000).astype(np.intp))
+    return Planned(name, nearest, surface, past, samples[chosen], frame, free=FACETED)
+
+
+def of_revolution(wall: RevolvedWall) -> Planned:
+    """A wall of revolution by its exact meridian; its normals lead to the right of the meridian, away from the axis where
+    it rises."""
+    meridian = _Meridian(wall)
+
+    def exact(points: Array) -> tuple[Array, Array]:
+        distance, normal, _, _ = meridian.along_normals(points)
+        return distance, normal
+
+    def nearest(points: Array) -> tuple[Array, Array]:
+        distance, normal, past, foot = meridian.along_normals(points)
+        whole = np.linalg.norm(points - foot, axis=1) * np.where(distance < 0.0, -1.0, 1.0)
+        return np.where(past > 0.0, whole, distance), np.where(
+            (past > 0.0)[:, None], _away(points, foot, whole, normal), normal
+        )
+
+    def past(points: Array) -> Array:
+        return meridian.along_normals(points)[2]
+
+    s = np.linspace(0.0, wall.meridian.length, 60)
+    radius, height, _ = wall.meridian.at(s)
+    spread = np.concatenate([
+        wall.points(np.full(count, r), np.full(count, z), np.linspace(wall.start, wall.end, count, endpoint=not wall.full))
+        for count, r, z in zip(np.ceil(60.0 * radius / radius.max()).astype(int).clip(1), radius, height, strict=True)
+    ])
+    return Planned(wall.label, nearest, exact, past, spread, wall.frame, wall)
+
+
+class _Meridian:
+    """The nearest places of the meridian of a wall."""
+
+    def __init__(self, wall: RevolvedWall) -> None:
+        self.wall, self.curve = wall, wall.meridian
+        self.s = np.unique(np.concatenate([self.curve.s, np.linspace(0.0, self.curve.length, 2001)]))
+        self.step = float(np.diff(self.s).max())
+        radius, height, _ = self.curve.at(self.s)
+        self.tree = cKDTree(np.column_stack([radius, height]))
+
+    def local(self, points: Array) -> tuple[Array, Array, Array, Array]:
+        """Radius, height, azimuth (n,) kept within the wall's turn, and how far (n,) past that in mm."""
+        frame = self.wall.frame
+        own = (points - frame[:3, 3]) @ frame[:3, :3]
+        radius, azimuth = np.hypot(own[:, 0], own[:, 1]), np.arctan2(own[:, 1], own[:, 0])
+        if self.wall.full:
+            return radius, own[:, 2], azimuth, np.zeros(len(points))
+        span = self.wall.end - self.wall.start
+        middle = self.wall.start + 0.5 * span
+        off = np.remainder(azimuth - middle + np.pi, 2.0 * np.pi) - np.pi
+        kept = np.clip(off, -0.5 * span, 0.5 * span)
+        beyond = np.abs(off - kept)
+        over = np.where(beyond < 0.5 * np.pi, radius * np.sin(beyond), radius)
+        return radius, own[:, 2], middle + kept, over
+
+    def nearest(self, radius: Array, height: Array) -> Array:
+        """Arc lengths (n,) of the nearest places of the meridian."""
+        at = self.tree.query(np.column_stack([radius, height]))[1]
+        start = self.s[at]
+        low, high = np.maximum(start - self.step, 0.0), np.minimum(start + self.step, self.curve.length)
+        f_low, f_high = self._slope(low, radius, height), self._slope(high, radius, height)
+        s = start
+        for _ in range(3):  # false position; what the distance falls by is nearly linear so close by
+            straddled = (f_low > 0.0) & (f_high < 0.0)
+            s = np.where(straddled, low + (high - low) * f_low / np.where(straddled, f_low - f_high, 1.0), s)
+            s = np.where(f_low <= 0.0, low, np.where(f_high >= 0.0, high, s))
+            f = self._slope(s, radius, height)
+            low, f_low = np.where(f > 0.0, s, low), np.where(f > 0.0, f, f_low)
+            high, f_high = np.where(f > 0.0, high, s), np.where(f > 0.0, f_high, f)
+        return np.asarray(np.where(self._off(s, radius, height) <= self._off(start, radius, height), s, start))
+
+    def _slope(self, s: Array, radius: Array, height: Array) -> Array:
+        r, z, tangent = self.curve.at(s)
+        return np.asarray((radius - r) * tangent[:, 0] + (height - z) * tangent[:, 1])
+
+    def _off(self, s: Array, radius: Array, height: Array) -> Array:
+        r, z, _ = self.curve.at(s)
+        return np.asarray(np.hypot(radius - r, height - z))
+
+    def along_normals(self, points: Array) -> tuple[Array, Array, Array, Array]:
+        """Distances (n,) along the normals at the nearest places, these normals (n, 3), how far points are past the edges,
+        mm, and the nearest places (n, 3)."""
+        radius, height, azimuth, beside = self.local(points)
+        s = self.nearest(radius, height)
+        r, z, tangent = self.curve.at(s)
+        normal = np.column_stack([tangent[:, 1], np.zeros(len(s)), -tangent[:, 0]])
+        distance = (radius - r) * normal[:, 0] + (height - z) * normal[:, 2]
+        over = np.abs((radius - r) * tangent[:, 0] + (height - z) * tangent[:, 1])
+        at_end = ((s <= 0.0) & (self.curve.points[0, 0] > 0.0)) | ((s >= self.curve.length) & (not self.curve.closed_top))
+        past = np.hypot(np.where(at_end, over, 0.0), beside)
+        # a corner is nearest to all within its two normals: what leads to it is one of them
+        inside = ~at_end & (over > 1e-6) & (over > 1e-3 * np.abs(distance))
+        off = np.hypot(radius - r, height - z)
+        side = np.where(distance < 0.0, -1.0, 1.0)
+        distance = np.where(inside, side * off, distance)
+        way = np.column_stack([radius - r, np.zeros(len(s)), height - z]) * (side / np.maximum(off, 1e-300))[:, None]
+        normal = np.where(inside[:, None], way, normal)
+        return distance, self.wall.directions(normal, azimuth), past, self.wall.points(r, z, azimuth)
+
+
+def _away(points: Array, foot: Array, distance: Array, normal: Array) -> Array:
+    """Unit vectors (n, 3) along which signed distances from feet grow."""
+    off = np.abs(distance)[:, None]
+    sense = np.where(distance < 0.0, -1.0, 1.0)[:, None]
+    return np.asarray(np.where(off > TOUCHING, sense * (points - foot) / np.maximum(off, TOUCHING), normal))
+

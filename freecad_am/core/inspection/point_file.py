@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measured points from files of measuring machines and scanners; how a file was understood is told."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import NOTE, WARNING, InputError, Issue
+from ..parameters.inspection import AUTO, UNITS
+from . import mesh_file
+
+Array = NDArray[np.float64]
+
+TABLES, MESHES = (".csv", ".txt", ".xyz", ".asc"), {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply}
+MOST = 200_000  # points that are kept of a larger scan, evenly
+LOOK = 200  # rows by which a table's signs are told
+_MARKS = ("#", "//", "%", "!", "'", '"#')
+_SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
+_NAMES = {None: "blanks", ";": "semicolons", "\t": "tabs", ",": "commas"}
+_UNIT = re.compile(r"(?<![a-z])(mm|cm|m|um|µm|μm|inch|inches|in|millimet(?:er|re)s?|met(?:er|re)s?)(?![a-z])")
+_SAME = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Points (n, 3) in mm as they were measured; label: the file's name; issues: how the file was understood."""
+
+    points: Array
+    label: str
+    issues: tuple[Issue, ...]
+
+
+def read(path: str | Path, unit: str = AUTO) -> Measured:
+    """The points of a CSV, TXT, XYZ or ASC table, or the vertices of an STL, OBJ or PLY mesh.
+
+    unit: of the coordinates; auto takes what the file names, else mm. InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE,
+    BAD_FILE, NO_POINTS, AMBIGUOUS.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    if suffix not in (*TABLES, *MESHES):
+        known = ", ".join((*TABLES, *MESHES))
+        raise InputError("UNSUPPORTED_FILE", file.name, f"{suffix or 'no ending'} is not read as points; use {known}")
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        why = (error.strerror or "no access").lower()
+        raise InputError("NO_FILE", str(path), f"the measured points cannot be read ({why}); check the path") from None
+    return parse(data, file.name, unit)
+
+
+def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
+    """As `read`, from the bytes of a file with this name."""
+    if not data.strip():
+        raise InputError("EMPTY_FILE", label, "it is empty; export the points again")
+    suffix = Path(label).suffix.lower()
+    if suffix in MESHES:
+        found, told, named = MESHES[suffix](data, label), ["the vertices of a mesh are taken as points"], ""
+    else:
+        found, told, named = _table(_text(data), label)
+    level = NOTE
+    finite = np.isfinite(found).all(axis=1)
+    if not finite.all():
+        told.append(f"{int((~finite).sum())} points without finite coordinates are left out")
+        found, level = found[finite], WARNING
+    if not len(found):
+        raise InputError("NO_POINTS", label, "there are no points in it; give rows of x y z")
+    chosen = unit if unit != AUTO else named or "mm"
+    told.append(f"coordinates in {chosen}" + ("" if unit != AUTO or named else ", as the file names no unit"))
+    if len(found) > MOST:
+        told.append(f"of {len(found)} points {MOST} are kept, evenly")
+        found = found[np.linspace(0, len(found) - 1, MOST).astype(np.intp)]
+    return Measured(found * UNITS[chosen], label, (Issue(level, "POINTS_READ", f"{label}: {'; '.join(told)}"),))
+
+
+def _text(data: bytes) -> str:
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _table(text: str, label: str) -> tuple[Array, list[str], str]:
+    """Points (n, 3) of a table in its unit, how it was understood, and the unit that it names, '' for none."""
+    lines = [line.strip() for line in text.splitlines()]
+    remarks = [line for line in lines if line.startswith(_MARKS)]
+    rows = [(number, line) for number, line in enumerate(lines, 1) if line and not line.startswith(_MARKS)]
+    delimiter, comma = _signs([line for _, line in rows], label)
+    cells = [(number, _cells(line, delimiter)) for number, line in rows]
+    is_row = [sum(_is_number(cell, comma) for cell in row) >= 3 for _, row in cells]
+    first = is_row.index(True)
+    heads = [row for _, row in cells[:first]]
+    width = len(cells[first][1])
+    columns, named, told = _columns(heads, cells[first:][:LOOK], width, comma)
+    told.insert(0, f"columns between {_NAMES[delimiter]}" + (", decimal commas" if comma == "," else ""))
+    found, bad = [], []
+    for number, row in cells[first:]:
+        picked = [row[k] for k in columns if k < len(row)]
+        if len(picked) == 3 and all(_is_number(cell, comma) for cell in picked):
+            found.append([float(cell.replace(",", ".")) if comma == "," else float(cell) for cell in picked])
+        else:
+            bad.append(number)
+    if len(bad) > len(found):
+        raise InputError("BAD_FILE", f"{label} line {bad[0]}", "this and most other lines are no points; give rows of x y z")
+    if bad:
+        told.append(f"{len(bad)} lines that are no points are left out, the first is line {bad[0]}")
+    texts = [*named, *(" ".join(head) for head in heads if "unit" in " ".join(head).lower()),
+             *(remark for remark in remarks if "unit" in remark.lower())]
+    unit = next((one for one in map(_unit_in, texts) if one), "")
+    return np.array(found).reshape(-1, 3), told, unit
+
+
+def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
+    """What stands between columns, None for blanks, and before decimals: that by which most lines are rows of numbers."""
+    tail = lines[max(0, len(lines) - LOOK):]
+    scores = []
+    for delimiter, comma in _SIGNS:
+        rows = [_cells(line, delimiter) for line in tail]
+        counts = [sum(_is_number(cell, comma) for cell in row) for row in rows]
+        scores.append(sum(count >= 3 for count in counts))
+    best = int(np.argmax(scores))
+    if not lines or scores[best] == 0:
+        raise InputError("NO_POINTS", label, "no line of it has three numbers; give rows of x y z")
+    delimiter, comma = _SIGNS[best]
+    if delimiter == ",":
+        rows = [_cells(line, delimiter) for line in tail]
+        whole = all(re.fullmatch(r"[-+]?\d+", cell) for row in rows for cell in row)
+        if whole and all(len(row) >= 6 and len(row) % 2 == 0 for row in rows):
+            raise InputError(
+                "AMBIGUOUS", label, "commas stand between columns and before decimals alike; export it with points as "
+                "decimal signs, or semicolons between columns",
+            )
+    return delimiter, comma
+
+
+def _cells(line: str, delimiter: str | None) -> list[str]:
+    return [cell.strip().strip('"') for cell in line.split(delimiter)]
+
+
+def _is_number(cell: str, comma: str) -> bool:
+    if comma == ",":
+        if "." in cell:
+            return False
+        cell = cell.replace(",", ".")
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return "_" not in cell
+
+
+def _columns(
+    heads: list[list[str]], rows: list[tuple[int, list[str]]], width: int, comma: str
+) -> tuple[list[int], list[str], list[str]]:
+    """The columns of x, y and z, what their headings say, and how they were chosen."""
+    for head in reversed(heads):
+        plain = [re.sub(r"[^a-z].*", "", cell.strip().lower()) for cell in head]
+        if len(head) == width and {"x", "y", "z"} <= set(plain):
+            columns = [plain.index(axis) for axis in "xyz"]
+            more = width - 3
+            told = ["x, y and z by their headings"] + ([f"{more} more columns not used"] if more else [])
+            return columns, [head[k] for k in columns], told
+    whole = [row for _, row in rows if len(row) == width]
+    columns = [k for k in range(width) if all(_is_number(row[k], comma) for row in whole)]
+    told = []
+    if len(columns) > 3 and _running([row[columns[0]] for row in whole]):
+        columns, told = columns[1:], ["the first column is a running number"]
+    if len(columns) > 3:
+        told.append(f"x, y and z are the first three columns{' of the others' if told else ''}")
+    return columns[:3], [], told
+
+
+def _running(cells: list[str]) -> bool:
+    """Whether cells count up by one."""
+    if len(cells) < 2 or not all(cell.isdecimal() for cell in cells):
+        return False
+    return bool((np.diff([int(cell) for cell in cells]) == 1).all())
+
+
+def _unit_in(text: str) -> str:
+    """The unit that a heading or remark names, '' for none."""
+    found = _UNIT.search(text.lower().replace("_", " "))
+    if found is None:
+        return ""
+    name = found[1]
+    if name.startswith("millim"):
+        return "mm"
+    return "m" if name.startswith("met") else _SAME.get(name, name)

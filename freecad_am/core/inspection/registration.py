@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measured points laid onto a surface: the rigid motion with the least sum of squared distances.
+
+Rounds of Gauss-Newton on the distances along the surface's normals (Chen and Medioni 1992), damped as Levenberg and
+Marquardt do. Of motions that the distances do not feel, as turning something round about its axis, the least is made; they
+are told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import permutations, product
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from ..geometry.frames import pose, rotation_about
+from ..issues import InfeasibleError, InputError
+from .told import motion_told
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+# distance (n,) of points (n, 3), outside with a plus, and unit vectors (n, 3) along which it grows
+Surface = Callable[[Array], tuple[Array, Array]]
+
+FEW = 400  # points that each start is tried with
+FIRST_ROUNDS, TRIAL_ROUNDS, ROUNDS = 4, 10, 100
+HOPE = 30.0  # starts whose mean square is more than this of the best are tried no longer
+ALIKE = 1.02  # mean squares that differ by no more are alike
+SETTLED = 1e-9  # mm that the last round moved any point by
+FREE = 1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
+LEAST_POINTS = 6
+
+
+@dataclass(frozen=True)
+class Registration:
+    """The fit of n measured points.
+
+    motion: (4, 4), from where they were measured to where they lie on the part. points: (n, 3) there. distance: (n,) mm from
+    the surface, outside with a plus. used: (n,) bool, those that counted. free: motions that the distances do not feel.
+    """
+
+    motion: Array
+    points: Array
+    distance: Array
+    used: Mask
+    free: tuple[str, ...]
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean square distance of the points that counted, mm."""
+        return float(np.sqrt((self.distance[self.used] ** 2).mean()))
+
+
+def register(
+    points: Array, surface: Surface, starts: Iterable[Array], where: str, trim: float = 0.0, radius: float = 0.0,
+    allowed: Array | None = None, free: float = FREE,
+) -> Registration:
+    """The best fit of points (n, 3) from any of the starts (4, 4): each is tried with a few points, the best with all.
+
+    trim: share 0..1 of the points, those farthest off, that do not count (outliers, supports, a clamp).
+    radius: mm of a probe's ball whose centre was measured; distances count from the ball's surface.
+    allowed: (6, k) motions that may be made, as columns: three turns about the part's origin over three shifts; all without.
+    Their products must be of the same kind, as the turns about and shifts along one axis are.
+    free: motions that distances feel by no more than this share of the one they feel most are not made.
+    Raises InputError for too few points; InfeasibleError NOT_SETTLED naming `where`.
+    """
+    if len(points) < LEAST_POINTS:
+        raise InputError(
+            "TOO_FEW_POINTS", where, f"{len(points)} points do not hold a part; measure {LEAST_POINTS} or more all over",
+        )
+    if not 0.0 <= trim < 0.5:
+        raise InputError("OUT_OF_RANGE", where, f"{trim:g} of the points left out, expected 0 or more and less than 0.5")
+    best = roughly(points, surface, starts, trim, radius, allowed, free)
+    motion, _, moved = _settled(points, surface, best, trim, radius, ROUNDS, allowed, free)
+    if moved > 1e-6:
+        raise InfeasibleError(
+            "NOT_SETTLED", where, "the measured points do not settle on the part; give pairs of points to begin with",
+        )
+    laid = _moved(points, motion)
+    distance, normal = surface(laid)
+    distance = distance - radius
+    used = _counting(distance, trim)
+    return Registration(motion, laid, distance, used, _free(laid[used], normal[used], allowed, free))
+
+
+def roughly(
+    points: Array, surface: Surface, starts: Iterable[Array], trim: float = 0.0, radius: float = 0.0,
+    allowed: Array | None = None, free: float = FREE,
+) -> Array:
+    """The motion (4, 4) that a few of the points tell: from the first of the starts that comes to about the least distances,
+    so that what distances do not feel stays as it was measured."""
+    few = points[np.unique(np.linspace(0, len(points) - 1, FEW).astype(np.intp))]
+    begun = [_settled(few, surface, start, trim, radius, FIRST_ROUNDS, allowed, free) for start in starts]
+    hopeful = HOPE * min(square for _, square, _ in begun) + 1e-18
+    tried = [
+        _settled(few, surface, motion, trim, radius, TRIAL_ROUNDS, allowed, free)
+        for motion, square, _ in begun if square <= hopeful
+    ]
+    least = min(square for _, square, _ in tried)
+    return next(motion for motion, square, _ in tried if square <= ALIKE * least + 1e-18)
+
+
+def mean_square(points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0) -> float:
+    """Mean square distance, mm2, of what counts of points (n, 3) moved by a motion (4, 4)."""
+    return _square(surface(_moved(points, motion))[0] - radius, trim)
+
+
+def as_measured() -> Array:
+    """The start (1, 4, 4) of points that were measured in the part's own coordinates."""
+    return np.eye(4)[None]
+
+
+def by_extents(points: Array, of_surface: Array) -> Array:
+    """Starts (25, 4, 4): as measured, and middle on middle with the principal axes of points (n, 3) along those of points
+    all over the surface (m, 3), in all 24 ways."""
+    here, there = points.mean(axis=0), of_surface.mean(axis=0)
+    mine = np.linalg.svd(points - here, full_matrices=False)[2]
+    its = np.linalg.svd(of_surface - there, full_matrices=False)[2]
+    mine[2] *= np.linalg.det(mine)
+    its[2] *= np.linalg.det(its)
+    found = [np.eye(4)]
+    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
+        axes = np.array(signs)[:, None] * np.eye(3)[list(order)]
+        if np.linalg.det(axes) > 0.0:
+            turn = its.T @ axes @ mine
+            found.append(pose(turn, there - turn @ here))
+    return np.array(found)
+
+
+def by_pairs(measured: Array, planned: Array, where: str) -> Array:
+    """The start (1, 4, 4) that lays three or more measured points (k, 3) onto the points of the part that they are (k, 3),
+    with the least squares (Kabsch 1976)."""
+    if measured.shape != planned.shape or len(measured) < 3:
+        raise InputError("TOO_FEW_PAIRS", where, f"{min(len(measured), len(planned))} pairs of points; give three or more")
+    here, there = measured.mean(axis=0), planned.mean(axis=0)
+    left, stretch, right = np.linalg.svd((planned - there).T @ (measured - here))
+    if stretch[1] <= 1e-9 * max(stretch[0], 1e-300):
+        raise InputError(
+            "PAIRS_IN_LINE", where, "the pairs of points lie in one line, about which the part can turn; choose others",
+        )
+    turn = left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right
+    return np.asarray(pose(turn, there - turn @ here))[None]
+
+
+def _settled(
+    points: Array, surface: Surface, start: Array, trim: float, radius: float, rounds: int, allowed: Array | None,
+    free: float,
+) -> tuple[Array, float, float]:
+    """Motion, mean square distance of what counts, and how far the last round moved a point, mm."""
+    motion, damping, moved = start, 0.0, np.inf
+    laid = _moved(points, motion)
+    distance, normal = surface(laid)
+    square = _square(distance - radius, trim)
+    for _ in range(rounds):
+        used = _counting(distance - radius, trim)
+        change = _step(laid[used], normal[used], distance[used] - radius, damping, allowed, free)
+        tried = change @ motion
+        moving = _moved(points, tried)
+        next_distance, next_normal = surface(moving)
+        next_square = _square(next_distance - radius, trim)
+        if next_square > square * (1.0 + 1e-12):
+            damping = max(10.0 * damping, 1e-3)
+            if damping > 1e9:  # nothing is nearer, as on facets
+                moved = 0.0
+                break
+            continue
+        moved = float(np.linalg.norm(moving - laid, axis=1).max())
+        motion, laid, distance, normal, square = tried, moving, next_distance, next_normal, next_square
+        damping *= 0.1 if damping > 1e-9 else 0.0
+        if moved < SETTLED:
+            break
+    return motion, square, moved if np.isfinite(moved) else 0.0
+
+
+def _step(
+    points: Array, normal: Array, distance: Array, damping: float, allowed: Array | None, free: float
+) -> Array:
+    """The small motion (4, 4) that lessens the distances of points most; the least of those that do."""
+    system, middle, size = _felt(points, normal)
+    basis = _basis(allowed, middle, size)
+    left, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
+    firm = stretch > free * stretch[0]
+    share = np.zeros(len(stretch))
+    share[firm] = stretch[firm] / (stretch[firm] ** 2 + damping * stretch[0] ** 2)
+    solved = -(basis @ right.T @ (share * (left.T @ distance)))
+    turn, shift = solved[:3] / size, solved[3:]
+    if allowed is not None:  # only a screw motion stays among those allowed
+        twist = np.zeros((4, 4))
+        twist[:3, :3] = np.cross(np.eye(3), turn)  # its product with v is turn x v
+        twist[:3, 3] = shift - np.cross(turn, middle)
+        return np.asarray(expm(twist))
+    angle = float(np.linalg.norm(turn))
+    spin = rotation_about(turn / angle, angle) if angle > 0.0 else np.eye(3)
+    return np.asarray(pose(spin, middle + shift - spin @ middle))
+
+
+def _basis(allowed: Array | None, middle: Array, size: float) -> Array:
+    """The motions allowed (6, k), orthonormal, as `_felt` counts them."""
+    if allowed is None:
+        return np.eye(6)
+    turn, shift = allowed[:3], allowed[3:]
+    moved = np.vstack([turn * size, shift + np.cross(turn.T, middle).T])
+    return np.asarray(np.linalg.qr(moved)[0])
+
+
+def _felt(points: Array, normal: Array) -> tuple[Array, Array, float]:
+    """How distances (n, 6) grow with three turns about the points' middle, in mm at their mean radius, and three shifts."""
+    middle = points.mean(axis=0)
+    arm = points - middle
+    size = float(np.sqrt((arm**2).sum(axis=1).mean())) or 1.0
+    return np.hstack([np.cross(arm, normal) / size, normal]), middle, size
+
+
+def _free(points: Array, normal: Array, allowed: Array | None, least: float) -> tuple[str, ...]:
+    system, middle, size = _felt(points, normal)
+    basis = _basis(allowed, middle, size)
+    _, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
+    free = right[stretch <= max(1e-3, least) * stretch[0]] @ basis.T
+    return tuple(motion_told(one[:3] / size, one[3:], middle) for one in free)
+
+
+def _counting(distance: Array, trim: float) -> Mask:
+    """The points that count: all but the share farthest off."""
+    count = len(distance) - int(trim * len(distance))
+    used = np.zeros(len(distance), dtype=np.bool_)
+    used[np.argsort(np.abs(distance), kind="stable")[:count]] = True
+    return used
+
+
+def _square(distance: Array, trim: float) -> float:
+    return float((distance[_counting(distance, trim)] ** 2).mean())
+
+
+def _moved(points: Array, motion: Array) -> Array:
+    return points @ motion[:3, :3].T + motion[:3, 3]

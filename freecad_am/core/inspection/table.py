@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""An inspection in rows of figures, as table 2 of Chalvin 2020 has them, and as data for files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .inspect import Inspected
+from .roundness import Round
+
+
+class Row(NamedTuple):
+    """A figure: what it is, its value, its unit ('' for a count), and what a narrow panel calls it, '' where it has no
+    room for it."""
+
+    name: str
+    value: float
+    unit: str
+    short: str = ""
+
+    @property
+    def text(self) -> str:
+        """The value as it is shown."""
+        if self.unit == "":
+            return f"{self.value:.0f}"
+        return f"{self.value:.1f}" if self.unit == "%" else f"{self.value:.4f}"
+
+
+def rows(inspected: Inspected) -> tuple[Row, ...]:
+    """All figures. Defects are widths of the narrowest zone (ISO 1101), with those about the least-squares centre beside."""
+    spread = inspected.spread
+    found = [
+        Row("Points", spread.count, "", "Points"), Row("Mean deviation", spread.mean, "mm", "Mean"),
+        Row("Standard deviation", spread.deviation, "mm", "Std. deviation"),
+        Row("Root mean square", spread.rms, "mm", "RMS"),
+        Row("Largest deviation outside", spread.most, "mm", "Most"),
+        Row("Largest deviation inside", spread.least, "mm", "Least"),
+        Row("95 % of the amounts within", spread.within_95, "mm", "95 % within"),
+        Row("Within tolerance", 100.0 * spread.within, "%", "In tolerance"),
+    ]
+    if inspected.ball is not None:
+        ball = inspected.ball
+        found += [
+            Row("Spherical defect", ball.zone.zone, "mm", "Sphericity"),
+            Row("Spherical defect, least squares", ball.fitted.zone, "mm"),
+            Row("Radius of the sphere", ball.fitted.radius, "mm", "Radius"),
+        ]
+    for one in inspected.circles:
+        at, near = f"at {one.height:g} mm", f"at {one.height:g}"
+        found += [
+            Row(f"Circularity defect {at}", one.zone.zone, "mm", f"Circularity {near}"),
+            Row(f"Circularity defect {at}, least squares", one.fitted.zone, "mm"),
+            Row(f"Diameter {at}", 2.0 * one.fitted.radius, "mm", f"Diameter {near}"),
+            Row(f"Eccentricity {at}", one.eccentricity, "mm", f"Off axis {near}"),
+        ]
+    if inspected.thickness is not None:
+        wall = inspected.thickness
+        found += [
+            Row("Mean thickness", wall.mean, "mm", "Thickness"),
+            Row("Standard deviation of the thickness", wall.deviation, "mm", "… std. dev."),
+            Row("Least thickness", wall.least, "mm", "… least"), Row("Largest thickness", wall.most, "mm", "… most"),
+        ]
+    return tuple(found)
+
+
+def as_data(inspected: Inspected) -> dict[str, Any]:
+    """The figures by key, in mm, for a JSON file."""
+    spread = inspected.spread
+    found: dict[str, Any] = {
+        "measured": inspected.file, "planned": inspected.against, "tolerance_mm": inspected.tolerance,
+        "points": len(inspected.points), "counted": spread.count,
+        "deviation_mm": {
+            "mean": spread.mean, "sd": spread.deviation, "rms": spread.rms, "min": spread.least, "max": spread.most,
+            "p95": spread.within_95,
+        },
+        "within_tolerance": spread.within,
+        "histogram": {"edges_mm": spread.edges.tolist(), "counts": spread.counts.tolist()},
+        "motion": inspected.motion.tolist(), "free_motions": list(inspected.free),
+        "sphericity_mm": None, "thickness_mm": None,
+        "circles": [
+            {"height_mm": one.height, "points": one.count, **_round(one.fitted, one.zone), "eccentricity": one.eccentricity,
+             "diameter": 2.0 * one.fitted.radius}
+            for one in inspected.circles
+        ],
+        "issues": [issue.as_dict() for issue in inspected.issues],
+    }
+    if inspected.ball is not None:
+        ball = inspected.ball
+        found["sphericity_mm"] = {"points": ball.count, "planned_radius": ball.planned, **_round(ball.fitted, ball.zone)}
+    if inspected.thickness is not None:
+        wall = inspected.thickness
+        found["thickness_mm"] = {
+            "pairs": wall.count, "mean": wall.mean, "sd": wall.deviation, "min": wall.least, "max": wall.most,
+        }
+    return found
+
+
+def deviations(inspected: Inspected) -> Iterable[str]:
+    """Lines of a CSV file: the points in part coordinates with their deviations."""
+    yield "x_mm,y_mm,z_mm,deviation_mm,counted,fitted\n"
+    columns = (inspected.points, inspected.deviation, inspected.counted, inspected.fitted)
+    for point, deviation, counted, fitted in zip(*columns, strict=True):
+        yield "{:.6f},{:.6f},{:.6f},".format(*point) + f"{deviation:.6f},{int(counted)},{int(fitted)}\n"
+
+
+def compared(each: list[Inspected]) -> list[tuple[str, str, list[float | None], float | None, float | None]]:
+    """A row per figure of several inspections: name, unit, its value in each (None without), mean and standard deviation
+    (n - 1) over them, None for fewer than two: the paper has those of three spheres."""
+    tables = [{row.name: row for row in rows(one)} for one in each]
+    names = dict.fromkeys(name for one in tables for name in one)
+    found: list[tuple[str, str, list[float | None], float | None, float | None]] = []
+    for name in names:
+        values = [one[name].value if name in one else None for one in tables]
+        known = [value for value in values if value is not None]
+        unit = next(one[name].unit for one in tables if name in one)
+        several = len(known) > 1
+        found.append((
+            name, unit, values, float(np.mean(known)) if several else None,
+            float(np.std(known, ddof=1)) if several else None,
+        ))
+    return found
+
+
+def _round(fitted: Round, zone: Round) -> dict[str, Any]:
+    return {
+        "minimum_zone": zone.zone, "least_squares_zone": fitted.zone, "radius": fitted.radius,
+        "centre": fitted.centre.tolist(),
+    }

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parameters of an inspection: how measured points are read, laid onto what was planned, and judged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..issues import InputError
+from . import field as f
+
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "inch": 25.4}
+BEST, SHIFT, AXIS, NONE = "best", "shift", "axis", "none"
+OUTER, INNER, BOTH = "outer", "inner", "both"
+AUTO = "auto"
+PREFIX = "inspection"
+
+
+@dataclass(frozen=True)
+class InspectionParameters:
+    """How measured points are compared with the planned surface."""
+
+    tolerance: float = f.parameter(
+        0.5, f.LENGTH, "Deviations up to this, outside or inside, are within tolerance.", low=0.0, open_low=True, high=1000.0
+    )
+    unit: str = f.parameter(
+        AUTO, f.CHOICE, "Unit of the measured coordinates; auto: the one that the file names, else mm.",
+        choices=(AUTO, *UNITS),
+    )
+    probe_radius: float = f.parameter(
+        0.0, f.LENGTH, "Radius of the probe's ball where its centre was measured; 0 where the points lie on the surface.",
+        low=0.0, high=100.0,
+    )
+    fit: str = f.parameter(
+        BEST, f.CHOICE, "How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along "
+        "the part's axis, or none.", choices=(BEST, SHIFT, AXIS, NONE),
+    )
+    trim: float = f.parameter(
+        0.0, f.RATIO, "Share of the points, those farthest off, that the fit leaves out.", low=0.0, high=0.49
+    )
+    pairs: str = f.parameter(
+        "", f.TEXT, "Where the fit begins: three or more pairs of a measured point and the same point of the part, each "
+        "x y z > x y z in mm, with a semicolon between; empty: it is looked for.", advanced=True,
+    )
+    side: str = f.parameter(
+        OUTER, f.CHOICE, "Which side of a wall was measured: that of its outer normals, the inner one, or both.",
+        choices=(OUTER, INNER, BOTH),
+    )
+    thickness: float = f.parameter(
+        0.0, f.LENGTH, "Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned "
+        "surface itself is the measured one.", low=0.0, high=1000.0,
+    )
+    heights: tuple[str, ...] = f.parameter(
+        (), f.TEXT, "Heights above the part's base, in mm, at which circularity is told; none: a sixth, a half and five "
+        "sixths of what was measured.",
+    )
+    band: float = f.parameter(
+        0.5, f.LENGTH, "Points up to this far above or below such a height count there, slid along the planned surface.",
+        low=0.0, open_low=True, high=100.0, advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, PREFIX, frozenset({"heights"}))
+        if self.side == BOTH and self.thickness == 0.0:
+            raise InputError("BAD_VALUE", f"{PREFIX}.thickness", "both sides of a wall have a thickness between; give it")
+        self.levels()
+        self.start_pairs()
+
+    def levels(self) -> tuple[float, ...]:
+        """The heights as numbers, mm. InputError."""
+        found = []
+        for text in self.heights:
+            try:
+                found.append(float(text.removesuffix("mm")))
+            except (ValueError, AttributeError):
+                raise InputError("BAD_VALUE", f"{PREFIX}.heights", f"{text!r} is no height; give numbers in mm") from None
+        return tuple(found)
+
+    def start_pairs(self) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]:
+        """The pairs of points as numbers, mm. InputError."""
+        found = []
+        for text in filter(str.strip, self.pairs.split(";")):
+            sides = [side.replace(",", " ").split() for side in text.split(">")]
+            try:
+                one, other = (tuple(map(float, side)) for side in sides)
+            except ValueError:
+                one = other = ()
+            if len(one) != 3 or len(other) != 3:
+                raise InputError(
+                    "BAD_VALUE", f"{PREFIX}.pairs", f"{text.strip()!r} is no pair of points; give x y z > x y z in mm"
+                )
+            found.append((one, other))
+        return tuple(found)

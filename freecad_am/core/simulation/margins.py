@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How near each row of a motion is to what the machine cannot do: limits, joint speeds, singularities.
+
+Rows with unreachable points have NaN joints, and NaN here too.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def margins(joints: Array, lower: Array, upper: Array) -> Array:
+    """(n, a) share of half the range that is left to the nearer limit: 1 in the middle, 0 at a limit, less beyond it.
+
+    joints: (n, a) rad or mm. lower, upper: (a,), infinite where an axis is endless; there the share is 1.
+    """
+    half = 0.5 * (upper - lower)
+    endless = ~np.isfinite(half)
+    left = np.minimum(joints - np.where(endless, 0.0, lower), np.where(endless, 0.0, upper) - joints)
+    share = left / np.where(endless | (half <= 0.0), 1.0, half)
+    return np.where(endless & np.isfinite(joints), 1.0, share)
+
+
+def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
+    """(n, a) mean joint speed on the segment that ends at each row, as a share of what the axis can do.
+
+    joints: (n, a) rad or mm. duration: (n,) s of that segment; where it takes no time the ratio is 0, or infinite if an
+    axis moves all the same. most: (a,) rad/s or mm/s, infinite where not known.
+    """
+    moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
+    lasts = duration[:, None] > 0.0
+    speed = np.where(lasts, moved / np.where(lasts, duration[:, None], 1.0), np.where(moved > 0.0, np.inf, moved))
+    return np.divide(speed, most, out=np.zeros_like(speed), where=np.isfinite(most) | np.isnan(speed))
+
+
+def on_deposit(deposit: NDArray[np.bool_], values: Array) -> Array:
+    """(n,) the values (k,) of the k rows that deposit, such as the condition of a joint path's beads; NaN on the others."""
+    found = np.full(len(deposit), np.nan)
+    found[deposit] = values
+    return found
+
+
+def from_next(deposit: NDArray[np.bool_], point: NDArray[np.int64], values: Array) -> Array:
+    """(n,) values of segments, with the first row of each bead, that ends none, taking that of the row after it.
+
+    deposit, point: (n,) as in a motion.
+    """
+    first = np.flatnonzero(deposit & (point == 0))
+    found = values.copy()
+    found[first] = values[np.minimum(first + 1, len(values) - 1)]
+    return found

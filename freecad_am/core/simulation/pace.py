@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where a machine cannot keep the speed it is asked for, and what the speed becomes there.
+
+A motion asks for a speed at the deposition point on every segment. Each axis has a largest speed, and where the machine
+file tells it a largest acceleration; the motion as it will be is the fastest along the same joints that no axis forbids and
+that is nowhere faster than asked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..motion import Motion
+from .margins import speed_ratios
+
+Array = NDArray[np.float64]
+
+# a share of an axis's speed that counts as more than it can do: what rounding leaves is none
+OVER = 1e-9
+# shares of what bends allow that are tried as ceilings, and how far and how often the best is then raised
+CEILINGS = (0.5, 0.8, 0.95, 0.99)
+GROWTH, ROUNDS = 1.3, 6
+# from this share of its bound on a bend counts as the reason for being slow
+BENT = 0.9
+_ANY = 1e9  # a change of p^2 that is as good as any
+# segments shorter than this, s, are no moves: rows that repeat a place
+_NO_TIME = 1e-12
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Columns of the n rows of a motion; each is about the segment that ends at the row.
+
+    ratio: the share of its largest speed that the fastest axis is asked for, 0 where the machine stands. axis: int, the
+    axis that forbids the speed asked for, -1 where none does. asked, achieved: mm/s at the deposition point, the achieved
+    one as the mean of the segment. duration: s the segment takes. slowed: bool, where the speed asked for is not kept.
+    lost: s that all of it takes longer than asked.
+    """
+
+    ratio: Array
+    axis: NDArray[np.int64]
+    asked: Array
+    achieved: Array
+    duration: Array
+    slowed: NDArray[np.bool_]
+    lost: float
+
+
+def pace(motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf) -> Pace:
+    """The pace a machine keeps of a motion.
+
+    max_speed, max_acceleration: (axes,) rad/s and rad/s^2, mm/s and mm/s^2 of axes that slide; infinite where not known.
+    Where accelerations are known the machine comes to rest where a program does: at both ends of every bead and of every
+    rapid. Rows without joint values are left as asked.
+    """
+    most = np.asarray(max_speed, float)
+    shares = np.nan_to_num(speed_ratios(motion.joints, np.nan_to_num(motion.duration), most), posinf=0.0)
+    ratio = shares.max(axis=1, initial=0.0)
+    factor = np.ones(len(motion))
+    over = ratio > 1.0 + OVER
+    factor[over] = 1.0 / ratio[over]
+    axis = np.where(over, shares.argmax(axis=1), -1)
+    largest = np.broadcast_to(np.asarray(max_acceleration, float), most.shape)
+    if np.isfinite(largest).any() and len(motion) > 1:
+        factor, axis = _accelerated(motion, factor, axis, largest)
+    slowed = factor < 1.0 - OVER
+    asked = np.nan_to_num(motion.duration)
+    duration = asked / factor
+    return Pace(
+        ratio=ratio, axis=np.where(slowed, axis, -1), asked=motion.speed, achieved=motion.speed * factor,
+        duration=duration, slowed=slowed, lost=float((duration - asked).sum()),
+    )
+
+
+def _rates(motion: Motion) -> Array:
+    """(n, axes) rad/s or mm/s of each axis on the segment that ends at the row, 0 where nothing moves or is known."""
+    turned = np.nan_to_num(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))
+    moving = np.nan_to_num(motion.duration) > _NO_TIME
+    rates: Array = turned / np.where(moving, motion.duration, np.inf)[:, None]
+    return rates
+
+
+def _accelerated(
+    motion: Motion, factor: Array, axis: NDArray[np.int64], largest: Array
+) -> tuple[Array, NDArray[np.int64]]:
+    """The factors (n,) of speed that also keep the accelerations, and the axes that ask for them.
+
+    With a clock u that runs evenly at the speed asked for and the pace p = du/dt, an axis moves with q' p and accelerates
+    by q'' p^2 + q' (p^2)'/2. q' is that of a segment; at a row between two q'' is its change over the mean of their times.
+    """
+    rates = _rates(motion)
+    moving = np.flatnonzero(np.abs(rates).max(axis=1) > 0.0)
+    if not len(moving):
+        return factor, axis
+    time, square = np.nan_to_num(motion.duration)[moving], factor[moving] ** 2
+    way = _Way.of(rates[moving], time, square, largest, _blocks(motion)[moving])
+    node = way.fastest()
+    gain, by_speed = way.gain(node)
+    # bends are told at nodes, and go on between two that have one
+    mean = _mean_pace(node[:-1], node[1:], np.minimum(square, np.maximum(way.bound[:-1], way.bound[1:])), gain)
+    result, told = factor.copy(), axis.copy()
+    slower = mean < factor[moving] - OVER
+    result[moving[slower]] = mean[slower]
+    # a bend that is as fast as it can be is to blame, else the ramp
+    worst = np.where(node[1:] < node[:-1], way.bound[1:], way.bound[:-1])
+    bent = np.minimum(node[:-1], node[1:]) > BENT * worst
+    by_bend = np.where(node[1:] < node[:-1], way.by_bend[1:], way.by_bend[:-1])
+    told[moving[slower]] = np.where(bent, by_bend, by_speed)[slower]
+    return result, told
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Segments (m,) and the m + 1 nodes at their ends. speed: (m, axes) q'. bend: (m + 1, axes) of q''. largest:
+    (axes,). most: (m + 1,) of p^2 by speeds, 0 where it rests. bound: (m + 1,) of p^2 by bends, by_bend: the axis."""
+
+    speed: Array
+    time: Array
+    bend: Array
+    largest: Array
+    most: Array
+    bound: Array
+    by_bend: NDArray[np.intp]
+
+    @staticmethod
+    def of(speed: Array, time: Array, square: Array, largest: Array, block: NDArray[np.int64]) -> _Way:
+        """The way of segments with their bounds of p^2; it rests at both ends and between blocks."""
+        bend = np.zeros((len(speed) + 1, speed.shape[1]))
+        bend[1:-1] = np.abs(np.diff(speed, axis=0)) / (0.5 * (time[:-1] + time[1:]))[:, None]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            bounds = np.where(bend > 0.0, largest / bend, np.inf)
+        most = np.zeros(len(bend))
+        most[1:-1] = np.where(block[1:] == block[:-1], np.minimum(square[:-1], square[1:]), 0.0)
+        return _Way(np.abs(speed), time, bend, largest, most, bounds.min(axis=1), bounds.argmin(axis=1))
+
+    def fastest(self) -> Array:
+        """(m + 1,) the largest p^2 at the nodes, to within a percent or so, from below.
+
+        A ceiling of p^2 tells how much of the accelerations bends take at most, and so how steeply p^2 may rise and fall
+        below it. Low ceilings leave room to speed up, high ones are fast once there; of motions that are possible the
+        faster one at each place is possible too.
+        """
+        best = np.zeros(len(self.most))
+        for share in CEILINGS:
+            best = np.maximum(best, self._below(np.minimum(self.most, share * self.bound)))
+        for _ in range(ROUNDS):
+            best = np.maximum(best, self._below(np.minimum(np.minimum(self.most, self.bound), GROWTH * best)))
+        return best
+
+    def _below(self, ceiling: Array) -> Array:
+        """(m + 1,) the largest p^2 below a ceiling that rises and falls no steeper than it leaves room for."""
+        # p^2 never exceeds 1
+        total = np.concatenate([[0.0], np.cumsum(np.minimum(self.gain(ceiling)[0], 1.0))])
+        rising = np.minimum.accumulate(ceiling - total) + total
+        falling = np.minimum.accumulate((ceiling + total)[::-1])[::-1] - total
+        below: Array = np.maximum(np.minimum(np.minimum(rising, falling), ceiling), 0.0)
+        return below
+
+    def gain(self, ceiling: Array) -> tuple[Array, NDArray[np.intp]]:
+        """(m,) by how much p^2 may change over each segment while it is below the ceiling, and the axis that bounds it."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            left = self.largest - np.where(self.bend > 0.0, self.bend * ceiling[:, None], 0.0)
+            room = np.maximum(np.minimum(left[:-1], left[1:]), 0.0)
+            slopes = np.where(self.speed > 0.0, 2.0 * room / self.speed, np.inf)
+        return np.minimum(slopes.min(axis=1) * self.time, _ANY), slopes.argmin(axis=1)
+
+
+def _blocks(motion: Motion) -> NDArray[np.int64]:
+    """(n,) int, the same for rows that a program runs through without a stop."""
+    columns = (motion.deposit.astype(np.int64), motion.layer, motion.bead)
+    new = np.any([np.diff(column, prepend=column[:1]) != 0 for column in columns], axis=0)
+    blocks: NDArray[np.int64] = np.cumsum(new)
+    return blocks
+
+
+def _mean_pace(start: Array, end: Array, most: Array, gain: Array) -> Array:
+    """The mean pace (m,) over segments on which p^2 goes from `start` to `end`, by way of `most` where `gain`, the most it
+    can change by, lets it."""
+    top = np.minimum(most, 0.5 * (start + end + gain))
+    up, down = np.maximum(top - start, 0.0), np.maximum(top - end, 0.0)
+    safe = np.where(gain > 0.0, gain, 1.0)
+    even = np.maximum(1.0 - (up + down) / safe, 0.0)
+    low, high, peak = np.sqrt(start), np.sqrt(end), np.sqrt(np.maximum(top, 1e-300))
+    # du / p with p^2 linear in u: the time of a ramp is its way over the mean of the paces at its ends
+    with np.errstate(divide="ignore", invalid="ignore"):
+        time = up / safe * 2.0 / (low + peak) + down / safe * 2.0 / (high + peak) + even / peak
+    mean: Array = np.where(time > 0.0, 1.0 / time, peak)
+    return mean

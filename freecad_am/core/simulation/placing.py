@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where everything in a cell is for given joint values, seen from what stands still; and how a cell stands at rest.
+
+What stands still, the world, is the floor plate of a robot, or the bearings of a machine with rotary axes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..geometry import frames
+from ..kinematics.cell import TOOL_ON_ROBOT, Cell
+from .table_links import standing_link
+
+Array = NDArray[np.float64]
+
+# rotations about the nozzle that are looked at for a robot at rest
+_SPINS = 24
+
+
+@dataclass(frozen=True)
+class Placing:
+    """Poses in the world, mm. links: (axes + 1, 4, 4). part: (4, 4), its own coordinates. nozzle: (4, 4), the tip, its Z
+    pointing into the nozzle. platform: (4, 4), what the part stands on."""
+
+    links: Array
+    part: Array
+    nozzle: Array
+    platform: Array
+
+
+def placing(cell: Cell, joints: ArrayLike) -> Placing:
+    """Where links, part and nozzle are for a joint vector (axes,)."""
+    chain = cell.machine.chain
+    links = chain.links(joints)
+    flange = links[-1] @ chain.flange
+    carried = flange @ cell.carried
+    on_robot = cell.setup == TOOL_ON_ROBOT
+    platform = cell.station if on_robot else carried
+    nozzle = carried @ frames.pose(frames.about_x(np.pi), np.zeros(3)) if on_robot else cell.station
+    to_world = frames.inverse(links[standing_link(chain)])
+    return Placing(
+        links=to_world @ links, part=to_world @ platform @ frames.inverse(cell.mount), nozzle=to_world @ nozzle,
+        platform=to_world @ platform,
+    )
+
+
+def at_rest(cell: Cell, point: ArrayLike) -> Array:
+    """(axes,) joints with which the nozzle stands upright, by the platform, on a point (3,) of the part.
+
+    A robot takes the rotation and branch with the most room to its limits; all axes are 0 where it does not reach. Turning
+    axes of a machine with rotary axes are at 0.
+    """
+    place, chain = np.asarray(point, float), cell.machine.chain
+    if cell.machine.is_table:
+        slides = np.flatnonzero(chain.sliding)
+        zero = np.zeros(chain.axes)
+        away = cell.deposition_point(chain.forward(zero)[None])[0] - _seen(cell, zero, place)
+        ways = np.stack([_seen(cell, np.eye(chain.axes)[axis], place) - _seen(cell, zero, place) for axis in slides], axis=1)
+        zero[slides] = np.linalg.lstsq(ways, away, rcond=None)[0]
+        return zero
+    arm = cell.machine.opw
+    assert arm is not None  # a cell has no other robots
+    spins = np.linspace(0.0, 2.0 * np.pi, _SPINS, endpoint=False)
+    flange = cell.flange_poses(np.tile(place, (_SPINS, 1)), np.tile(cell.mount[:3, 2], (_SPINS, 1)), spins)
+    branches = range(8) if cell.branch is None else (cell.branch,)
+    found = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])
+    found = np.arctan2(np.sin(found), np.cos(found))
+    room = np.nan_to_num(cell.limits.smallest(found).margin, nan=-np.inf)
+    best = int(np.argmax(room))
+    return np.asarray(found[best]) if np.isfinite(room[best]) else np.zeros(chain.axes)
+
+
+def _seen(cell: Cell, joints: Array, point: Array) -> Array:
+    """A point of the part (3,) in base_link."""
+    part = cell.machine.chain.forward(joints) @ cell.carried @ frames.inverse(cell.mount)
+    return np.asarray(part[:3, :3] @ point + part[:3, 3])

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a job takes and deposits, summed up before anything is posted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import Motion
+from ..parameters.process import ProcessParameters
+from .deposit import volumes
+from .timeline import Timeline
+
+Array = NDArray[np.float64]
+
+MM3_PER_CM3 = 1000.0
+
+
+@dataclass(frozen=True)
+class Totals:
+    """Times s; length mm; volume mm^3; mass g. Waits are what the machine stands still on purpose, lead times included."""
+
+    time: float
+    deposit_time: float
+    rapid_time: float
+    wait_time: float
+    length: float
+    rapid_length: float
+    volume: float
+    mass: float
+
+
+def totals(motion: Motion, times: Timeline, process: ProcessParameters, layer_height: float) -> Totals:
+    """The totals of a motion.
+
+    The volume is that of `deposit.volumes`, the mass that by `process.density`.
+    """
+    length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
+    deposits = motion.deposit & motion.moves
+    volume = float(volumes(motion, process, layer_height).sum())
+    steps = np.nan_to_num(motion.duration)
+    return Totals(
+        time=times.total,
+        deposit_time=float(steps[deposits].sum()),
+        rapid_time=float(steps[~deposits].sum()),
+        wait_time=float(times.waits.sum()),
+        length=float(length[deposits].sum()),
+        rapid_length=float(np.nan_to_num(length)[~deposits].sum()),
+        volume=volume,
+        mass=volume / MM3_PER_CM3 * process.density,
+    )
+
+
+def as_dict(sums: Totals) -> dict[str, float]:
+    """The totals as report.json tells them."""
+    return {
+        "time_s": sums.time, "deposit_s": sums.deposit_time, "rapid_s": sums.rapid_time, "wait_s": sums.wait_time,
+        "deposit_mm": sums.length, "rapid_mm": sums.rapid_length, "volume_cm3": sums.volume / MM3_PER_CM3,
+        "mass_g": sums.mass,
+    }

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What to look at in a motion: rows that violate a limit or come near one, near a singularity, or are slower than asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..issues import NOTE, Issue
+from ..kinematics.cell import Cell
+from ..motion import Motion
+from .pace import Pace
+
+Array = NDArray[np.float64]
+
+# nearer to a limit than this many degrees or mm counts as near
+NEAR = 0.5
+# programs keep 0.05 deg; what rounding leaves is no violation, degrees or mm
+_ROUNDING = 1e-6
+
+UNREACHABLE, LIMIT, NEAR_LIMIT, SINGULAR, SLOWED, ISSUE = "unreachable", "limit", "near limit", "singular", "slowed", "issue"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What is to be seen at a row, the first of a run of rows. kind: one of the words above. label: the limit or axis it
+    is about, or an issue's message. value, than: worst margin in degrees or mm and 0; condition and its threshold; speeds
+    achieved and asked, mm/s, of the run's worst row."""
+
+    row: int
+    kind: str
+    label: str = ""
+    value: float = 0.0
+    than: float = 0.0
+
+
+@dataclass(frozen=True)
+class Watch:
+    """margin: (n,) the smallest to any limit, in degrees or mm, and `limit`, which of `Limits.labels`. condition,
+    threshold: (n,), NaN where not known. findings: in the order of rows."""
+
+    margin: Array
+    limit: NDArray[np.intp]
+    condition: Array
+    threshold: Array
+    findings: tuple[Finding, ...]
+
+
+def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
+    """(..., limits) distances of joints (..., axes) to every limit in the units they are shown in: degrees, or mm."""
+    units = cell.machine.unit_values
+    coupled = np.full(len(cell.limits.labels) - len(units), np.radians(1.0))
+    margins: Array = cell.limits.margin(joints) / np.concatenate([units, coupled])
+    return margins
+
+
+def bad_links(
+    cell: Cell, margins: ArrayLike, ratios: ArrayLike, singular: bool, reachable: bool
+) -> NDArray[np.bool_]:
+    """(axes + 1,) links to be marked, base first: those whose axis is at or past a limit, near one, or asked to be faster
+    than it can be; those of a coupled limit; all that move where the machine is near a singularity or does not reach.
+
+    margins: (limits,) as of `shown_margins`. ratios: (axes,) shares of the largest speeds that are asked for.
+    """
+    axes = len(cell.machine.axes)
+    bad = np.zeros(axes + 1, dtype=bool)
+    close = np.asarray(margins, float) < NEAR
+    bad[1:] = close[:axes] | (np.asarray(ratios, float) > 1.0 + _ROUNDING)
+    for coefficients in cell.limits.coefficients[close[axes:]]:
+        bad[1:] |= coefficients != 0.0
+    bad[1:] |= singular or not reachable
+    return bad
+
+
+def watch(
+    motion: Motion, cell: Cell, kept: Pace, condition: Array, threshold: Array, issues: Sequence[Issue] = ()
+) -> Watch:
+    """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are no findings."""
+    margins = shown_margins(cell, motion.joints)
+    limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)
+    margin = np.take_along_axis(margins, limit[:, None], axis=1)[:, 0]
+    with np.errstate(invalid="ignore"):
+        over, near = margin < -_ROUNDING, (margin < NEAR) & (margin >= -_ROUNDING)
+        singular = condition < threshold * (1.0 - 1e-9)
+    labels, axes = cell.limits.labels, cell.machine.axes
+    found = [Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))]
+    for kind, mask in ((LIMIT, over), (NEAR_LIMIT, near)):
+        found += [Finding(row, kind, labels[limit[worst]], float(margin[worst])) for row, worst in _runs(mask, margin)]
+    found += [
+        Finding(row, SINGULAR, "", float(condition[worst]), float(threshold[worst]))
+        for row, worst in _runs(singular, condition)
+    ]
+    share = np.where(kept.slowed, kept.achieved / np.where(kept.asked > 0.0, kept.asked, 1.0), 1.0)
+    found += [
+        Finding(row, SLOWED, axes[kept.axis[worst]], float(kept.achieved[worst]), float(kept.asked[worst]))
+        for row, worst in _runs(kept.slowed, share)
+    ]
+    found += [Finding(_row_of(motion, issue), ISSUE, issue.message) for issue in issues
+              if issue.level != NOTE and issue.layer is not None]
+    found.sort(key=lambda finding: finding.row)
+    return Watch(margin, limit, condition, threshold, tuple(found))
+
+
+def _runs(mask: NDArray[np.bool_], values: Array) -> list[tuple[int, int]]:
+    """First row, and row of the smallest value, of every run of rows in which the mask holds."""
+    starts = np.flatnonzero(mask & ~np.concatenate([[False], mask[:-1]]))
+    ends = np.flatnonzero(mask & ~np.concatenate([mask[1:], [False]])) + 1
+    return [(int(start), int(start + np.argmin(values[start:end]))) for start, end in zip(starts, ends)]
+
+
+def _row_of(motion: Motion, issue: Issue) -> int:
+    """The deposit row an issue is about, or the first row of its layer."""
+    layer = issue.layer or 0
+    low, high = np.searchsorted(motion.layer, [layer, layer + 1])
+    here = np.ones(high - low, dtype=bool)
+    for column, index in ((motion.bead, issue.bead), (motion.point, issue.point)):
+        if index is not None:
+            here &= (column[low:high] == index) & motion.deposit[low:high]
+    rows = np.flatnonzero(here)
+    return min(int(low + rows[0]) if len(rows) else int(low), len(motion) - 1)

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers on a hub filled: equal pictures once, and what stays open told with its place in the part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ..filling.curve import Beads, PlaneCurve
+from ..filling.fill import fill, open_at_slits, open_places
+from ..geometry.developable import Array
+from ..geometry.on_hub import Base
+from ..geometry.plane_curve import nearest
+from ..geometry.region import Region
+from ..geometry.strip import Strip
+from ..geometry.told import place
+from ..issues import NOTE, WARNING, InputError, Issue
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import DevelopableParameters
+from ..process.bead_model import BeadModel
+from .hub_layers import ARCS, Slice
+
+SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
+UNTOLD = ProcessParameters().bead_width  # mm; a width that nobody gave and no model holds
+INSTEAD = {"spiral": "contours", "zigzag": "lines"}  # round a hub
+
+
+class Filled(NamedTuple):
+    """The beads of a layer on the plane, and what to know about them."""
+
+    curves: list[PlaneCurve]
+    issues: tuple[Issue, ...]
+
+
+class _Picture(NamedTuple):
+    """A region filled: what for, its borders, its beads, and places left open with their widths."""
+
+    beads: Beads
+    angle: float
+    rings: tuple[Array, ...]
+    curves: tuple[PlaneCurve, ...]
+    left: list[tuple[Array, float]]
+
+
+class Pictures:
+    """Fills layers. Solids alike but for a turn about the hub's axis have equal pictures, but for rounding: the beads of the
+    first, within SAME of its own, are those of all."""
+
+    def __init__(self, strategy: DevelopableParameters, process: ProcessParameters, width: float = 0.0) -> None:
+        """width: mm of a bead, 0: the spacing."""
+        self._strategy = strategy
+        self._process = process
+        self._width = width
+        self._known: dict[tuple[float, ...], list[_Picture]] = {}
+
+    def filled(self, one: Slice, centre: float, base: Base) -> Filled:
+        """The beads of a layer of a solid whose middle is at the azimuth `centre`, rad. InfeasibleError THIN_REGION."""
+        strategy, process = self._strategy, self._process
+        seam = process.seam.angle + one.layer * process.seam.step
+        turned = (one.middle - centre) * math.sin(one.surface.taper)  # of the picture, by the cutting line
+
+        def where(point: Array) -> str:
+            return place(base.placed(one.surface.rolled(point[None], one.middle))[0])
+
+        beads = Beads(
+            strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.shortest, strategy.thin,
+            process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, where,
+            self._width,
+        )
+        angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
+        curves: list[PlaneCurve] = []
+        issues: list[Issue] = []
+        gaps: list[tuple[Array, float]] = []
+        for region in one.regions:
+            found, left = self._picture(one, region, beads, angle)
+            curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
+            gaps += left
+        plain = [region for region in one.regions if isinstance(region, Region)]
+        if len(plain) == len(one.regions):
+            gaps = found_at if (found_at := open_at_slits(plain, curves, beads)) is not None else gaps
+        if gaps:
+            point, width = max(gaps, key=lambda gap: gap[1])
+            issues.append(Issue(
+                WARNING, "OPEN_GAP", f"beads leave {len(gaps)} gap(s) open, the widest of {width:.3g} mm at {where(point)}; "
+                f"strategy.gap allows {beads.gap:.3g} mm", one.layer,
+            ))
+        issues += _standing_out(one, curves, beads)
+        if strategy.fill in INSTEAD and any(isinstance(region, Strip) for region in one.regions):
+            issues.append(Issue(
+                NOTE, "PATTERN_ROUND_HUB", f"a layer all the way round the hub is filled with {INSTEAD[strategy.fill]}; "
+                f"strategy.fill = {strategy.fill} is for regions with an end", one.layer,
+            ))
+        return Filled(curves, tuple(issues))
+
+    def _picture(
+        self, one: Slice, region: Region | Strip, beads: Beads, angle: float
+    ) -> tuple[Sequence[PlaneCurve], list[tuple[Array, float]]]:
+        strategy = self._strategy
+        links = strategy.longest_link * beads.spacing
+        if isinstance(region, Strip):
+            whole = fill(region, beads, strategy.fill, angle, strategy.contour, links)
+            return whole, open_places(region, whole, beads)
+        known = self._known.setdefault((one.layer, one.surface.radius, one.surface.height), [])
+        for other in known:
+            alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
+            if alike and _equal(other.rings, region.rings()):
+                return other.curves, other.left
+        curves = fill(region, beads, strategy.fill, angle, strategy.contour, links)
+        left = open_places(region, curves, beads)
+        known.append(_Picture(beads, angle, region.rings(), curves, left))
+        return curves, left
+
+
+def spaced(strategy: DevelopableParameters, process: ProcessParameters) -> DevelopableParameters:
+    """The same with the bead spacing that the overlap asks for, if one is given."""
+    if strategy.bead_overlap is None:
+        return strategy
+    return replace(strategy, bead_spacing=process.bead_width * (1.0 - strategy.bead_overlap))
+
+
+def bead_width(strategy: DevelopableParameters, process: ProcessParameters, model: BeadModel | None) -> float:
+    """How wide (mm) beads are: as the bead model holds it or as given, else as the spacing.
+
+    InputError BEAD_SPACING where the spacing is larger, so that stripes would stay open."""
+    spacing, width = strategy.bead_spacing, process.bead_width
+    if model is None and strategy.bead_overlap is None and width == UNTOLD:
+        return spacing
+    if spacing > width * (1.0 + 1e-9):
+        raise InputError(
+            "BEAD_SPACING", "strategy.bead_spacing", f"beads {width:g} mm wide (process.bead_width), {spacing:g} mm apart, "
+            f"leave stripes of {spacing - width:.3g} mm open between them; use {width:g} mm or less, or wider beads",
+        )
+    return width
+
+
+def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
+    """What is told of single beads in regions narrower than they are."""
+    rings = [ring for region in one.regions if isinstance(region, Region) for ring in region.rings()]
+    rings += [ring for region in one.regions if isinstance(region, Strip) for ring, _ in region.rings()]
+    single = [curve.points for curve in curves if curve.kind == "centre" and curve.ring == 0]
+    if not single:
+        return []
+    points = np.vstack(single)
+    out = beads.inset - np.min([nearest(ring, points, closed=True).distance for ring in rings], axis=0)
+    worst = int(np.argmax(out))
+    return [Issue(
+        NOTE, "THIN_SINGLE", f"{len(single)} bead(s) alone in regions narrower than a bead of {2.0 * beads.inset:.3g} mm "
+        f"stand out of them, by up to {out[worst]:.3g} mm at {beads.where(points[worst])}", one.layer,
+    )]
+
+
+def _number(beads: Beads) -> float:
+    return float(beads.start) if not isinstance(beads.start, tuple) else math.nan
+
+
+def _equal(rings: Sequence[Array], others: Sequence[Array]) -> bool:
+    """Whether borders (n, 2) are the same within SAME, wherever they begin."""
+    if [len(ring) for ring in rings] != [len(ring) for ring in others]:
+        return False
+    for ring, other in zip(rings, others):
+        first = int(np.argmin(((other - ring[0]) ** 2).sum(axis=1)))
+        if np.abs(np.roll(other, -first, axis=0) - ring).max() > SAME:
+            return False
+    return True

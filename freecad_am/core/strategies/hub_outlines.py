@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which beads of a layer run along its outlines, and to which side the torch leans on them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..filling.curve import PlaneCurve
+from ..geometry.plane_curve import Array, nearest, steps
+from ..geometry.region import Region
+from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.strategy import DevelopableParameters
+from .hub_layers import Slice, period
+from .hub_lean import Lean
+
+NEAR = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther
+PROBES = 9  # edges that tell on which side the outline is, the longest
+
+
+def leaning(
+    curve: PlaneCurve, layer: Slice, strategy: DevelopableParameters, build: BuildDirectionParameters
+) -> Lean:
+    """How the torch leans on a curve: as the build direction says, and by the deflection towards the outline where the curve
+    is a contour or a spiral that begins along it, a spiral for as long as it does."""
+    plain = Lean(build.lead, build.tilt)
+    if strategy.deflection == 0.0 or curve.kind not in ("contour", "spiral") or curve.ring > 0:
+        return plain
+    borders = _borders(layer)
+    count, until = len(curve.points), math.inf
+    if not curve.closed:
+        beside = _beside(borders, curve.points)[1] < NEAR * strategy.bead_spacing
+        count = len(beside) if beside.all() else int(np.argmin(beside))
+        if count < 2:
+            return plain
+        if count < len(beside):
+            until = float(np.hypot(*steps(curve.points[:count], False).T).sum())
+    edge = steps(curve.points[:count], curve.closed and not curve.turns)
+    size = np.hypot(*edge.T)
+    longest = np.argsort(-size, kind="stable")[:PROBES]
+    middle = curve.points[longest] + 0.5 * edge[longest]
+    out = _beside(borders, middle)[0] - middle
+    left = edge[longest, 0] * out[:, 1] - edge[longest, 1] * out[:, 0]
+    away = size[longest] * np.hypot(*out.T)
+    side = -1.0 if float((left / np.maximum(away, 1e-300)).sum()) > 0.0 else 1.0
+    return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)
+
+
+def _borders(layer: Slice) -> list[tuple[Array, bool]]:
+    """The outlines of a layer on the plane and whether each is closed; round the hub as often as anything near can ask."""
+    found = []
+    for part in layer.regions:
+        if isinstance(part, Region):
+            found += [(ring, True) for ring in part.rings()]
+            continue
+        for ring, turns in part.rings():
+            copies = [period(layer.surface).moved(ring, k) for k in (-1, 0, 1)]
+            found += [(copy, True) for copy in copies] if not turns else [(np.vstack(copies[::turns]), False)]
+    return found
+
+
+def _beside(borders: list[tuple[Array, bool]], points: Array) -> tuple[Array, Array]:
+    """The places (n, 2) of the outlines nearest to points (n, 2) and how far (n,) mm they are."""
+    best, away = points, np.full(len(points), np.inf)
+    for border, closed in borders:
+        found = nearest(border, points, closed)
+        nearer = found.distance < away
+        best, away = np.where(nearer[:, None], found.points, best), np.where(nearer, found.distance, away)
+    return best, away

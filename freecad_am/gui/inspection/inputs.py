@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What was measured, and the file of its points, as rows of a panel."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtGui
+
+from ...core.inspection.point_file import MESHES, TABLES
+from ...core.issues import InputError
+from ...objects.inspection import KINDS
+from ...objects.stage import Link, stage_of
+from .. import inputs, recorded
+from ..picking import usable
+from ..texts import tr
+
+
+class PlannedChoice(inputs.Input):
+    """A feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one, else the last
+    feature."""
+
+    def __init__(self, link: Link, present: Any) -> None:
+        self.link, self.label = link, tr("Planned")
+        self.document = App.ActiveDocument if present is None else present.Document
+        self.widget = QtGui.QComboBox()
+        self.widget.setObjectName("Planned")
+        self.widget.setToolTip(link.help)
+        self.widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        self.widget.setMinimumContentsLength(8)
+        found = offered(self.document)
+        for obj in found:
+            self.widget.addItem(obj.Label, obj.Name)
+        chosen = [obj for obj in Gui.Selection.getSelection(self.document.Name) if obj in found]
+        features = [obj for obj in found if stage_of(obj) is not None and stage_of(obj).kind == "feature"]
+        wanted = next(iter([*([present] if present is not None else chosen), *features[-1:], *found]), None)
+        if wanted is not None:
+            self.widget.setCurrentIndex(max(0, self.widget.findData(wanted.Name)))
+
+    @property
+    def missing(self) -> str:
+        return "" if self.widget.count() else tr("There is nothing to compare with in this document; open the part first.")
+
+    def arguments(self) -> dict[str, str]:
+        name = self.widget.currentData() if self.widget.count() else ""
+        chosen = self.document.getObject(name) if name else None
+        if name and chosen is None:
+            raise InputError("NO_INPUT", "Inspection", "Planned is missing; it was deleted, choose another")
+        return {"planned": "None" if chosen is None else recorded.reference(chosen)}
+
+
+class FileChoice(inputs.Input):
+    """The file of measured points, typed or chosen."""
+
+    def __init__(self, path: str) -> None:
+        self.label = tr("File")
+        self.widget = QtGui.QWidget()
+        row = QtGui.QHBoxLayout(self.widget)
+        row.setContentsMargins(0, 0, 0, 0)
+        self.line = QtGui.QLineEdit(path)
+        self.line.setObjectName("FilePath")
+        kinds = ", ".join((*TABLES, *MESHES))
+        help = tr("The measured points, or a scanned mesh: {}").format(kinds)
+        self.button = QtGui.QPushButton(tr("Choose…"))
+        self.button.setObjectName("ChooseFile")
+        self.button.setAutoDefault(False)
+        self.button.clicked.connect(self._choose)
+        for widget in (self.widget, self.line, self.button):
+            widget.setToolTip(help)
+            widget.setWhatsThis(help)
+        row.addWidget(self.line)
+        row.addWidget(self.button)
+        self.widget.setObjectName("File")
+
+    @property
+    def missing(self) -> str:
+        return "" if self.line.text().strip() else tr("Choose the file of the measured points.")
+
+    def _choose(self, *_: Any) -> None:
+        present = self.line.text().strip()
+        first = os.path.dirname(present or App.ActiveDocument.FileName)
+        some = " ".join(f"*{ending} *{ending.upper()}" for ending in (*TABLES, *MESHES))
+        path, _ = QtGui.QFileDialog.getOpenFileName(
+            Gui.getMainWindow(), tr("Measured points"), first, f"{tr('Points and meshes')} ({some});;{tr('All files')} (*)"
+        )
+        if path:
+            self.line.setText(path)
+
+    def arguments(self) -> dict[str, str]:
+        return {"file": repr(self.line.text().strip())}
+
+
+def offered(document: Any) -> list[Any]:
+    """What points can be compared with, in the order of the tree."""
+    found = []
+    for obj in [] if document is None else document.Objects:
+        stage = stage_of(obj)
+        if (stage is not None and stage.kind in KINDS) or (stage is None and usable(obj)):
+            found.append(obj)
+    return found

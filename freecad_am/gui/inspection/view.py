@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measured points in the 3D view, laid onto the part and coloured by their deviation, with a legend."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+from pivy import coin
+
+from ...core.inspection.bands import NOT_COUNTED, bands, colours
+from ...core.inspection.inspect import Inspected
+from ..lines import fill, unshaded
+from ..path import legend
+from ..path.colouring import Scale
+from ..texts import tr
+from ..view_base import StageView
+
+
+class InspectionView(StageView):
+    """Green within tolerance, to red where there is more than planned, to blue where there is less."""
+
+    icon = "inspect"
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {
+        "PointSize": ("App::PropertyFloat", 4.0, "Size of the points in pixels."),
+        "ShowLegend": ("App::PropertyBool", True, "Show in the corner of the view what the colours mean."),
+    }
+    scale: Scale | None = None
+
+    def scene(self, root: Any) -> None:
+        self.look, self.material = coin.SoDrawStyle(), coin.SoMaterial()
+        self.coordinates, self.points = coin.SoCoordinate3(), coin.SoPointSet()
+        binding, group = coin.SoMaterialBinding(), coin.SoSeparator()
+        binding.value = coin.SoMaterialBinding.PER_VERTEX
+        for child in (unshaded(), self.look, self.material, binding, self.coordinates, self.points):
+            group.addChild(child)
+        self.legend = legend.Legend()
+        root.addChild(group)
+        root.addChild(self.legend.node)
+
+    def draw(self, obj: Any, value: Inspected) -> None:
+        fill(self.coordinates.point, value.points.astype(np.float32))
+        fill(self.material.diffuseColor, colours(value.deviation, value.counted, value.tolerance).astype(np.float32))
+        self.points.numPoints = len(value.points)
+        self.scale = scale_of(value)
+
+    def style(self, vobj: Any) -> None:
+        self.look.pointSize = max(1.0, vobj.PointSize)
+        legend.renew_soon()
+
+    def onChanged(self, vobj: Any, name: str) -> None:
+        """A view property has changed."""
+        super().onChanged(vobj, name)
+        if name == "Visibility":
+            legend.renew_soon()
+
+
+def scale_of(value: Inspected) -> Scale:
+    """The legend of an inspection: its bands, the most outside first."""
+    classes = tuple((band.text, band.colour) for band in reversed(bands(value.tolerance)))
+    if not value.counted.all():
+        classes += ((tr("past the edges"), NOT_COUNTED),)
+    return Scale(tr("deviation"), "mm", 0.0, 0.0, (), value.spread.least, value.spread.most, classes=classes)

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A machine in the 3D view: one node per link, moved by its joints, red where something is wrong with one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+from numpy.typing import NDArray
+from pivy import coin
+
+from ..brep import looks
+from ..core.issues import InputError
+from ..core.kinematics.link_shape import LinkShape
+from ..core.kinematics.machine import Machine
+from ..core.simulation import robot_links, table_links
+from ..core.simulation.solids import BODY, BRIGHT, DARK, Solid
+from ..objects import preferences
+from .lines import fill
+
+Array = NDArray[np.float64]
+
+TONES = {DARK: (0.24, 0.27, 0.31), BRIGHT: (0.66, 0.68, 0.71)}
+BAD = (0.86, 0.1, 0.12)
+_SHAPE = (0.8, 0.81, 0.83)  # of a user's file without a colour
+_CREASE = 0.6  # rad; flatter edges of a user's mesh look round
+_SMALLEST = 1.05  # a table is a little wider than the platform on it
+
+
+def _tone(solid: Solid) -> tuple[float, float, float]:
+    return preferences.machine_colour() if solid.tone == BODY else TONES[solid.tone]
+
+
+class MachineNodes:
+    """The links of a machine, in the frame of what they are posed in.
+
+    platform: diameter of the platform on a table, torch: length of the nozzle, mm; machines with rotary axes are drawn to
+    fit them. A user's file that cannot be read is told on the report view, once.
+    """
+
+    def __init__(self, machine: Machine, platform: float, torch: float) -> None:
+        self.node = coin.SoSeparator()
+        self.transforms: list[Any] = []
+        self.materials: list[list[tuple[Any, Sequence[float]]]] = []
+        self.bad = np.zeros(machine.chain.axes + 1, dtype=bool)
+        if machine.is_table:
+            solids = table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
+        else:
+            solids = robot_links.solids(machine.chain)
+        for shape, plain in zip(machine.shapes, solids):
+            self._add(shape, plain)
+
+    def _add(self, shape: LinkShape | None, plain: Sequence[Solid]) -> None:
+        link, transform, materials = coin.SoSeparator(), coin.SoMatrixTransform(), []
+        link.addChild(transform)
+        own = None if shape is None else _of_file(shape)
+        parts = [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)] if own is not None else [
+            (of_solid(solid), _tone(solid)) for solid in plain
+        ]
+        for node, colour in parts:
+            material, part = coin.SoMaterial(), coin.SoSeparator()
+            material.diffuseColor.setValue(*colour)
+            material.specularColor.setValue(0.25, 0.25, 0.25)
+            material.shininess = 0.4
+            part.addChild(material)
+            part.addChild(node)
+            link.addChild(part)
+            materials.append((material, colour))
+        self.node.addChild(link)
+        self.transforms.append(transform)
+        self.materials.append(materials)
+
+    def pose(self, links: Array) -> None:
+        """Move the links to their poses (axes + 1, 4, 4); NaN leaves them where they are."""
+        if np.isfinite(links).all():
+            for transform, pose in zip(self.transforms, links):
+                move(transform, pose)
+
+    def paint(self, bad: NDArray[np.bool_]) -> None:
+        """Links (axes + 1,) to be red; the others get their own colours back."""
+        for index in np.flatnonzero(bad != self.bad):
+            for material, colour in self.materials[index]:
+                material.diffuseColor.setValue(*(BAD if bad[index] else colour))
+        self.bad = bad.copy()
+
+
+def move(transform: Any, pose: Array) -> None:
+    """Give a SoMatrixTransform a pose (4, 4)."""
+    transform.matrix = coin.SbMatrix(*pose.T.ravel().tolist())
+
+
+def of_solid(solid: Solid) -> Any:
+    """The node of a solid, without a colour."""
+    values, shape = coin.SoVertexProperty(), coin.SoIndexedFaceSet()
+    fill(values.vertex, solid.points.astype(np.float32))
+    fill(values.normal, solid.normals.astype(np.float32))
+    values.normalBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
+    fill(shape.coordIndex, _corners(solid.triangles))
+    shape.vertexProperty = values
+    return shape
+
+
+def _of_file(shape: LinkShape) -> Any:
+    """The node of a user's file, None when it cannot be drawn, which is told."""
+    try:
+        points, triangles = looks.triangles(shape.path)
+    except InputError as error:
+        told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
+        App.Console.PrintError(f"{told.line()}\n")
+        return None
+    group, hints = coin.SoGroup(), coin.SoShapeHints()
+    hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
+    hints.creaseAngle = _CREASE
+    coordinates, faces = coin.SoCoordinate3(), coin.SoIndexedFaceSet()
+    placed = shape.scale * points @ shape.pose[:3, :3].T + shape.pose[:3, 3]
+    fill(coordinates.point, placed.astype(np.float32))
+    fill(faces.coordIndex, _corners(triangles))
+    for child in (hints, coordinates, faces):
+        group.addChild(child)
+    return group
+
+
+def _corners(triangles: NDArray[np.int64]) -> NDArray[np.int32]:
+    """Corners as Coin wants them, each triangle with its end."""
+    corners = np.full((len(triangles), 4), -1, dtype=np.int32)
+    corners[:, :3] = triangles
+    return corners.ravel()

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A table of figures that are typed or pasted, and read so that what is no number is told with its row and column."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide import QtCore, QtGui
+
+from ...core.issues import InputError
+from ..texts import tr
+
+Array = NDArray[np.float64]
+ROW_HEIGHT = 24
+MOST_SHOWN = 9  # rows that are to be seen at once
+
+
+class FigureTable:
+    """The table `widget`: rows of figures under columns. Empty cells are NaN where `blank` lets them."""
+
+    def __init__(self, name: str, rows: Sequence[str], columns: Sequence[str], helps: Sequence[str] = ()) -> None:
+        self.widget = _Table(self.paste)
+        self.widget.setObjectName(name)
+        self.widget.verticalHeader().setDefaultSectionSize(ROW_HEIGHT)
+        self.widget.setHorizontalScrollMode(QtGui.QAbstractItemView.ScrollPerPixel)
+        self.helps = tuple(helps)
+        self.read_only: frozenset[int] = frozenset()
+        self.set_shape(rows, columns)
+
+    def set_shape(self, rows: Sequence[str], columns: Sequence[str]) -> None:
+        """Rows and columns by their headings; what is in cells that stay is kept."""
+        self.widget.setRowCount(len(rows))
+        self.widget.setColumnCount(len(columns))
+        self.widget.setVerticalHeaderLabels(list(rows))
+        self.widget.setHorizontalHeaderLabels(list(columns))
+        for row in range(len(rows)):
+            for column in range(len(columns)):
+                if self.widget.item(row, column) is None:
+                    self.widget.setItem(row, column, QtGui.QTableWidgetItem(""))
+        for column, text in enumerate(self.helps[: len(columns)]):
+            self.widget.horizontalHeaderItem(column).setToolTip(text)
+        self.widget.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.Stretch)
+        self.fit()
+
+    def fit(self) -> None:
+        """Be as high as the rows there are."""
+        shown = min(self.widget.rowCount(), MOST_SHOWN)
+        self.widget.setFixedHeight(ROW_HEIGHT * shown + self.widget.horizontalHeader().sizeHint().height() + 4)
+
+    def lock(self, *columns: int) -> None:
+        """Let columns be read only: what is shown there is computed."""
+        self.read_only = frozenset(columns)
+        for row in range(self.widget.rowCount()):
+            for column in columns:
+                item = self.widget.item(row, column)
+                item.setFlags(item.flags() & ~QtCore.Qt.ItemIsEditable)
+
+    def fill(self, values: Any) -> None:
+        """Show figures (rows, columns); NaN and infinite ones are empty cells."""
+        self.widget.blockSignals(True)
+        for row, line in enumerate(np.asarray(values, float).tolist()):
+            for column, value in enumerate(line):
+                self.widget.item(row, column).setText(shown(value))
+        self.widget.blockSignals(False)
+
+    def text(self, row: int, column: int) -> str:
+        """What is in a cell."""
+        item = self.widget.item(row, column)
+        return "" if item is None else str(item.text()).strip()
+
+    def show(self, row: int, column: int, text: str, colour: str | None = None) -> None:
+        """Show a text in a cell."""
+        item = self.widget.item(row, column)
+        item.setText(text)
+        item.setForeground(QtGui.QBrush() if colour is None else QtGui.QBrush(QtGui.QColor(colour)))
+
+    def row(self, row: int, count: int | None = None, blank: bool = False) -> Array:
+        """The figures of a row, of the first `count` columns. InputError BAD_VALUE names the cell."""
+        columns = range(self.widget.columnCount() if count is None else count)
+        return np.array([self.figure(row, column, blank) for column in columns])
+
+    def figures(self, blank: bool = False) -> Array:
+        """All figures (rows, columns)."""
+        return np.stack([self.row(row, None, blank) for row in range(self.widget.rowCount())])
+
+    def figure(self, row: int, column: int, blank: bool = False) -> float:
+        """The figure of a cell; InputError BAD_VALUE for none."""
+        text = self.text(row, column)
+        if not text and blank:
+            return math.nan
+        where = f"{self.widget.verticalHeaderItem(row).text()}, {self.widget.horizontalHeaderItem(column).text()}"
+        if not text:
+            raise InputError("BAD_VALUE", where, tr("it is empty; give a number"))
+        return number(text, where)
+
+    def begun(self, row: int, count: int) -> bool:
+        """Whether anything is in the first cells of a row."""
+        return any(self.text(row, column) for column in range(count))
+
+    def paste(self) -> None:
+        """Fill cells from the clipboard, from the current one on: figures with tabs, blanks or semicolons between them."""
+        text = str(QtGui.QApplication.clipboard().text())
+        first, left = max(0, self.widget.currentRow()), max(0, self.widget.currentColumn())
+        for down, line in enumerate(line for line in text.splitlines() if line.strip()):
+            words = line.replace(";", " ").split()
+            for right, word in enumerate(words):
+                row, column = first + down, left + right
+                if row < self.widget.rowCount() and column < self.widget.columnCount() and column not in self.read_only:
+                    self.widget.item(row, column).setText(word)
+
+
+class _Table(QtGui.QTableWidget):
+    """A table into which figures can be pasted; Enter goes on to the cell below, and does not press the window's button."""
+
+    def __init__(self, paste: Callable[[], None]) -> None:
+        super().__init__()
+        self.paste = paste
+
+    def keyPressEvent(self, event: Any) -> None:
+        if event.matches(QtGui.QKeySequence.Paste):
+            self.paste()
+        elif event.key() in (QtCore.Qt.Key_Return, QtCore.Qt.Key_Enter):
+            self.setCurrentCell(min(self.currentRow() + 1, self.rowCount() - 1), self.currentColumn())
+        else:
+            super().keyPressEvent(event)
+
+
+def shown(value: float) -> str:
+    """A figure as it is typed, '' for none."""
+    return f"{value:.10g}" if math.isfinite(value) else ""
+
+
+def number(text: str, where: str) -> float:
+    """The number that was typed, with the decimal point of the language or a plain one. InputError BAD_VALUE for none."""
+    point = str(QtCore.QLocale().decimalPoint())
+    try:
+        value = float(text.replace(point, "."))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError("BAD_VALUE", where, tr("{} is not a number").format(repr(text)))
+    return value

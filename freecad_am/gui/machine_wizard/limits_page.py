@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limits, speeds and accelerations of the axes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...core.issues import InputError
+from ..texts import tr
+from .figure_table import FigureTable
+from .page import Page, axis_names
+
+
+class LimitsPage(Page):
+    """One row per axis. A range is left empty for an endless axis, speeds and accelerations where they are not known."""
+
+    def __init__(self, wizard: Any) -> None:
+        super().__init__(wizard, "LimitsPage", tr("Limits, speeds and accelerations"), tr(
+            "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s and deg/s², sliding "
+            "ones in mm, mm/s and mm/s². Leave both ends of a range empty for an axis that turns without end, speeds and "
+            "accelerations where they are not known."))
+        self.table = FigureTable("limits", ["J1"], [tr("From"), tr("To"), tr("Speed"), tr("Acceleration")])
+        self.column.addWidget(self.table.widget)
+        self.notes = self.add_text("")
+        self.column.addStretch(1)
+
+    def fill(self) -> None:
+        """Show what the source tells."""
+        draft = self.owner.draft
+        names = axis_names(self.owner)
+        self.table.set_shape(names, [tr("From"), tr("To"), tr("Speed"), tr("Acceleration")])
+        values = np.column_stack((draft.lower, draft.upper, draft.max_speed, draft.max_acceleration))
+        # what a URDF writes in rad is rarely a whole degree in its last digits
+        self.table.fill(np.round(values / draft.units[:, None], 6))
+        self.notes.setText("\n".join(draft.notes))
+
+    def take(self) -> None:
+        """Into the draft."""
+        draft = self.owner.draft
+        values = self.table.figures(blank=True)
+        for row, (lower, upper, *rates) in enumerate(values.tolist()):
+            name = self.table.widget.verticalHeaderItem(row).text()
+            if np.isnan(lower) != np.isnan(upper):
+                raise InputError("BAD_VALUE", name, tr("give both ends of its range, or none for an endless axis"))
+            if lower >= upper:
+                raise InputError("BAD_VALUE", name, tr("{} is not below {}").format(f"{lower:g}", f"{upper:g}"))
+            if draft.chain.sliding[row] and np.isnan(lower):
+                raise InputError("BAD_VALUE", name, tr("an axis that slides has two ends"))
+            if any(rate <= 0.0 for rate in rates):
+                raise InputError("BAD_VALUE", name, tr("speed and acceleration are more than 0, or left empty"))
+        values = np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf], values) * draft.units[:, None]
+        self.owner.draft = replace(
+            draft, lower=values[:, 0], upper=values[:, 1], max_speed=values[:, 2], max_acceleration=values[:, 3]
+        )

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The first page: where the geometry comes from."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from typing import Any
+
+import numpy as np
+from PySide import QtGui
+
+from ...core.geometry import frames
+from ...core.issues import InputError
+from ...core.kinematics import denavit_hartenberg, machine, machine_draft, opw_recognition
+from ...core.kinematics.machine_draft import Draft
+from ...core.kinematics.opw import OpwArm
+from ...core.kinematics.urdf import Urdf
+from ...objects import user_machines
+from ..texts import tr
+from .figure_table import FigureTable
+from .page import Page, choice, told
+
+LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+MOST_AXES = 6
+
+
+class SourcePage(Page):
+    """Makes the draft anew where the source is another one."""
+
+    def __init__(self, wizard: Any) -> None:
+        super().__init__(wizard, "SourcePage", tr("Where the geometry comes from"), tr(
+            "Lengths are in mm, angles in degrees. Robots need six axes with a spherical wrist, machine tools three axes "
+            "that slide and two that turn; whether yours is one is looked at when you go on."))
+        self.kind = choice("source", [
+            (tr("A URDF file"), "urdf"), (tr("A table of Denavit and Hartenberg"), "table"),
+            (tr("Figures of an arm with a spherical wrist (OPW)"), "opw"), (tr("A copy of another machine"), "copy"),
+        ])
+        self.column.addWidget(self.kind)
+        self.stack = QtGui.QStackedWidget()
+        for make in (self._urdf_form, self._table_form, self._opw_form, self._copy_form):
+            self.stack.addWidget(make())
+        self.column.addWidget(self.stack, 1)
+        self.kind.currentIndexChanged.connect(self._turn)
+        self.robot: Urdf | None = None
+        self.taken: str | None = None
+
+    def _turn(self, index: int) -> None:
+        self.stack.setCurrentIndex(index)
+        self.say("")
+
+    # ---- forms
+
+    def _urdf_form(self) -> Any:
+        form = QtGui.QWidget()
+        rows = QtGui.QFormLayout(form)
+        line = QtGui.QHBoxLayout()
+        self.file = QtGui.QLineEdit()
+        self.file.setObjectName("file")
+        browse = QtGui.QPushButton(tr("Browse…"))
+        browse.setObjectName("browse")
+        browse.setAutoDefault(False)
+        browse.clicked.connect(self._browse)
+        line.addWidget(self.file, 1)
+        line.addWidget(browse)
+        rows.addRow(tr("File"), line)
+        self.base, self.tip = choice("baseLink", []), choice("tipLink", [])
+        self.base.setToolTip(tr("The link that stands still"))
+        self.tip.setToolTip(tr("The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial"))
+        rows.addRow(tr("From link"), self.base)
+        rows.addRow(tr("To link"), self.tip)
+        self.file.textChanged.connect(self._look)
+        self.base.currentIndexChanged.connect(self._offer_tips)
+        return form
+
+    def _table_form(self) -> Any:
+        form = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(form)
+        column.setContentsMargins(0, 0, 0, 0)
+        self.craig = choice("tableKind", [
+            (tr("Standard: Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)"), False),
+            (tr("Modified (Craig): Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)"), True),
+        ])
+        self.rows = FigureTable("dhTable", [f"J{number}" for number in range(1, MOST_AXES + 1)], [
+            "theta", "d", "a", "alpha", tr("sign"), tr("slides")], [
+            tr("Angle that is added to the joint's, deg"), tr("Offset along z, mm"), tr("Length along x, mm"),
+            tr("Twist about x, deg"), tr("1, or -1 where the joint moves the other way"),
+            tr("0, or 1 where the joint slides along z: a machine with rotary axes has three of them")])
+        self.rows.fill([[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]] * MOST_AXES)
+        self.ends = FigureTable("dhEnds", [tr("Before"), tr("After")], ["X", "Y", "Z", "roll", "pitch", "yaw"], [
+            tr("The frame of the first row in that of the base, and the flange in that of the last row. mm and deg; about X "
+               "first, then Y, then Z of the outer frame.")] * 6)
+        self.ends.fill(np.zeros((2, 6)))
+        column.addWidget(self.craig)
+        column.addWidget(self.rows.widget)
+        column.addWidget(QtGui.QLabel(tr("Poses before the first row and after the last, where the table has some")))
+        column.addWidget(self.ends.widget)
+        column.addStretch(1)
+        return form
+
+    def _opw_form(self) -> Any:
+        form = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(form)
+        column.setContentsMargins(0, 0, 0, 0)
+        note = QtGui.QLabel(tr(
+            "Axis 2 is a1 ahead of axis 1 and c1 above the base; c2 to axis 3; axis 4 is a2 from axis 3 (negative: above "
+            "it), b to the side; c3 to the wrist centre, c4 to the flange. The angle of the arm is q · sign - offset; at "
+            "zero it stretches straight up."))
+        note.setWordWrap(True)
+        self.lengths = FigureTable("opwLengths", ["mm"], LENGTHS)
+        self.lengths.fill(np.zeros((1, 7)))
+        self.turns = FigureTable("opwTurns", [tr("Offset (deg)"), tr("Sign")], [f"J{number}" for number in range(1, 7)])
+        self.turns.fill([[0, 0, -90, 0, 0, 0], [1] * 6])
+        for widget in (note, self.lengths.widget, self.turns.widget):
+            column.addWidget(widget)
+        column.addStretch(1)
+        return form
+
+    def _copy_form(self) -> Any:
+        form = QtGui.QWidget()
+        rows = QtGui.QFormLayout(form)
+        known = machine.known(user_machines.folders())
+        self.original = choice("original", [(f"{title}  ({name})", name) for name, title in known])
+        self.original.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        self.original.setMinimumContentsLength(30)
+        rows.addRow(tr("Machine"), self.original)
+        return form
+
+    # ---- URDF
+
+    def _browse(self, *_: Any) -> None:
+        found = QtGui.QFileDialog.getOpenFileName(self, tr("URDF file"), self.file.text(), "URDF (*.urdf *.xml)")
+        if found and found[0]:
+            self.file.setText(found[0])
+
+    def _look(self, *_: Any) -> None:
+        """Offer the links of the file, once there is one."""
+        self.robot = None
+        self.base.clear()
+        self.say("")
+        path = self.file.text().strip()
+        if not os.path.isfile(path):
+            return
+        try:
+            self.robot = Urdf(path)
+            self.base.addItems(self.robot.bases())
+        except InputError as error:
+            self.say(told(error))
+
+    def _offer_tips(self, *_: Any) -> None:
+        self.tip.clear()
+        if self.robot is not None and self.base.count():
+            with contextlib.suppress(InputError):  # a chain that carries itself is told on Next
+                self.tip.addItems(self.robot.tips(self.base.currentText()))
+
+    # ---- the draft
+
+    def take(self) -> None:
+        """Make the draft. What was entered on later pages stays where the source is the same."""
+        entered = self._entered()
+        if entered == self.taken and self.owner.draft is not None:
+            return
+        draft = {"urdf": self._of_urdf, "table": self._of_table, "opw": self._of_opw, "copy": self._of_copy}[
+            self.kind.currentData()]()
+        try:
+            machine_draft.closed_form(draft)
+        except InputError as error:
+            if error.where != opw_recognition.FLANGE:  # which has a page of its own
+                raise
+        self.taken = entered
+        self.owner.begin(draft)
+
+    def _entered(self) -> str:
+        """All that tells one source from another."""
+        tables = [[table.text(row, column) for row in range(table.widget.rowCount())
+                   for column in range(table.widget.columnCount())]
+                  for table in (self.rows, self.ends, self.lengths, self.turns)]
+        file = self.file.text().strip()
+        stamp = os.path.getmtime(file) if os.path.isfile(file) else 0.0
+        return repr([self.kind.currentData(), file, stamp, self.base.currentText(), self.tip.currentText(),
+                     self.craig.currentData(), self.original.currentData(), tables])
+
+    def _of_urdf(self) -> Draft:
+        path = self.file.text().strip()
+        if not path:
+            raise InputError("NO_INPUT", tr("File"), tr("choose a URDF file"))
+        self.robot = self.robot or Urdf(path)
+        if not self.tip.count():
+            said = tr("no link is carried by {}").format(self.base.currentText())
+            raise InputError("BAD_URDF", os.path.basename(path), said)
+        described = self.robot.between(self.base.currentText(), self.tip.currentText())
+        return machine_draft.of_description(described, f"URDF {os.path.basename(path)}, {self.base.currentText()} to "
+                                            f"{self.tip.currentText()}")
+
+    def _of_table(self) -> Draft:
+        count = max((row + 1 for row in range(MOST_AXES) if self.rows.begun(row, 4)), default=0)
+        rows = []
+        for number in range(count):
+            theta, d, a, alpha, sign, slides = self.rows.row(number).tolist()
+            if sign not in (1.0, -1.0):
+                raise InputError("BAD_VALUE", f"J{number + 1}, {tr('sign')}", tr("use 1 or -1"))
+            if slides not in (0.0, 1.0):
+                raise InputError("BAD_VALUE", f"J{number + 1}, {tr('slides')}", tr("use 0 or 1"))
+            rows.append(denavit_hartenberg.Row(np.radians(theta), d, a, np.radians(alpha), int(sign), bool(slides)))
+        before, after = (frames.from_rpy(line[:3], np.radians(line[3:])) for line in self.ends.figures())
+        craig = bool(self.craig.currentData())
+        chain = denavit_hartenberg.chain_of(denavit_hartenberg.Table(tuple(rows), before, after, craig))
+        return machine_draft.of_chain(chain, f"{'modified' if craig else 'standard'} Denavit-Hartenberg table, as entered")
+
+    def _of_opw(self) -> Draft:
+        lengths = dict(zip(LENGTHS, self.lengths.row(0).tolist(), strict=True))
+        offsets, signs = self.turns.figures()
+        for number, sign in enumerate(signs.tolist(), 1):
+            if sign not in (1.0, -1.0):
+                raise InputError("BAD_VALUE", f"J{number}, {tr('Sign')}", tr("use 1 or -1"))
+        arm = OpwArm(**lengths, offsets=tuple(np.radians(offsets).tolist()), signs=tuple(int(sign) for sign in signs))
+        return machine_draft.of_chain(opw_recognition.chain_of(arm), "closed-form figures, as entered")
+
+    def _of_copy(self) -> Draft:
+        return machine_draft.of_machine(str(self.original.currentData()), user_machines.folders())

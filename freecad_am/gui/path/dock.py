@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The dock beside the 3D view that shows a path layer by layer and point by point, and tells of the bead that is reached."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ..follower import Follower
+from ..texts import tr
+from . import path_view
+from .colouring import LAYER
+from .facts import facts
+from .path_view import PathView
+from .slider_row import Row
+
+NAME = "RoboticAM_PathDock"
+_LAYER_PAGE, _POINT_PAGE = 10, 100
+
+
+class PathDock(Follower):
+    """One for all documents; it shows the path that was selected last, or else one that is to be seen."""
+
+    def __init__(self) -> None:
+        self.target: tuple[str, str] | None = None  # names of document and object
+        self.filling = False
+        self.dock = QtGui.QDockWidget(tr("Path"), Gui.getMainWindow())
+        self.dock.setObjectName(NAME)
+        form = QtGui.QWidget()
+        self.dock.setWidget(form)
+        column, self.controls = QtGui.QVBoxLayout(form), QtGui.QWidget()
+        column.setContentsMargins(9, 4, 9, 4)
+        column.setSpacing(3)
+        self.choice = self._combo("path", tr("The toolpath or joint path to look at"))
+        self.colouring = self._combo("colouring", tr("What the colours of the beads tell"))
+        self.look = self._combo("look", tr("Draw beads as lines, or as tubes of their width and layer height"))
+        self.directions = QtGui.QCheckBox(tr("Build directions"))
+        self.directions.setObjectName("directions")
+        self.single = QtGui.QCheckBox(tr("One layer alone"))
+        self.single.setObjectName("single")
+        self.all = QtGui.QPushButton(tr("Show all"))
+        self.all.setObjectName("all")
+        self.from_, self.to, self.point = (
+            Row("from", tr("From layer"), tr("The first layer that is shown"), _LAYER_PAGE),
+            Row("to", tr("To layer"), tr("The last layer that is shown"), _LAYER_PAGE),
+            Row("point", tr("Point"), tr("How many points of the last layer are shown"), _POINT_PAGE),
+        )
+        self.facts = QtGui.QLabel()
+        self.facts.setObjectName("facts")
+        self.facts.setWordWrap(True)
+        column.addLayout(self._choices())
+        column.addWidget(self.controls)
+        grid = QtGui.QGridLayout(self.controls)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setVerticalSpacing(2)
+        for number, row in enumerate((self.from_, self.to, self.point)):
+            row.add_to(grid, number)
+        column.addWidget(self.facts)
+        column.addStretch(1)
+        self._connect()
+        Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
+
+    def _combo(self, name: str, help: str) -> Any:
+        combo = QtGui.QComboBox()
+        combo.setObjectName(name)
+        combo.setToolTip(help)
+        combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
+        return combo
+
+    def _choices(self) -> Any:
+        lines = QtGui.QVBoxLayout()
+        what, how = QtGui.QHBoxLayout(), QtGui.QHBoxLayout()
+        for line, text, widget in (
+            (what, tr("Path"), self.choice), (what, tr("Colours"), self.colouring), (how, tr("Look"), self.look),
+        ):
+            line.addWidget(QtGui.QLabel(text))
+            line.addWidget(widget)
+        what.addStretch(1)
+        for box in (self.directions, self.single):
+            how.addWidget(box)
+        how.addStretch(1)
+        how.addWidget(self.all)
+        lines.addLayout(what)
+        lines.addLayout(how)
+        return lines
+
+    def _connect(self) -> None:
+        self.choice.activated.connect(self._chosen)
+        self.colouring.activated.connect(lambda *_: self._set("Colouring", self.colouring.currentText()))
+        self.look.activated.connect(lambda *_: self._set("Look", self.look.currentText()))
+        self.directions.clicked.connect(lambda *_: self._set("ShowDirections", self.directions.isChecked()))
+        self.single.clicked.connect(lambda *_: self._moved(self.to))
+        self.all.clicked.connect(self._show_all)
+        for row in (self.from_, self.to, self.point):
+            row.moved = self._moved
+        path_view.listen(lambda view: self.fill())
+        App.addDocumentObserver(self)
+        Gui.Selection.addObserver(self)
+
+    # ---- what is looked at
+
+    def open(self, obj: Any = None) -> None:
+        """Show the dock, and in it this path."""
+        if obj is not None:
+            self._take(obj)
+        self.dock.show()
+        self.dock.raise_()
+        self.fill()
+
+    def view(self) -> PathView | None:
+        """The view of the path that is looked at, None when there is none (any more)."""
+        obj = self._object()
+        return None if obj is None else obj.ViewObject.Proxy
+
+    def _object(self) -> Any:
+        paths = _paths()
+        seen = [obj for obj in paths if obj.ViewObject.Visibility]
+        if self.target is not None and self.target[0] in App.listDocuments():
+            found = App.getDocument(self.target[0]).getObject(self.target[1])
+            if _is_path(found) and (found.ViewObject.Visibility or not seen):
+                return found
+        found = (seen or paths)[-1] if paths else None
+        self.target = None if found is None else (found.Document.Name, found.Name)
+        return found
+
+    def _take(self, obj: Any) -> None:
+        """Look at a path: it is made visible, and what lies at the same place is hidden."""
+        self.target = (obj.Document.Name, obj.Name)
+        if not obj.ViewObject.Visibility:
+            obj.ViewObject.Visibility = True
+            planned = getattr(obj, "Toolpath", None)
+            for other in _paths(obj.Document):
+                if other is planned or getattr(other, "Toolpath", None) is obj:
+                    other.ViewObject.Visibility = False
+
+    def _chosen(self, index: int) -> None:
+        paths = _paths()
+        if 0 <= index < len(paths):
+            self._take(paths[index])
+        self.fill()
+
+    # ---- what is shown of it
+
+    def fill(self) -> None:
+        """Show the state of the path; nothing while the dock is closed."""
+        if self.filling or not self.dock.isVisible():
+            return
+        self.filling = True
+        try:
+            self._fill()
+        finally:
+            self.filling = False
+
+    def _fill(self) -> None:
+        obj = self._object()
+        view = None if obj is None else obj.ViewObject.Proxy
+        rows = None if view is None else view.rows
+        there = rows is not None and len(rows) > 0
+        for widget in (self.controls, self.colouring, self.look, self.directions, self.single, self.all):
+            widget.setEnabled(there)
+        paths = _paths()
+        _offer(self.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
+        if not there:
+            self.facts.setText(tr("There is no path to look at yet: make a toolpath or a joint path.") if obj is None else
+                               tr("{} is hidden, or has no result.").format(obj.Label))
+            return
+        vobj = obj.ViewObject
+        for combo, name in ((self.colouring, "Colouring"), (self.look, "Look")):
+            names = vobj.getEnumerationsOfProperty(name)
+            _offer(combo, names, names.index(getattr(vobj, name)))
+        self.directions.setChecked(vobj.ShowDirections)
+        first, last, count = view.shown or (0, rows.layer_count - 1, None)
+        low, high = rows.of_layers(last, last)
+        self.from_.set(0, rows.layer_count - 1, first)
+        self.to.set(0, rows.layer_count - 1, last)
+        self.point.set(1, max(high - low, 1), high - low if count is None else count)
+        row = max(low, (high if count is None else low + count) - 1)
+        told = "" if view.scale is None or view.scale.title == LAYER else view.scale.told(row)
+        self.facts.setText(" · ".join(filter(None, (told, facts(rows, row)))))
+
+    def _moved(self, row: Row) -> None:
+        view = self.view()
+        if self.filling or view is None or view.rows is None:
+            return
+        first, last = self.from_.value(), self.to.value()
+        if self.single.isChecked():
+            first = last = (first if row is self.from_ else last)
+        elif first > last:
+            first, last = (first, first) if row is self.from_ else (last, last)
+        count = self.point.value() if row is self.point and self.point.value() < self.point.most() else None
+        whole = (first, last, count) == (0, view.rows.layer_count - 1, None)
+        view.show(None if whole else (first, last, count))
+        self.fill()
+
+    def _show_all(self, *_: Any) -> None:
+        view = self.view()
+        if view is not None:
+            self.single.setChecked(False)
+            view.show(None)
+            self.fill()
+
+    def _set(self, name: str, value: Any) -> None:
+        view = self.view()
+        if view is not None:
+            setattr(view.obj.ViewObject, name, value)
+        self.fill()
+
+    # ---- called by FreeCAD
+
+    def addSelection(self, document: str, name: str, *_: Any) -> None:
+        """Something was selected."""
+        found = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        if _is_path(found) and found.ViewObject.Visibility:
+            self.target = (document, name)
+            self.fill()
+
+
+def _offer(combo: Any, names: list[str], chosen: int) -> None:
+    """Choices of a combo box, changed only where they differ."""
+    if [combo.itemText(index) for index in range(combo.count())] != list(names):
+        combo.clear()
+        combo.addItems(list(names))
+    combo.setCurrentIndex(chosen)
+
+
+def _is_path(obj: Any) -> bool:
+    return isinstance(getattr(getattr(obj, "ViewObject", None), "Proxy", None), PathView)
+
+
+def _paths(document: Any = None) -> list[Any]:
+    document = document or App.ActiveDocument
+    return [] if document is None else [obj for obj in document.Objects if _is_path(obj)]
+
+
+_dock: PathDock | None = None
+
+
+def show(obj: Any = None) -> None:
+    """Open the dock, of a path or of what is to be seen."""
+    global _dock
+    if _dock is None:
+        _dock = PathDock()
+    _dock.open(obj)
+
+
+def add_action(menu: Any, obj: Any) -> None:
+    """The entry of a context menu that opens the dock of a path."""
+    action = menu.addAction(tr("Show path layer by layer"))
+    action.setObjectName("RoboticAM_ShowPath")
+    action.triggered.connect(lambda *_: show(obj))

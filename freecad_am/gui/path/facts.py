@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is told of a bead in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...core.toolpath import Bead
+from ...objects import preferences
+from ..texts import tr
+from .rows import Rows
+
+
+def facts(rows: Rows, row: int) -> str:
+    """The bead that a row belongs to: its layer, number, kind, speed, width, length and time; and the row's place."""
+    index = rows.bead_of(row)
+    bead, layer = rows.beads[index], int(rows.layers[index])
+    first, end = np.searchsorted(rows.layers, [layer, layer + 1])
+    at = row - int(rows.starts[index])
+    length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+    time = float((length / bead.speed[1:]).sum())
+    x, y, z = bead.points[at]
+    return " · ".join((
+        tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
+        tr("bead {} of {}, {}").format(index - int(first) + 1, int(end - first), _kind(bead)),
+        f"{preferences.speed(float(bead.speed[max(at, 1)])):.4g} {preferences.speed_unit()}",
+        tr("{:.4g} mm wide").format(float(rows.width[row])),
+        tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time),
+        tr("point {} of {} at {:.2f}, {:.2f}, {:.2f} mm").format(at + 1, len(bead), x, y, z),
+    ))
+
+
+def _kind(bead: Bead) -> str:
+    if bead.closing:
+        return tr("closes a gap")
+    names = {
+        "contour": tr("contour"), "line": tr("line"), "zigzag": tr("zigzag"), "spiral": tr("spiral"),
+        "centre": tr("in the middle"), "closing": tr("closes a gap"),
+    }
+    return names.get(bead.kind, tr("closed") if bead.closed else tr("open"))

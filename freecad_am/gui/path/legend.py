@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Legends in the upper left corner of the 3D views and of pictures saved from them: a bar of colours with numbers for each
+path to be seen.
+
+A legend is an image in the scene of its path, drawn last and through a camera of its own, so that it stays put and sharp
+whatever the view's camera does, and comes and goes with its path. Those that are seen together stand side by side.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+import numpy as np
+from pivy import coin
+from PySide import QtCore, QtGui
+
+from ..colours import ramp
+from ..lines import unshaded
+from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
+
+_FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
+_MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
+_GROUND, _EDGE, _INK = QtGui.QColor(255, 255, 255, 225), QtGui.QColor(150, 155, 165), QtGui.QColor(29, 36, 48)
+Entry = tuple[tuple[str, ...], Scale]  # the lines above, and the scale
+
+
+class Legend:
+    """The legend of one path; nothing is seen before `show`."""
+
+    def __init__(self) -> None:
+        self.entry: Entry | None = None
+        self.left = 0
+        # all of the view is from -1 to 1
+        self.camera = coin.SoOrthographicCamera()
+        self.camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
+        self.camera.height, self.camera.position = 2.0, (0.0, 0.0, 1.0)
+        self.camera.nearDistance, self.camera.farDistance = 0.5, 1.5
+        self.switch, self.image = coin.SoSwitch(), coin.SoImage()
+        self.image.horAlignment, self.image.vertAlignment = coin.SoImage.LEFT, coin.SoImage.TOP
+        corner, pick, callback = coin.SoTranslation(), coin.SoPickStyle(), coin.SoCallback()
+        corner.translation = (-1.0, 1.0, 0.0)
+        pick.style = coin.SoPickStyle.UNPICKABLE
+        callback.setCallback(self._look, None)
+        bounds = coin.SoResetTransform()  # it counts in no bounding box
+        bounds.whatToReset = coin.SoResetTransform.BBOX
+        on_top = coin.SoAnnotation()
+        for child in (pick, unshaded(), coin.SoResetTransform(), callback, corner, self.image, bounds):
+            on_top.addChild(child)
+        self.switch.addChild(on_top)
+
+    @property
+    def node(self) -> Any:
+        """The node to add to a scene."""
+        return self.switch
+
+    def _look(self, data: Any, action: Any) -> None:
+        # the camera is no node of the scene: rays of the mouse must not go through it
+        if action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
+            self.camera.doAction(action)
+
+    def show(self, entry: Entry, left: int) -> int:
+        """Show this, `left` px from the edge; its width with the margin, px."""
+        width = _width(*entry)
+        if (entry, left) != (self.entry, self.left):
+            self.entry, self.left = entry, left
+            pixels = _picture(entry, left)
+            self.image.image.setValue(coin.SbVec2s(pixels.shape[1], pixels.shape[0]), 4, pixels.tobytes())
+        self.switch.whichChild = coin.SO_SWITCH_ALL
+        return width + _MARGIN
+
+    def hide(self) -> None:
+        """Show nothing."""
+        self.entry = None
+        self.switch.whichChild = coin.SO_SWITCH_NONE
+
+
+def _picture(entry: Entry, left: int) -> Any:
+    """The pixels (rows from below, columns, 4) of a legend that stands this far from the corner of the view."""
+    ratio = float(Gui.getMainWindow().devicePixelRatio())
+    wide, high = left + _MARGIN + _width(*entry), _MARGIN + _height(*entry)
+    image = QtGui.QImage(round(ratio * wide), round(ratio * high), QtGui.QImage.Format_RGBA8888)
+    image.setDevicePixelRatio(ratio)
+    image.fill(QtCore.Qt.transparent)
+    painter = QtGui.QPainter(image)
+    painter.setFont(QtGui.QApplication.font())
+    painter.setRenderHint(QtGui.QPainter.Antialiasing)
+    painter.translate(left + _MARGIN, _MARGIN)
+    painter.setPen(_EDGE)
+    painter.setBrush(_GROUND)
+    painter.drawRoundedRect(0, 0, _width(*entry) - 1, _height(*entry) - 1, 5, 5)
+    _draw(painter, *entry)
+    painter.end()
+    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+    return np.ascontiguousarray(rows[::-1, : image.width()])
+
+
+# ---- what is in a legend
+
+
+def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
+    return [*names, f"{scale.title}, {scale.unit}" if scale.unit else scale.title]
+
+
+def _foot(scale: Scale) -> str:
+    decimals = 3 if scale.most - scale.least > _FINE else 5
+    return f"{scale.least:.{decimals}f} … {scale.most:.{decimals}f}" if scale.title == DISTANCE else ""
+
+
+def _metrics() -> Any:
+    return QtGui.QFontMetrics(QtGui.QApplication.font())
+
+
+def _line() -> int:
+    return int(_metrics().height())
+
+
+def _wide(text: str) -> int:
+    return int(_metrics().boundingRect(text).width()) + 6
+
+
+def _width(names: tuple[str, ...], scale: Scale) -> int:
+    texts = [text for _, text in scale.ticks] + [text for text, _ in scale.classes]
+    texts += [scale.below, scale.above, scale.without]
+    beside = _BAR_WIDTH + 10 + max(map(_wide, texts))
+    return 2 * _PAD + max(beside, *map(_wide, [*_lines(names, scale), _foot(scale)]))
+
+
+def _height(names: tuple[str, ...], scale: Scale) -> int:
+    if scale.classes:
+        return 2 * _PAD + (len(_lines(names, scale)) + len(scale.classes)) * (_line() + 3)
+    more = [scale.below, scale.above, scale.without, _foot(scale)]
+    return 2 * _PAD + (len(_lines(names, scale)) + sum(map(bool, more))) * (_line() + 3) + _BAR_HEIGHT + _line()
+
+
+def _draw(painter: Any, names: tuple[str, ...], scale: Scale) -> None:
+    line, left, top = _line(), _PAD, _PAD
+    for text in _lines(names, scale):
+        _text(painter, left, top, text)
+        top += line + 3
+    for text, colour in scale.classes:
+        _swatch(painter, left, top, colour, text)
+        top += line + 3
+    if scale.classes:
+        return
+    if scale.above:
+        _swatch(painter, left, top, TOO_FAR, scale.above)
+        top += line + 3
+    top += line // 2
+    shares = np.linspace(1.0, 0.0, _STEPS) if scale.high > scale.low else np.full(_STEPS, 0.5)
+    painter.setRenderHint(QtGui.QPainter.Antialiasing, False)
+    for row, colour in enumerate(ramp(shares)):
+        painter.fillRect(left, top + row * _BAR_HEIGHT // _STEPS, _BAR_WIDTH, 1, _colour(colour))
+    painter.setPen(_INK)
+    for number, text in scale.ticks:
+        down = top + round((1.0 - float(scale.share(np.array(number)))) * (_BAR_HEIGHT - 1))
+        painter.drawLine(left + _BAR_WIDTH, down, left + _BAR_WIDTH + 4, down)
+        _text(painter, left + _BAR_WIDTH + 8, down - line // 2, text)
+    painter.setRenderHint(QtGui.QPainter.Antialiasing, True)
+    top += _BAR_HEIGHT + line // 2 + 3
+    for text, colour in ((scale.below, TOO_NEAR), (scale.without, scale.without_colour)):
+        if text:
+            _swatch(painter, left, top, colour, text)
+            top += line + 3
+    _text(painter, left, top, _foot(scale))
+
+
+def _swatch(painter: Any, left: int, top: int, colour: Any, text: str) -> None:
+    painter.fillRect(left, top + 2, _BAR_WIDTH, _line() - 4, _colour(colour))
+    _text(painter, left + _BAR_WIDTH + 8, top, text)
+
+
+def _text(painter: Any, left: int, top: int, text: str) -> None:
+    painter.setPen(_INK)
+    painter.drawText(left, top + painter.fontMetrics().ascent(), text)
+
+
+def _colour(colour: Any) -> Any:
+    return QtGui.QColor.fromRgbF(*(float(part) for part in colour))
+
+
+# ---- which paths show theirs
+
+_watching: list[Any] = []
+_due = False
+
+
+def renew_soon() -> None:
+    """Bring all legends up to date, once what is going on now is done."""
+    global _due
+    if not _watching:
+        _watching.append(_Observer())
+        App.addDocumentObserver(_watching[0])
+    if not _due:
+        _due = True
+        QtCore.QTimer.singleShot(0, _renew)
+
+
+def _renew() -> None:
+    global _due
+    _due = False
+    for document in App.listDocuments().values():
+        _arrange(document)
+
+
+def _arrange(document: Any) -> None:
+    """Show the legends of what is to be seen in a document side by side, with names where there are several."""
+    seen = []
+    for obj in document.Objects:
+        view = getattr(obj.ViewObject, "Proxy", None)
+        if isinstance(getattr(view, "legend", None), Legend):
+            if view.scale is not None and obj.ViewObject.Visibility and obj.ViewObject.ShowLegend:
+                seen.append((obj.Label, view))
+            else:
+                view.legend.hide()
+    left = 0
+    for label, view in seen:
+        left += view.legend.show(((label,) if len(seen) > 1 else (), view.scale), left)
+
+
+def shown(document: Any) -> list[Scale]:
+    """The scales whose legends are to be seen in a document."""
+    legends = [getattr(getattr(obj.ViewObject, "Proxy", None), "legend", None) for obj in document.Objects]
+    return [legend.entry[1] for legend in legends if isinstance(legend, Legend) and legend.entry is not None]
+
+
+class _Observer:
+    """What happens to documents without the view providers being told."""
+
+    def slotDeletedObject(self, obj: Any) -> None:
+        """Called by FreeCAD."""
+        renew_soon()
+
+    def slotUndoDocument(self, document: Any) -> None:
+        """Called by FreeCAD."""
+        renew_soon()
+
+    slotRedoDocument = slotUndoDocument

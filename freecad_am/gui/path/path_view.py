@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the views of toolpaths and joint paths share: colours and legend, lines or tubes, and what stretch is shown."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+from PySide import QtCore
+
+from ...core.issues import InputError
+from ..lines import Array
+from ..view_base import StageView
+from . import legend
+from .colouring import Scale
+from .pieces import PathNodes
+from .rows import Rows
+
+LINES, TUBES = "lines", "tubes"
+OPTIONS: dict[str, tuple[str, Any, str]] = {
+    "Look": ("App::PropertyEnumeration", (LINES, TUBES), "Draw beads as lines, or as tubes as wide and high as they are."),
+    "ShowLegend": ("App::PropertyBool", True, "Show in the corner of the view what the colours mean."),
+    "ShowDirections": ("App::PropertyBool", False, "Show the build directions as short lines."),
+    "DirectionStep": ("App::PropertyInteger", 8, "Show the build direction of every how many-th point."),
+    "DirectionLength": ("App::PropertyLength", 4.0, "Length of the lines that show build directions."),
+    "LineWidth": ("App::PropertyFloat", 2.0, "Width of the beads' lines in pixels."),
+}
+
+
+class PathView(StageView):
+    """Draws beads from blue at the least to yellow at the most of what is told.
+
+    What is hidden is drawn when it is first to be seen, so that opening a document reads no result for nothing.
+    `shown`: first and last layer, and how many points of the last one, None for all; None for the whole path.
+    """
+
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = OPTIONS
+    rows: Rows | None = None
+    scale: Scale | None = None  # of the colours that are shown
+    shown: tuple[int, int, int | None] | None = None
+    told: tuple[Any, ...] | None = None  # what the colours are of
+    waiting = False
+
+    # ---- what a view defines
+
+    def rows_of(self, obj: Any, value: Any) -> Rows:
+        """The path to draw."""
+        raise NotImplementedError
+
+    def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
+        """Colours of all points. Raises InputError while undo brings back a result in parts."""
+        raise NotImplementedError
+
+    def limited(self, first: int, end: int) -> None:
+        """Rows from `first` to before `end` are shown: show of what else is drawn what goes with them."""
+
+    # ---- of the stage's view
+
+    def scene(self, root: Any) -> None:
+        self.path, self.legend = PathNodes(), legend.Legend()
+        root.addChild(self.path.node)
+        root.addChild(self.legend.node)
+
+    def refresh(self) -> None:
+        """Draw what is stored now; in a document that is being opened once it is, and once it is to be seen."""
+        if self.obj is None:
+            return
+        opening = self.obj.Document.Restoring
+        self.waiting = opening or not self.obj.ViewObject.Visibility
+        if opening:
+            QtCore.QTimer.singleShot(0, self._opened)
+        elif not self.waiting:
+            super().refresh()
+
+    def _opened(self) -> None:
+        with contextlib.suppress(ReferenceError, RuntimeError):  # the document is closed again
+            if self.waiting:
+                self.refresh()
+
+    def draw(self, obj: Any, value: Any) -> None:
+        self.rows, self.told = self.rows_of(obj, value), None
+        self.path.set(self.rows)
+        self.show(self.shown)
+
+    def style(self, vobj: Any) -> None:
+        if self.rows is None:
+            return
+        self._colour(vobj)
+        legend.renew_soon()
+        self.path.style.lineWidth = max(1.0, vobj.LineWidth)
+        self.path.look(vobj.Look == TUBES)
+        wanted = (max(1, vobj.DirectionStep), vobj.DirectionLength.Value) if vobj.ShowDirections else None
+        if wanted is None:
+            self.path.hide_directions()
+        elif wanted != self.path.drawn_directions:
+            self.path.draw_directions(*wanted)
+        tell(self)
+
+    def onChanged(self, vobj: Any, name: str) -> None:
+        """A view property has changed."""
+        super().onChanged(vobj, name)
+        if name == "Visibility":
+            if self.waiting and vobj.Visibility and not vobj.Object.Document.Restoring:
+                self.refresh()
+            legend.renew_soon()
+            tell(self)
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """Entries of the context menu in the tree."""
+        from .dock import add_action
+
+        super().setupContextMenu(vobj, menu)
+        add_action(menu, vobj.Object)
+
+    def _colour(self, vobj: Any) -> None:
+        """Colour the beads anew where that would be other colours."""
+        wanted = (self.drawn, vobj.Colouring, *self.colours_depend_on(vobj.Object))
+        if self.rows is not None and len(self.rows) and wanted != self.told:
+            try:
+                colours, self.scale = self.coloured(vobj.Object, vobj.Colouring)
+            except InputError:  # within undo; it is drawn once all is back
+                return
+            self.path.paint(colours)
+            self.told = wanted
+
+    def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
+        """What else than the result the colours are made of."""
+        return ()
+
+    # ---- the stretch that is shown
+
+    def show(self, shown: tuple[int, int, int | None] | None) -> None:
+        """Show some layers, and of the last one some points; None for all."""
+        rows = self.rows
+        if rows is None:
+            return
+        if shown is not None:
+            last = min(shown[1], rows.layer_count - 1)
+            shown = (min(shown[0], last), last, shown[2])
+        first, end = (0, len(rows)) if shown is None else rows.of_layers(*shown[:2])
+        if shown is not None and shown[2] is not None:
+            end = min(end, rows.of_layers(shown[1], shown[1])[0] + shown[2])
+        self.shown = shown
+        self.path.show(first, end)
+        self.limited(first, end)
+
+
+# ---- who wants to know of changes
+
+_listeners: list[Callable[[PathView], None]] = []
+
+
+def listen(listener: Callable[[PathView], None]) -> None:
+    """Call this whenever a path is drawn, changed, shown or hidden."""
+    _listeners.append(listener)
+
+
+def tell(view: PathView) -> None:
+    """A path was drawn, changed, shown or hidden."""
+    for listener in _listeners:
+        listener(view)

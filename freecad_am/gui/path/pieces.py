@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Coin nodes of a path of which any stretch can be shown at once.
+
+A path is cut into pieces of a few thousand points. Pieces are made when they are first seen and switched on and off; of the
+one in which a stretch ends only the number of what is drawn changes. What lies before the first piece of a stretch is made
+anew when the stretch begins elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pivy import coin
+
+from ..lines import Array, fill, unshaded
+from .rows import Index, Rows
+
+_SHININESS = 0.2
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The node of a stretch of rows. cut: draws those before a row, and says from which row on the rest of them is to be
+    drawn apart, which is that row where all are drawn."""
+
+    node: Any
+    cut: Callable[[int], int]
+
+
+Make = Callable[[int, int], Piece]
+
+
+class Look:
+    """One way to draw a path; `style` are the nodes before its pieces."""
+
+    def __init__(self, *style: Any) -> None:
+        self.node, self.pieces, self.ends = coin.SoSwitch(), coin.SoSeparator(), coin.SoSeparator()
+        group = coin.SoSeparator()
+        for child in (*style, self.pieces, self.ends):
+            group.addChild(child)
+        self.node.addChild(group)
+        self.node.whichChild = coin.SO_SWITCH_NONE
+        self.make: Make | None = None
+        self.joined: Callable[[int], int] = lambda row: row
+        self.forget(np.zeros(1, dtype=np.intp))
+
+    def forget(self, cuts: Index) -> None:
+        """Pieces between these rows, none of which is made."""
+        self.cuts = cuts
+        self.made: dict[int, Piece] = {}
+        self.drawn: dict[int, tuple[int, int]] = {}  # of pieces switched on: up to which row, and the rest from which
+        self.before: tuple[tuple[int, int] | None, Any] = (None, None)  # the stretch before the first piece, and its node
+        self.pieces.removeAllChildren()
+        self.ends.removeAllChildren()
+
+    def reset(self, cuts: Index, make: Make, joined: Callable[[int], int]) -> None:
+        """Another path: its pieces, and what makes the node of rows; `joined` is the row after those a piece draws."""
+        self.forget(cuts)
+        self.make, self.joined = make, joined
+        for _ in range(len(cuts) - 1):
+            switch = coin.SoSwitch()
+            switch.whichChild = coin.SO_SWITCH_NONE
+            self.pieces.addChild(switch)
+
+    def hide(self) -> None:
+        """Draw nothing."""
+        self.node.whichChild = coin.SO_SWITCH_NONE
+
+    def show(self, first: int, end: int) -> None:
+        """Draw the rows from `first` to before `end`."""
+        self.node.whichChild = coin.SO_SWITCH_ALL
+        chosen = np.flatnonzero((self.cuts[:-1] >= first) & (self.cuts[:-1] < end))
+        wanted = {int(index): min(self.joined(int(self.cuts[index + 1])), end) for index in chosen}
+        for index in self.drawn.keys() - wanted.keys():
+            self.pieces.getChild(index).whichChild = coin.SO_SWITCH_NONE
+        self.drawn = {index: self._drawn(index, row) for index, row in wanted.items()}
+        self.ends.removeAllChildren()
+        until = self.joined(int(self.cuts[chosen[0]])) if len(chosen) else end
+        if self.before[0] != (first, until):
+            self.before = (first, until), self._stretch(first, until)
+        rest = self.drawn[int(chosen[-1])][1] if len(chosen) else end
+        for node in (self.before[1], self._stretch(rest, end)):
+            if node is not None:
+                self.ends.addChild(node)
+
+    def _drawn(self, index: int, row: int) -> tuple[int, int]:
+        """Switch a piece on, drawn up to a row; the row, and from which row on the rest is to be drawn apart."""
+        if self.drawn.get(index, (None,))[0] == row:
+            return self.drawn[index]
+        switch = self.pieces.getChild(index)
+        if index not in self.made:
+            assert self.make is not None
+            self.made[index] = self.make(int(self.cuts[index]), self.joined(int(self.cuts[index + 1])))
+            switch.addChild(self.made[index].node)
+        switch.whichChild = coin.SO_SWITCH_ALL
+        return row, self.made[index].cut(row)
+
+    def _stretch(self, first: int, end: int) -> Any:
+        assert self.make is not None
+        return self.make(first, end).node if end - first > 1 else None
+
+
+class PathNodes:
+    """A path as lines or as tubes, and its build directions."""
+
+    def __init__(self) -> None:
+        self.style, directions_style, directions_colour = coin.SoDrawStyle(), coin.SoDrawStyle(), coin.SoMaterial()
+        directions_style.lineWidth = 1.0
+        directions_colour.diffuseColor.setValue(0.86, 0.2, 0.55)
+        material, hints = coin.SoMaterial(), coin.SoShapeHints()
+        material.specularColor.setValue(0.2, 0.2, 0.2)
+        material.shininess = _SHININESS
+        hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.SOLID
+        self.lines = Look(unshaded(), self.style)
+        self.tubes = Look(material, hints)
+        self.directions = Look(unshaded(), directions_style, directions_colour)
+        self.node = coin.SoSeparator()
+        for look in (self.lines, self.tubes, self.directions):
+            self.node.addChild(look.node)
+        self.rows = Rows.of((), (), 1.0, lambda: 1.0)
+        self.colours = np.zeros(0, dtype=np.uint32)
+        self.first = self.end = 0
+        self.as_tubes = self.painted = False
+        self.drawn_directions: tuple[int, float] | None = None
+
+    def set(self, rows: Rows) -> None:
+        """Another path, all of it shown once it is painted."""
+        self.rows, self.first, self.end, self.painted = rows, 0, len(rows), False
+        self.points = rows.points.astype(np.float32)
+        if self.drawn_directions is not None:
+            self.draw_directions(*self.drawn_directions)
+
+    def paint(self, colours: Array) -> None:
+        """colours (n, 3) 0..1 of the points."""
+        whole = np.rint(255.0 * colours).astype(np.uint32)
+        self.colours = whole[:, 0] << 24 | whole[:, 1] << 16 | whole[:, 2] << 8 | 255
+        self.lines.reset(self.rows.cuts, self._lines, self._joined)
+        self.tubes.reset(self.rows.cuts, self._tubes, self._joined)
+        self.painted = True
+        self.show(self.first, self.end)
+
+    def show(self, first: int, end: int) -> None:
+        """Show the rows from `first` to before `end`."""
+        self.first, self.end = first, end
+        if not self.painted:
+            return
+        shown, other = (self.tubes, self.lines) if self.as_tubes else (self.lines, self.tubes)
+        other.hide()
+        shown.show(first, end)
+        if self.drawn_directions is not None:
+            self.directions.show(first, end)
+
+    def look(self, as_tubes: bool) -> None:
+        """Draw tubes, or lines."""
+        if as_tubes != self.as_tubes:
+            self.as_tubes = as_tubes
+            self.show(self.first, self.end)
+            if self.drawn_directions is not None:
+                self.draw_directions(*self.drawn_directions)
+
+    def draw_directions(self, step: int, length: float) -> None:
+        """Show the build direction of every `step`-th point by a line of this length, mm."""
+        self.drawn_directions = (step, length)
+        foot = self.rows.points + (self.rows.height[:, None] if self.as_tubes else 0.0) * self.rows.build  # on top of a tube
+        tips, feet = (foot + length * self.rows.build).astype(np.float32), foot.astype(np.float32)
+
+        def make(first: int, end: int) -> Piece:
+            chosen = np.arange(-(-first // step) * step, end, step)
+            ends = np.stack([feet[chosen], tips[chosen]], axis=1).reshape(-1, 3)
+            return _line_set(ends, lambda row: np.full(int((chosen < row).sum()), 2), end)
+
+        self.directions.reset(self.rows.cuts, make, lambda row: row)
+        self.show(self.first, self.end)
+
+    def hide_directions(self) -> None:
+        """Show no build directions."""
+        self.drawn_directions = None
+        self.directions.hide()
+
+    def _joined(self, row: int) -> int:
+        """A piece that ends within a bead goes on to the first point of the next."""
+        within = 0 < row < len(self.rows) and row not in self.rows.starts[[self.rows.bead_of(row)]]
+        return row + 1 if within else row
+
+    def _lines(self, first: int, end: int) -> Piece:
+        return _line_set(self.points[first:end], lambda row: self.rows.counts(first, row), end, self.colours[first:end])
+
+    def _tubes(self, first: int, end: int) -> Piece:
+        mesh, rows = self.rows.tube(first, end)
+        # the triangles by the section they end at, so that a part of the tubes is the first of them
+        section = mesh.triangles.max(axis=1) // self.rows.sides
+        corners = np.full((len(section), 4), -1, dtype=np.int32)
+        corners[:, :3] = mesh.triangles[np.argsort(section, kind="stable")]
+        count = np.concatenate([[0], np.cumsum(np.bincount(section, minlength=len(rows)))])
+        values, shape = coin.SoVertexProperty(), coin.SoIndexedFaceSet()
+        fill(values.vertex, mesh.points)
+        fill(values.normal, mesh.normals)
+        fill(values.orderedRGBA, np.repeat(self.colours[rows], self.rows.sides))
+        values.normalBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
+        values.materialBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
+        shape.vertexProperty = values
+
+        def cut(row: int) -> int:
+            sections = int(np.searchsorted(rows, row))
+            fill(shape.coordIndex, corners[: count[sections]].ravel())
+            if row >= end:
+                return row
+            # what is left to the row, or the last segment, has the face at the end
+            start = int(self.rows.starts[self.rows.bead_of(row - 1)])
+            return max(start, first, min(int(rows[max(sections - 1, 0)]), row - 2))
+
+        cut(end)
+        return Piece(_apart(shape), cut)
+
+
+def _line_set(points: Any, counts: Callable[[int], Any], end: int, colours: Any = None) -> Piece:
+    """Polylines of these points; `counts` of each that are before a row."""
+    values, shape = coin.SoVertexProperty(), coin.SoLineSet()
+    fill(values.vertex, points)
+    if colours is not None:
+        fill(values.orderedRGBA, colours)
+        values.materialBinding = coin.SoVertexProperty.PER_VERTEX
+    shape.vertexProperty = values
+
+    def cut(row: int) -> int:
+        fill(shape.numVertices, counts(row))
+        return row
+
+    cut(end)
+    return Piece(_apart(shape), cut)
+
+
+def _apart(shape: Any) -> Any:
+    """In a node of its own, which Coin may cache and leave out where it is not in sight."""
+    node = coin.SoSeparator()
+    node.addChild(shape)
+    return node

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A picture in the window: drawn beside it, zoomed and moved by mouse and wheel, read by pointing."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from PySide import QtCore, QtGui
+
+from ...plots.chart import Chart, Picture
+from ...plots.look import DARK, LIGHT, Look
+from ..texts import tr
+from ..worker import Worker
+from .reading import Range, moved, told, zoomed
+
+if TYPE_CHECKING:
+    from ...plots.draw import Place
+
+LOOK_EVERY = 20  # ms
+STEP = 1.25  # of the wheel and of buttons
+LEAST = 4  # pixels of a drag that is one
+PER_CHART = 92  # pixels
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A picture as it was drawn, and where its frames are."""
+
+    image: Any
+    charts: tuple[Chart, ...]
+    places: tuple[Place, ...]
+    shared: bool
+
+
+class Canvas(QtGui.QWidget):
+    """`say` is told what the pointer is at; what is shown of x and y is in `across` and `up`, by the number of a chart.
+
+    A picture is drawn by a thread of its own; one that is asked for meanwhile is drawn after it. It is let end, not
+    cancelled: to stop matplotlib amid its caches is no good.
+    """
+
+    def __init__(self, interactive: bool = True) -> None:
+        super().__init__()
+        self.picture: Picture | None = None
+        self.text = ""
+        self.across: dict[int, Range] = {}
+        self.up: dict[int, Range] = {}
+        self.drawn: Drawn | None = None
+        self.interactive = interactive
+        self.by_rectangle = False
+        self.say: Callable[[str], None] = lambda text: None
+        self._worker: Worker | None = None
+        self._again = False
+        self._drag: tuple[int, Any, Any] | None = None  # chart, where it began, where it is
+        self._pointer: Any = None
+        self.setMouseTracking(interactive)
+        self.timer = QtCore.QTimer(self)
+        self.timer.setInterval(LOOK_EVERY)
+        self.timer.timeout.connect(self._look)
+
+    def show_picture(self, picture: Picture | None, text: str = "", keep: bool = False) -> None:
+        """Show another picture, or a text where there is none. keep: the part of it that is looked at."""
+        self.picture, self.text = picture if picture is not None and picture.charts else None, text
+        if not keep:
+            self.across, self.up = {}, {}
+        if self.picture is None:
+            self.drawn = None
+        elif self.interactive:
+            self.setMinimumHeight(PER_CHART * len(self.picture.charts))
+        self.update()
+        self.draw()
+
+    @property
+    def ready(self) -> bool:
+        """Whether what is seen is what was asked for."""
+        return self._worker is None and (self.picture is None or self.drawn is not None)
+
+    # ---- what is looked at
+
+    def whole(self) -> None:
+        """Show all there is."""
+        self.across, self.up = {}, {}
+        self._changed()
+
+    def zoom(self, factor: float, chart: int = 0, share: float = 0.5, up: bool = False) -> None:
+        """Show 1 / factor of what is shown, about a place at `share` of the frame; of y with `up`, else of x."""
+        if self.drawn is None:
+            return
+        place, number = self.drawn.places[chart], self._across_of(chart)
+        if up:
+            self.up[chart] = zoomed(self.up.get(chart, place.up), factor, share, None)
+        else:
+            self.across[number] = zoomed(self.across.get(number, place.across), factor, share, self._most(chart))
+        self._changed()
+
+    def _across_of(self, chart: int) -> int:
+        return 0 if self.drawn is not None and self.drawn.shared else chart
+
+    def _most(self, chart: int) -> Range:
+        """All there is across."""
+        assert self.drawn is not None
+        charts = self.drawn.charts if self.drawn.shared else (self.drawn.charts[chart],)
+        ends = [one.across() for one in charts]
+        return min(low for low, _ in ends), max(high for _, high in ends)
+
+    def _changed(self) -> None:
+        self.update()
+        self.draw()
+
+    # ---- drawing
+
+    def draw(self) -> None:
+        """Draw what is to be shown, as soon as what is drawn now is done."""
+        if self.picture is None or self.width() < LEAST or self.height() < LEAST:
+            return
+        if self._worker is not None:
+            self._again = True
+            return
+        ratio, look, size = float(self.devicePixelRatioF()), look_of(self.palette()), (self.width(), self.height())
+        charts, across, up = self.picture.charts, dict(self.across), dict(self.up)
+        self._worker = Worker(lambda: _drawn(charts, look, size, ratio, across, up))
+        self._again = False
+        self.timer.start()
+
+    def _look(self) -> None:
+        worker = self._worker
+        if worker is None or not worker.ended.is_set():
+            return
+        self._worker = None
+        self.timer.stop()
+        try:
+            self._take(worker.result())
+        except ImportError:
+            self.show_picture(None, tr("Plots need matplotlib, which is not installed."))
+            return
+        with contextlib.suppress(RuntimeError):  # the widget is gone
+            self.update()
+            if self._again:
+                self.draw()
+
+    def _take(self, drawn: tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]) -> None:
+        pixels, width, height, ratio, charts, places, shared = drawn
+        if self.picture is not None:
+            image = QtGui.QImage(pixels, width, height, 4 * width, QtGui.QImage.Format_RGBA8888).copy()
+            image.setDevicePixelRatio(ratio)
+            self.drawn = Drawn(image, charts, places, shared)
+
+    def resizeEvent(self, event: Any) -> None:
+        """Called by Qt."""
+        self.draw()
+
+    def changeEvent(self, event: Any) -> None:
+        """Called by Qt, among others when the colours of the window change."""
+        super().changeEvent(event)
+        if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange):
+            self.draw()
+
+    def paintEvent(self, event: Any) -> None:
+        """Called by Qt."""
+        painter = QtGui.QPainter(self)
+        painter.fillRect(self.rect(), QtGui.QColor(look_of(self.palette()).paper))
+        if self.drawn is None:
+            painter.setPen(self.palette().color(QtGui.QPalette.Text))
+            text = self.text if self.picture is None else tr("Drawing…")
+            painter.drawText(self.rect().adjusted(20, 10, -20, -10), QtCore.Qt.AlignCenter | QtCore.Qt.TextWordWrap, text)
+        else:
+            painter.drawImage(QtCore.QPointF(0.0, 0.0), self.drawn.image)
+            self._overlay(painter)
+        painter.end()
+
+    def _overlay(self, painter: Any) -> None:
+        """Where the pointer is, and the rectangle that is drawn up."""
+        assert self.drawn is not None
+        pen = QtGui.QPen(self.palette().color(QtGui.QPalette.Text))
+        pen.setStyle(QtCore.Qt.DashLine)
+        painter.setPen(pen)
+        if self._drag is not None and self.by_rectangle:
+            painter.drawRect(QtCore.QRect(self._drag[1], self._drag[2]).normalized())
+        elif self._pointer is not None:
+            number, x = self._at(self._pointer), float(self._pointer.x())
+            for other, place in enumerate(self.drawn.places):
+                if (other == number or self.drawn.shared) and place.left <= x <= place.left + place.width:
+                    painter.drawLine(QtCore.QPointF(x, place.top), QtCore.QPointF(x, place.top + place.height))
+
+    # ---- called by Qt for the mouse
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Begin to move or to draw up a rectangle."""
+        if self.interactive and self.drawn is not None and event.button() == QtCore.Qt.LeftButton:
+            self._drag = (self._at(event.pos()), event.pos(), event.pos())
+
+    def mouseMoveEvent(self, event: Any) -> None:
+        """Move, or tell what the pointer is at."""
+        self._pointer = event.pos()
+        if self.drawn is None or not self.interactive:
+            return
+        if self._drag is not None:
+            number, start, last = self._drag
+            if not self.by_rectangle:
+                self._move(number, event.pos().x() - last.x(), event.pos().y() - last.y())
+            self._drag = (number, start, event.pos())
+        self._read()
+        self.update()
+
+    def mouseReleaseEvent(self, event: Any) -> None:
+        """Show what the rectangle holds."""
+        if self._drag is None or self.drawn is None:
+            return
+        number, start, _ = self._drag
+        self._drag = None
+        if self.by_rectangle and min(abs(event.pos().x() - start.x()), abs(event.pos().y() - start.y())) >= LEAST:
+            place, box = self.drawn.places[number], QtCore.QRectF(QtCore.QRect(start, event.pos()).normalized())
+            self.across[self._across_of(number)] = (self._x(place, box.left()), self._x(place, box.right()))
+            self.up[number] = (self._y(place, box.bottom()), self._y(place, box.top()))
+        self._changed()
+
+    def mouseDoubleClickEvent(self, event: Any) -> None:
+        """Show all there is."""
+        if self.interactive:
+            self.whole()
+
+    def leaveEvent(self, event: Any) -> None:
+        """The pointer is elsewhere."""
+        self._pointer = None
+        self.say("")
+        self.update()
+
+    def wheelEvent(self, event: Any) -> None:
+        """Zoom about the pointer: across, or up and down with Ctrl."""
+        if not self.interactive or self.drawn is None:
+            super().wheelEvent(event)
+            return
+        where, turns = event.position(), event.angleDelta().y() / 120.0
+        number = self._at(where)
+        place = self.drawn.places[number]
+        up = bool(event.modifiers() & QtCore.Qt.ControlModifier)
+        share = (place.top + place.height - where.y()) / place.height if up else (where.x() - place.left) / place.width
+        self.zoom(STEP ** turns, number, min(max(share, 0.0), 1.0), up)
+        event.accept()
+
+    def _move(self, number: int, right: float, down: float) -> None:
+        assert self.drawn is not None
+        place, across = self.drawn.places[number], self._across_of(number)
+        if across in self.across:
+            low, high = self.across[across]
+            self.across[across] = moved((low, high), -right / place.width * (high - low), self._most(number))
+        if number in self.up:
+            low, high = self.up[number]
+            self.up[number] = moved((low, high), down / place.height * (high - low), None)
+        self.draw()
+
+    def _at(self, where: Any) -> int:
+        """The chart a place of the widget belongs to."""
+        assert self.drawn is not None
+        ends = [place.top + place.height for place in self.drawn.places]
+        return next((number for number, end in enumerate(ends) if where.y() <= end), len(ends) - 1)
+
+    def _x(self, place: Place, left: float) -> float:
+        return place.across[0] + (left - place.left) / place.width * (place.across[1] - place.across[0])
+
+    def _y(self, place: Place, top: float) -> float:
+        return place.up[1] - (top - place.top) / place.height * (place.up[1] - place.up[0])
+
+    def _read(self) -> None:
+        if self.drawn is None or self._pointer is None:
+            return
+        number = self._at(self._pointer)
+        place = self.drawn.places[number]
+        inside = place.left <= self._pointer.x() <= place.left + place.width
+        self.say(told(self.drawn.charts[number], self._x(place, self._pointer.x())) if inside else "")
+
+
+def look_of(palette: Any) -> Look:
+    """The look on the ground that fields of the window have."""
+    ground = palette.color(QtGui.QPalette.Base)
+    return dataclasses.replace(LIGHT if ground.lightness() > 128 else DARK, paper=ground.name())
+
+
+def _drawn(
+    charts: tuple[Chart, ...], look: Look, size: tuple[int, int], ratio: float, across: Mapping[int, Range],
+    up: Mapping[int, Range],
+) -> tuple[bytes, int, int, float, tuple[Chart, ...], tuple[Place, ...], bool]:
+    """Drawn by matplotlib, whose import takes some time: beside the window."""
+    from ...plots import draw, files
+
+    figure, places = draw.figure(charts, look, *size, draw.Window(across, up))
+    return (*files.pixels(figure, ratio), ratio, charts, places, draw.share(charts))

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The dock of plots: a picture of a toolpath, joint path or program, of some of its layers, over time or path."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ...core.issues import AmError
+from ...objects.staleness import STALE
+from ...plots import catalogue
+from ...plots.chart import Picture
+from ...plots.rows import OVER, PATH, TIME
+from ...plots.source import Source
+from ..follower import Follower
+from ..later import Background, Later
+from ..texts import tr
+from ..worker import Worker
+from . import saving, words
+from .canvas import STEP, Canvas
+from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
+
+NAME = "RoboticAM_Plots"
+HEIGHT = 250
+LABEL = 9  # letters of a label that are to be seen, at least
+CHANGES = ("Key", "Status", "Label", "StartAtLayer", "StartAtBead")
+KINDS = (TOOLPATH, JOINT_PATH, PROGRAM, "cell")
+
+
+class PlotsDock(Follower):
+    """One for all documents; it follows what was selected last, and changes of it."""
+
+    def __init__(self) -> None:
+        self.target: tuple[str, str] | None = None  # names of document and object
+        self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
+        self.picture: Picture | None = None
+        self.shown: tuple[Any, ...] = ()  # target, picture and axis that are looked at
+        self.dock = QtGui.QDockWidget(tr("Plots"), Gui.getMainWindow())
+        self.dock.setObjectName(NAME)
+        form = QtGui.QWidget()
+        self.dock.setWidget(form)
+        self.choice = self._combo("plotted", tr("The toolpath, joint path or program to look at"), LABEL)
+        self.which = self._combo("picture", tr("What is drawn"))
+        self.over = self._combo("over", tr("Along the time of the job, or along its path"))
+        self.first, self.last = self._layer("from", tr("The first layer")), self._layer("to", tr("The last layer"))
+        self.canvas = Canvas()
+        self.canvas.setObjectName("canvas")
+        self.note, self.reading = QtGui.QLabel(), QtGui.QLabel()
+        self.note.setObjectName("note")
+        self.reading.setObjectName("reading")
+        self._fill(form)
+        for name, entry in catalogue.PICTURES.items():
+            self.which.addItem(words.translated(entry.title), name)
+        for over in OVER:
+            self.over.addItem({TIME: tr("time"), PATH: tr("path")}[over], over)
+        self.building = Background(self.dock)
+        self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
+        self.canvas.say = self._said
+        for combo in (self.which, self.over):
+            combo.currentIndexChanged.connect(lambda *_: self.fill())
+        self.choice.activated.connect(self._chosen)
+        for spin in (self.first, self.last):
+            spin.valueChanged.connect(self.soon.ask)
+        App.addDocumentObserver(self)
+        Gui.Selection.addObserver(self)
+        Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
+
+    def _combo(self, name: str, help: str, least: int = 0) -> Any:
+        combo = QtGui.QComboBox()
+        combo.setObjectName(name)
+        combo.setToolTip(help)
+        combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
+        combo.setMinimumContentsLength(least)
+        return combo
+
+    def _layer(self, name: str, help: str) -> Any:
+        spin = QtGui.QSpinBox()
+        spin.setObjectName(name)
+        spin.setToolTip(help)
+        spin.setRange(0, 0)
+        return spin
+
+    def _fill(self, form: Any) -> None:
+        column, line = QtGui.QVBoxLayout(form), QtGui.QHBoxLayout()
+        column.setContentsMargins(9, 4, 9, 4)
+        column.setSpacing(3)
+        for text, widget in (("", self.choice), ("", self.which), (tr("over"), self.over), (tr("layers"), self.first),
+                             (tr("to"), self.last)):
+            if text:
+                line.addWidget(QtGui.QLabel(text))
+            line.addWidget(widget)
+        line.addStretch(1)
+        self.buttons = {}
+        for name, text, help, act in (
+            ("rectangle", "▭", tr("Zoom into a rectangle that the mouse draws; else it moves the picture"),
+             self._rectangle),
+            ("in", "+", tr("Zoom in; so does the wheel, with Ctrl up and down"), lambda *_: self.canvas.zoom(STEP ** 2)),
+            ("out", "−", tr("Zoom out"), lambda *_: self.canvas.zoom(STEP ** -2)),
+            ("whole", tr("Whole"), tr("Show all there is; so does a double click"), lambda *_: self.canvas.whole()),
+            ("save", tr("Save…"), tr("Save as an image (PNG, SVG, PDF), or the values (CSV)"), self._save),
+        ):
+            button = QtGui.QToolButton()
+            button.setObjectName(name)
+            button.setText(text)
+            button.setToolTip(help)
+            button.clicked.connect(act)
+            line.addWidget(button)
+            self.buttons[name] = button
+        self.buttons["rectangle"].setCheckable(True)
+        scroll = QtGui.QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QtGui.QFrame.NoFrame)
+        scroll.setWidget(self.canvas)
+        scroll.setMinimumHeight(HEIGHT)
+        below = QtGui.QHBoxLayout()
+        below.addWidget(self.reading, 1)
+        below.addWidget(self.note)
+        column.addLayout(line)
+        column.addWidget(scroll, 1)
+        column.addLayout(below)
+
+    # ---- what is looked at
+
+    def open(self, obj: Any = None) -> None:
+        """Show the dock, and in it the pictures of an object."""
+        if obj is not None:
+            self.target = (obj.Document.Name, obj.Name)
+        self.dock.show()
+        self.dock.raise_()
+        self.fill()
+
+    def object(self) -> Any:
+        """What is looked at: what was asked for, else the latest in the document; None when there is nothing (any more)."""
+        if self.target is not None and self.target[0] in App.listDocuments():
+            found = App.getDocument(self.target[0]).getObject(self.target[1])
+            if plottable(found):
+                return found
+        some = _plottable()
+        found = max(some, key=lambda obj: kind_of(obj) == JOINT_PATH) if some else None
+        self.target = None if found is None else (found.Document.Name, found.Name)
+        return found
+
+    def _chosen(self, index: int) -> None:
+        some = _plottable()
+        if 0 <= index < len(some):
+            self.target = (some[index].Document.Name, some[index].Name)
+        self.fill()
+
+    def fill(self) -> None:
+        """Make the picture that is chosen; nothing while the dock is closed."""
+        if not self.dock.isVisible():
+            return
+        self.building.cancel()
+        obj = self.object()
+        some = _plottable()
+        labels = [one.Label for one in some]
+        if [self.choice.itemText(index) for index in range(self.choice.count())] != labels:
+            self.choice.clear()
+            self.choice.addItems(labels)
+        self.choice.setCurrentIndex(some.index(obj) if obj in some else -1)
+        entry = catalogue.PICTURES[self.which.currentData()]
+        self.over.setEnabled(entry.along is not None)
+        self.note.setText("")
+        if obj is None:
+            self._show(None, tr("There is nothing to plot yet: make a toolpath or a joint path."))
+            return
+        if made_from(obj)[0].Status == STALE:
+            self.note.setText(tr("Made from an earlier state; recompute the document."))
+        self._layers(obj)
+        try:
+            key, make = key_of(obj), maker_of(obj)
+        except AmError as error:
+            self._show(None, str(error))
+            return
+        known = self.source[1] if self.source is not None and self.source[0] == key else None
+        name, over = self.which.currentData(), self.over.currentData()
+        layers = min(self.first.value(), self.last.value()), max(self.first.value(), self.last.value())
+        self.note.setText(self.note.text() or tr("Computing…"))
+        if self.canvas.picture is None:
+            self.canvas.show_picture(None, tr("Computing…"))
+
+        def work() -> tuple[Source, Picture]:
+            source = known or make()
+            return source, catalogue.picture(name, source, over, layers)
+
+        shown = (obj.Document.Name, obj.Name, name, over, layers)  # told now: the object may be gone then
+        self.building.start(work, lambda worker: self._built(worker, key, shown))
+
+    def _layers(self, obj: Any) -> None:
+        """The layers there are to choose from; all of them of another object."""
+        toolpath = made_from(obj)[min(1, len(made_from(obj)) - 1)]
+        most = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
+        anew = self.shown[:2] != self.target or self.last.value() == self.last.maximum()
+        for spin, value in ((self.first, 0 if self.shown[:2] != self.target else self.first.value()),
+                            (self.last, most if anew else self.last.value())):
+            blocked = spin.blockSignals(True)
+            spin.setRange(0, most)
+            spin.setValue(value)
+            spin.blockSignals(blocked)
+
+    def _built(self, worker: Worker, key: Any, shown: tuple[Any, ...]) -> None:
+        if self.note.text() == tr("Computing…"):
+            self.note.setText("")
+        try:
+            source, picture = worker.result()
+            picture = words.in_words(picture)
+        except AmError as error:
+            self._show(None, str(error))
+            return
+        self.source = (key, source)
+        self._show(picture, picture.lacking, self.shown == shown)
+        self.shown = shown
+
+    def _show(self, picture: Picture | None, text: str = "", keep: bool = False) -> None:
+        self.picture = picture if picture is not None and picture.charts else None
+        for name in ("in", "out", "whole", "rectangle", "save"):
+            self.buttons[name].setEnabled(self.picture is not None)
+        self._said("")
+        self.canvas.show_picture(self.picture, text[:1].upper() + text[1:], keep)
+
+    # ---- what the user does
+
+    def _rectangle(self, *_: Any) -> None:
+        self.canvas.by_rectangle = self.buttons["rectangle"].isChecked()
+
+    def _said(self, text: str) -> None:
+        self.reading.setText(text)
+
+    def _save(self, *_: Any) -> None:
+        obj = self.object()
+        if obj is not None and self.picture is not None:
+            saving.save(self.picture, obj, self.canvas)
+
+    # ---- called by FreeCAD
+
+    def addSelection(self, document: str, name: str, *_: Any) -> None:
+        """Something was selected."""
+        found = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
+        if found is not None and plottable(found) and self.target != (document, name):
+            self.target = (document, name)
+            QtCore.QTimer.singleShot(0, self.fill)
+
+    def slotChangedObject(self, obj: Any, name: str) -> None:
+        """A property of an object has changed."""
+        if name in CHANGES and self.dock.isVisible() and kind_of(obj) in KINDS:
+            self.changed.ask()
+
+
+def _plottable() -> list[Any]:
+    document = App.ActiveDocument
+    return [] if document is None else [obj for obj in document.Objects if plottable(obj)]
+
+
+_dock: PlotsDock | None = None
+
+
+def show(obj: Any = None) -> None:
+    """Open the dock, of an object, of one that is selected, or of the latest."""
+    global _dock
+    if _dock is None:
+        _dock = PlotsDock()
+    chosen = [one for one in Gui.Selection.getSelection() if plottable(one)]
+    _dock.open(obj or (chosen[0] if chosen else None))

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pictures saved as images and as comma separated values."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from ...plots.chart import Picture
+from ...plots.draw import Range, Window, figure
+from ...plots.files import KINDS, image, values
+from ...plots.look import LIGHT
+
+Ranges = Mapping[int, Range]
+CSV = "csv"
+ENDINGS = (*KINDS, CSV)
+
+
+def write(picture: Picture, path: str, size: tuple[int, int], across: Ranges, up: Ranges) -> None:
+    """Write the file that the ending of its path asks for, one of ENDINGS: an image on white of the part that is looked at
+    (`draw.Window`), or all values of the picture. It appears whole or not at all. OSError where it cannot be written."""
+    ending = path.rpartition(".")[2].lower()
+    if ending == CSV:
+        content = "".join(values(picture)).encode()
+    else:
+        content = image(figure(picture.charts, LIGHT, *size, Window(across, up))[0], ending)
+    unfinished = f"{path}.unfinished"
+    try:
+        with open(unfinished, "wb") as stream:
+            stream.write(content)
+        os.replace(unfinished, path)
+    finally:
+        if os.path.exists(unfinished):
+            os.remove(unfinished)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the objects of a document give to pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+from ...core.kinematics import cell as cells
+from ...core.motion import Motion
+from ...core.parameters.process import ProcessParameters
+from ...core.parameters.program import ProgramParameters
+from ...core.planning import program as programs
+from ...core.simulation import deposit
+from ...core.simulation.margins import on_deposit
+from ...objects import user_machines
+from ...objects.stage import stage_of
+from ...plots.source import Source
+from ..view_toolpath import band_of
+
+TOOLPATH, JOINT_PATH, PROGRAM = "toolpath", "joint path", "program"
+
+
+def plottable(obj: Any) -> bool:
+    """Whether an object is a toolpath, joint path or program that has been computed."""
+    return kind_of(obj) in (TOOLPATH, JOINT_PATH, PROGRAM) and all(
+        one is not None and bool(one.Key) for one in made_from(obj)
+    )
+
+
+def kind_of(obj: Any) -> str:
+    """The kind of stage an object is, '' if it is none."""
+    stage = stage_of(obj) if obj is not None else None
+    return "" if stage is None else str(stage.kind)
+
+
+def made_from(obj: Any) -> list[Any]:
+    """The objects that pictures of a toolpath, joint path or program come from, None where one is missing."""
+    if kind_of(obj) == PROGRAM:
+        return [obj.JointPath] if kind_of(obj.JointPath) != JOINT_PATH else made_from(obj.JointPath)
+    if kind_of(obj) == JOINT_PATH:
+        return [obj, obj.Toolpath, obj.Cell]
+    return [obj]
+
+
+def key_of(obj: Any) -> tuple[Any, ...]:
+    """What changes whenever the pictures of an object do."""
+    start = obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+    return (obj.Document.Name, obj.Name, start, *(one.Key for one in made_from(obj)))
+
+
+def maker_of(obj: Any) -> Callable[[], Source]:
+    """What makes the source of an object's pictures; it touches no document and may take a moment."""
+    path, toolpath_object = made_from(obj)[0], made_from(obj)[min(1, len(made_from(obj)) - 1)]
+    toolpath = toolpath_object.Proxy.value(toolpath_object)
+    process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
+    band = band_of(toolpath_object) if hasattr(toolpath_object.Feature, "Band") else None
+    if kind_of(path) == TOOLPATH:
+        return lambda: Source(toolpath, deposit.alone(toolpath), process, band=band)
+    planned, settings, folders = path.Proxy.value(path), path.Cell.Proxy.value(path.Cell), user_machines.folders()
+    start = obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
+
+    def make() -> Source:
+        motion, run = planned.motion, planned.joint_path.toolpath(toolpath)
+        cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+        condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
+        if start is not None:
+            rows = programs.rows_from(motion, start)
+            motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
+            condition, threshold = condition[rows], threshold[rows]
+        return Source(run, motion, process, cell, condition, threshold, band)
+
+    return make

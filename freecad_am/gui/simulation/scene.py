@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The pictures of a simulation: everything of the document moves with the part, around it stand machine and nozzle.
+
+The part is drawn where it is in the document when the machine is at rest. One node in front of the view's own moves all
+of the document; those of ours that the simulation draws itself are switched off meanwhile.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+from numpy.typing import NDArray
+from pivy import coin
+
+from ...core.geometry import frames
+from ...core.simulation.placing import at_rest, placing
+from ...core.toolpath import Bead
+from ...objects.stage import stage_of
+from ..lines import Array, Lines
+from ..machine_links import MachineNodes, move
+from ..path.pieces import PathNodes
+from ..path.rows import Rows
+from ..view_cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
+from .run import Run
+
+METAL, SLOW, WRONG = (0.62, 0.66, 0.72), (0.96, 0.55, 0.05), (0.86, 0.1, 0.12)
+TO_COME = (0.5, 0.52, 0.56)
+OURS = ("toolpath", "joint path", "cell")
+
+
+class Scene:
+    """Nodes in one 3D view from when it is made until `remove`."""
+
+    def __init__(self, run: Run, view: Any) -> None:
+        self.run, self.view = run, view
+        cell, mount = run.cell, run.cell.mount
+        rest = placing(cell, at_rest(cell, resting_point(run.toolpath, mount)))
+        self.to_view = frames.inverse(rest.part)
+        self.machine = MachineNodes(cell.machine, run.looks.platform_diameter, run.looks.nozzle.length)
+        self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
+        self.deposit, self.to_come = PathNodes(), Lines(1.0, TO_COME)
+        self.deposit.as_tubes = True
+        self.last = Lines(3.0, METAL)
+        self.root = coin.SoSeparator()
+        nozzle, part = coin.SoSeparator(), coin.SoSeparator()
+        nozzle.addChild(self.nozzle)
+        for node in (nozzle_node(run.looks), holder_node(run.looks)):
+            nozzle.addChild(coloured(NOZZLE, node))
+        part.addChild(self.part)
+        platform = coin.SoSeparator()
+        for child in platform_nodes(run.looks, mount):
+            platform.addChild(child)
+        for child in (self.deposit.node, self.last.node, self.to_come.node, coloured(PLATFORM, platform)):
+            part.addChild(child)
+        for child in (self.machine.node, nozzle, part):
+            self.root.addChild(child)
+        self._fill()
+        self.camera, self.camera_text = view.getCameraNode().copy(), view.getCamera()
+        self.graph = view.getSceneGraph()
+        self.graph.insertChild(self.root, 0)
+        self.graph.insertChild(self.part, 1)
+        self.hidden = _hide_ours(run.document)
+
+    def _fill(self) -> None:
+        """The deposit, one row for each deposit row of the motion: metal, or coloured where the speed is not kept."""
+        motion = self.run.motion
+        deposit = motion.deposit
+        self.rows_before = np.concatenate([[0], np.cumsum(deposit)])
+        beads = _beads(self.run)
+        rows = Rows.of(beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height)
+        colours = np.tile(METAL, (len(rows), 1))
+        slowed, over = self.run.pace.slowed[deposit], self.run.watch.margin[deposit] < 0.0
+        colours[slowed] = SLOW
+        colours[over | ~motion.reachable[deposit]] = WRONG
+        self.deposit.set(rows)
+        self.deposit.paint(colours)
+        self.deposit.show(0, 0)
+        self.to_come.set(motion.position[deposit], np.diff(rows.starts))
+        plain = np.tile(TO_COME, (len(rows), 1))
+        plain[slowed], plain[over] = SLOW, WRONG
+        self.to_come.paint(plain)
+
+    # ---- each frame
+
+    def show(self, row: int, joints: Array, position: Array, running: bool, bad: NDArray[np.bool_]) -> None:
+        """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
+        if np.isfinite(joints).all():
+            place = placing(self.run.cell, joints)
+            self.machine.pose(self.to_view @ place.links)
+            move(self.part, self.to_view @ place.part)
+            move(self.nozzle, self.to_view @ place.nozzle)
+        self.machine.paint(bad)
+        done = int(self.rows_before[row if running else row + 1])
+        if done != self.deposit.end:
+            self.deposit.show(0, done)
+        motion = self.run.motion
+        growing = running and row > 0 and bool(motion.deposit[row] and motion.deposit[row - 1])
+        self.last.show(growing)
+        if growing:
+            self.last.set(np.stack([motion.position[row - 1], position]), [2])
+
+    # ---- the end
+
+    def remove(self, document_goes: bool = False) -> None:
+        """Leave the view as it was. The view may be gone; nothing is to be left as it was in a document that goes."""
+        with contextlib.suppress(RuntimeError, ReferenceError):
+            for node in (self.root, self.part):
+                if self.graph.findChild(node) >= 0:
+                    self.graph.removeChild(node)
+        if document_goes:
+            return
+        _show_again(self.run.document, self.hidden)
+        with contextlib.suppress(RuntimeError, ReferenceError):
+            camera = self.view.getCameraNode()
+            if camera.getTypeId() == self.camera.getTypeId():
+                camera.copyFieldValues(self.camera)
+            else:  # from perspective to orthographic meanwhile, or the other way
+                self.view.setCamera(self.camera_text)
+
+
+def _beads(run: Run) -> list[Bead]:
+    """The beads as they are run, a bead for every stretch of deposit rows; their points are those rows."""
+    motion = run.motion
+    rows = np.flatnonzero(motion.deposit)
+    pieces = np.split(rows, np.flatnonzero(motion.point[rows] == 0)[1:])
+    return [
+        Bead(points=motion.position[piece], build=motion.build[piece], tool=motion.tool[piece],
+             parameter=np.arange(len(piece)), speed=motion.speed[piece], closed=False,
+             width=None if np.isnan(motion.width[piece]).any() else motion.width[piece])
+        for piece in pieces
+    ]
+
+
+def _layers(run: Run) -> Sequence[int]:
+    motion = run.motion
+    starts = motion.deposit & (motion.point == 0)
+    return [int(layer) for layer in motion.layer[starts]]
+
+
+def _hide_ours(document: str) -> dict[str, int]:
+    """Switch off what the simulation draws itself; what each switch was, by object name. Properties stay as they are."""
+    hidden = {}
+    for obj in App.getDocument(document).Objects:
+        stage = stage_of(obj)
+        if stage is not None and stage.kind in OURS and obj.ViewObject.Visibility:
+            switch = obj.ViewObject.SwitchNode
+            hidden[obj.Name] = int(switch.whichChild.getValue())
+            switch.whichChild = coin.SO_SWITCH_NONE
+    return hidden
+
+
+def _show_again(document: str, hidden: dict[str, int]) -> None:
+    if document not in App.listDocuments():
+        return
+    for name, which in hidden.items():
+        obj = App.getDocument(document).getObject(name)
+        if obj is not None and obj.ViewObject.Visibility:
+            obj.ViewObject.SwitchNode.whichChild = which

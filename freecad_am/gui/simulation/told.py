@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a simulation tells, in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...core.simulation import watch
+from ...core.simulation.totals import MM3_PER_CM3
+from ...core.simulation.watch import Finding
+from ...objects import preferences
+from ..texts import tr
+from .player import Moment
+from .run import Run
+
+
+def clock(seconds: float) -> str:
+    """A time as minutes and seconds, with hours where there are any."""
+    whole = max(0.0, seconds)
+    minutes, rest = divmod(whole, 60.0)
+    hours, minutes = divmod(int(minutes), 60)
+    return f"{hours}:{minutes:02d}:{int(rest):02d}" if hours else f"{minutes}:{rest:04.1f}"
+
+
+def finding(found: Finding, unit: str = "deg") -> str:
+    """One finding."""
+    unit = "°" if unit == "deg" else " mm"
+    texts = {
+        watch.UNREACHABLE: tr("Out of reach"),
+        watch.LIMIT: tr("{label} is {value:.2f}{unit} past its limit"),
+        watch.NEAR_LIMIT: tr("{label} comes within {value:.2f}{unit} of its limit"),
+        watch.SINGULAR: tr("Near a singularity: condition {value:.3f}, allowed are {than:.3f}"),
+        watch.SLOWED: tr("{label} cannot keep the speed: {than} becomes {value}"),
+        watch.ISSUE: "{label}",
+    }
+    value = -found.value if found.kind == watch.LIMIT else found.value
+    if found.kind == watch.SLOWED:
+        return texts[found.kind].format(label=found.label, value=_speed(value), than=_speed(found.than))
+    return texts[found.kind].format(label=found.label, value=value, than=found.than, unit=unit)
+
+
+def place(run: Run, moment: Moment) -> str:
+    """Layer, bead and point."""
+    motion, row = run.motion, moment.row
+    return tr("Layer {layer} of {layers}, bead {bead}, point {point}").format(
+        layer=int(motion.layer[row]), layers=int(run.times.layers[-1]), bead=int(motion.bead[row]),
+        point=int(motion.point[row]),
+    )
+
+
+def doing(run: Run, moment: Moment) -> str:
+    """What the machine does."""
+    if not np.isfinite(moment.state.joints).all():
+        return tr("out of reach")
+    if moment.state.standing and run.times.waits[moment.row] > 0.0:
+        return tr("waits, deposit on") if moment.state.deposit else tr("waits")
+    return tr("deposits") if run.motion.deposit[moment.row] else tr("rapid move")
+
+
+def speed(moment: Moment) -> tuple[str, bool]:
+    """Speed asked for and achieved, and whether it is kept."""
+    kept = moment.achieved >= moment.asked * (1.0 - 1e-6)
+    if not math.isfinite(moment.asked):
+        return "–", True
+    if kept:
+        return _speed(moment.asked), True
+    return tr("{achieved} instead of {asked}").format(achieved=_speed(moment.achieved), asked=_speed(moment.asked)), False
+
+
+def _speed(value: float) -> str:
+    """A speed, mm/s, in the unit that the user prefers."""
+    return f"{preferences.speed(value):.3g} {preferences.speed_unit()}"
+
+
+def condition(moment: Moment) -> str:
+    """The condition and the least allowed."""
+    if not math.isfinite(moment.condition):
+        return "–"
+    return tr("{condition:.3f} (at least {threshold:.3f})").format(condition=moment.condition, threshold=moment.threshold)
+
+
+def totals(run: Run) -> list[tuple[str, str]]:
+    """The sums, each as its name and its value."""
+    sums = run.totals
+    rows = [
+        (tr("Time"), clock(sums.time)),
+        (tr("Depositing"), clock(sums.deposit_time)),
+        (tr("Rapid moves"), clock(sums.rapid_time)),
+        (tr("Waits"), clock(sums.wait_time)),
+        (tr("Deposit"), tr("{metres:.3f} m").format(metres=sums.length / 1000.0)),
+        (tr("Volume"), tr("{volume:.2f} cm³").format(volume=sums.volume / MM3_PER_CM3)),
+        (tr("Mass"), tr("{mass:.1f} g").format(mass=sums.mass)),
+    ]
+    if run.pace.lost > 0.05:
+        rows.insert(1, (tr("Longer by"), tr("{time} where speeds are not kept").format(time=clock(run.pace.lost))))
+    return rows

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The tool that opens a simulation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from ...core.issues import AmError
+from ...objects import hooks
+from ...objects.progress import Cancelled
+from ...objects.stage import stage_of
+from ..texts import tr
+from . import dock
+from .run import prepared
+
+KINDS = ("program", "joint path")
+
+
+def simulate() -> None:
+    """Simulate the selected joint path or program, else the last one of the document that has a result."""
+    chosen = [obj for obj in Gui.Selection.getSelection() if _kind(obj) in KINDS]
+    made = [obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key]
+    if chosen or made:
+        show(chosen[0] if chosen else made[-1])
+    else:
+        _say(tr("There is no joint path to simulate; make one first."))
+
+
+def show(obj: Any) -> None:
+    """Simulate a joint path or a program in a 3D view of its document; what is wrong is said on the status bar.
+
+    What there is to tell of a long one is made beside the window, and can be cancelled.
+    """
+    name = obj.Document.Name
+    document = Gui.getDocument(obj.Document.Name)
+    views = document.mdiViewsOfType("Gui::View3DInventor")
+    active = document.activeView()
+    view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
+    if view is None:
+        _say(tr("There is no 3D view to simulate in; open one."))
+        return
+    try:
+        run = hooks.carry_out(prepared(obj), tr("Simulation"))
+    except AmError as error:
+        App.Console.PrintError(error.line() + "\n")
+        _say(str(error))
+        return
+    except Cancelled:
+        return
+    # events were handled meanwhile
+    if name in App.listDocuments() and all(map(App.getDocument(name).getObject, run.objects)):
+        dock.show(run, view)
+
+
+def _kind(obj: Any) -> str:
+    stage = stage_of(obj)
+    return "" if stage is None else stage.kind
+
+
+def _say(text: str) -> None:
+    App.Console.PrintWarning(text + "\n")
+    Gui.getMainWindow().statusBar().showMessage(text, 8000)

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a map shows at a moment: its columns and cells, and curves brought onto them. Knows neither window nor document."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.planning import spin_map
+from ...core.planning.joint_path import BeadPath
+from ...core.planning.spin_curve import Followed
+from ...core.planning.spin_map import RZ, Columns, Picture, SpinMap
+from ..lines import Array
+from ..texts import tr
+from .draft import CONSTANT, Draft
+from .source import Source
+
+TURN = 2.0 * np.pi
+MOST_LABELS = 14
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell under the mouse. place: (layer, bead, point). joints: (axes,) rad, NaN out of reach. nearest: which limit."""
+
+    place: tuple[int, int, int]
+    rz: float
+    phi: float
+    joints: Array
+    margin: float
+    nearest: str
+    condition: float
+    threshold: float
+    touching: bool
+    outside: bool
+
+
+class Board:
+    """The columns of a job, or of one layer of it, and what was computed for them."""
+
+    def __init__(self, source: Source, layer: int | None, axis: str) -> None:
+        self.source, self.layer, self.axis = source, layer, axis
+        self.beads = [k for k, (of, _) in enumerate(source.places) if layer is None or of == layer]
+        found = spin_map.columns([source.beads[k] for k in self.beads], source.cell)
+        self.columns: Columns = dataclasses.replace(found, bead=np.array(self.beads)[found.bead])
+        self.map: SpinMap | None = None
+        self.pictures: dict[int, Picture] = {}
+        self.curves: dict[int, tuple[tuple[BeadPath, ...], Array]] = {}
+
+    # ---- computing, in another thread
+
+    def compute(self, branch: int) -> tuple[SpinMap, Picture]:
+        """The cells of all branches, where they are not known yet, and the picture of one."""
+        task = self.source.task(branch)
+        cells = self.map or spin_map.spin_map(task, self.columns, self.axis, self.source.toolpath.surroundings)
+        return cells, self.pictures.get(branch) or spin_map.picture(task, cells, branch)
+
+    def take(self, made: tuple[SpinMap, Picture]) -> None:
+        """Keep what was computed."""
+        self.map = made[0]
+        self.pictures[made[1].branch] = made[1]
+
+    def shows(self, bead: int) -> bool:
+        """Whether a bead is among the columns: of many, some are."""
+        return bool((self.columns.bead == bead).any())
+
+    @property
+    def title(self) -> str:
+        """What the columns are."""
+        if self.layer is not None:
+            return tr("points of layer {}").format(self.layer)
+        seen = len(np.unique(self.columns.bead))
+        return tr("layers") if seen == len(self.beads) else tr("layers ({} of {} beads)").format(seen, len(self.beads))
+
+    def served(self) -> Array:
+        """(8,) the share of cells that each branch reaches within its limits."""
+        assert self.map is not None
+        return np.asarray((self.map.margin >= 0.0).mean(axis=(1, 2)))
+
+    # ---- places
+
+    @property
+    def seams(self) -> NDArray[np.int64]:
+        """Columns at which beads begin."""
+        return np.flatnonzero(np.diff(self.columns.bead, prepend=-1) != 0)
+
+    @property
+    def labels(self) -> list[tuple[float, str]]:
+        """Columns and what is written below them: numbers of layers, or of the points of a single layer."""
+        count = len(self.columns)
+        if self.layer is None:
+            layer = np.array([self.source.places[k][0] for k in self.columns.bead])
+            first = np.flatnonzero(np.diff(layer, prepend=-1) != 0)
+            return [(float(k), str(layer[k])) for k in first[:: max(1, -(-len(first) // MOST_LABELS))]]
+        chosen = np.unique(np.round(np.linspace(0, count - 1, MOST_LABELS)).astype(int))
+        return [(float(k), str(self.columns.point[k])) for k in chosen]
+
+    def column_of(self, bead: int, parameter: float) -> float:
+        """Where between columns a parameter of a bead lies."""
+        own = np.flatnonzero(self.columns.bead == bead)
+        known = self.columns.points.parameter[own]
+        way = 1.0 if known[-1] >= known[0] else -1.0
+        return float(np.interp(way * parameter, way * known, own))
+
+    def place(self, column: int) -> tuple[int, int, int]:
+        """Layer, bead and point of a column."""
+        layer, index = self.source.places[int(self.columns.bead[column])]
+        return layer, index, int(self.columns.point[column])
+
+    # ---- curves
+
+    def values(self, phi: Array) -> Array:
+        """(C,) where rotations at the columns lie on the axis, counted on along each bead, whose mean is within half a turn
+        of 0."""
+        value = self._counted(phi)
+        return value - self._turns(value)
+
+    def _counted(self, phi: Array) -> Array:
+        points = self.columns.points
+        value = spin_map.value_of(self.source.cell, points.tool, phi, self.axis)
+        if self.axis == RZ:
+            # RZ follows the rotation, the other way round where the tool points down, but for what changes slowly
+            side = np.where((points.tool @ self.source.cell.mount[:3, 2]) < 0.0, -1.0, 1.0)
+            value = side * phi + spin_map.in_turns(value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0)
+        return value
+
+    def _turns(self, value: Array) -> Array:
+        """(C,) the whole turns, rad, that the mean of each bead is away from 0."""
+        first = self.seams
+        mean = np.add.reduceat(value, first) / np.diff(np.append(first, len(value)))
+        # rounded, so that a curve half a turn away does not hop with its last digit
+        turns = TURN * np.round(np.round(mean / TURN, 9))
+        return np.asarray(np.repeat(turns, np.diff(np.append(first, len(value)))))
+
+    def draft_values(self, draft: Draft) -> Array:
+        """(C,) the curve that is worked on, in the turns of what was planned, so that it does not hop while it is moved."""
+        value = self._counted(draft.phi(self.columns.points, self.columns.bead))
+        planned = self.source.planned.beads
+        like = value if draft.kind == CONSTANT else self._counted(draft.along(planned, self.columns))
+        return value - self._turns(like)
+
+    def path_values(self, draft: Draft, paths: tuple[BeadPath, ...]) -> Array:
+        """(C,) a curve that was planned."""
+        kept = self.curves.get(id(paths))
+        if kept is None or kept[0] is not paths:
+            kept = self.curves[id(paths)] = paths, self.values(draft.along(paths, self.columns))
+        return kept[1]
+
+    def bad(self, draft: Draft, followed: Followed, values: Array) -> Array:
+        """(k, 2) columns and values of the points of the curve that the planner objects to."""
+        row = draft.live.row[~followed.good]
+        known = draft.starts[self.columns.bead] + self.columns.point
+        row = row[np.isin(np.searchsorted(draft.starts, row, side="right") - 1, self.columns.bead)]
+        column = np.interp(row, known, np.arange(len(known)))
+        return np.stack([column, np.interp(column, np.arange(len(known)), values)], axis=1)
+
+    def change(self, draft: Draft, column: int, before: float, after: float) -> float:
+        """By how much what the draft varies changes when the curve goes from one value to another at a column, rad."""
+        of_rz = draft.kind == CONSTANT or self.source.parameters.parameter == RZ
+        if of_rz == (self.axis == RZ):
+            return after - before
+        tool, cell = self.columns.points.tool[[column]], self.source.cell
+        phi = [spin_map.rotation_of(cell, tool, np.array([value]), self.axis) for value in (before, after)]
+        one, other = (float((cell.rz_of_phi(tool, at) if of_rz else at)[0]) for at in phi)
+        side = -1.0 if float(tool[0] @ cell.mount[:3, 2]) < 0.0 else 1.0
+        by = other - one
+        return by - TURN * round((by - side * (after - before)) / TURN)
+
+    def cell(self, branch: int, column: int, value: float) -> Cell:
+        """What there is to tell of a place on the map."""
+        points, task = self.columns.points, self.source.task(branch)
+        at = points.each(np.array([column]))
+        phi = spin_map.rotation_of(task.cell, at.tool, np.array([value]), self.axis)
+        joints = spin_map.joints_at(task, self.columns, column, float(phi[0]))[branch]
+        offset = np.abs(task.given_rows.offset(joints))
+        reached = bool(np.isfinite(joints).all())
+        condition = float(task.condition(at, phi, joints[None])[0]) if reached else 0.0
+        made = self.map
+        low, high = self.source.parameters.rotation_range
+        outside = high - low < TURN - 1e-9 and float((phi[0] - low) % TURN) > high - low
+        return Cell(
+            self.place(column), float(task.cell.rz_of_phi(at.tool, phi)[0]), float(phi[0]), joints,
+            float(1.0 - offset.max()) if reached else -np.inf,
+            task.given_rows.labels[int(offset.argmax())] if reached else "",
+            condition, float(task.thresholds(at)[0]), made is not None and bool(made.touching[column]), outside,
+        )

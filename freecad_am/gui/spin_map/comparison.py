@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plans all methods beside the window, and tells how far it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide import QtCore
+
+from ...core.issues import AmError
+from ...core.planning import spin_curve
+from ...core.planning.spin_curve import Compared
+from ...core.planning.task import Task
+from ...objects import progress
+from ...objects.progress import Cancelled
+from ..later import Background
+from ..texts import tr
+from ..worker import Worker
+from .source import Source
+
+TELL_EVERY = 100  # ms
+
+
+class Comparison:
+    """`done` gets the methods, none of them where it came to nothing; `tell` what goes on."""
+
+    def __init__(self, form: Any, done: Callable[[tuple[Compared, ...]], None], tell: Callable[[str], None]) -> None:
+        self.done, self.tell = done, tell
+        self.background = Background(form)
+        self.timer = QtCore.QTimer(form)
+        self.timer.setInterval(TELL_EVERY)
+        self.timer.timeout.connect(self._tell)
+
+    @property
+    def runs(self) -> bool:
+        """Whether it goes on."""
+        return self.background.worker is not None
+
+    def start(self, source: Source, task: Task) -> None:
+        """Plan the beads of a joint path by all methods."""
+        self.background.start(
+            lambda: spin_curve.compared(task, source.beads, source.places, progress.report), self._show
+        )
+        self.timer.start()
+        self._tell()
+
+    def cancel(self) -> None:
+        """End it, if it goes on."""
+        self.timer.stop()
+        self.background.cancel()
+
+    def _show(self, worker: Worker) -> None:
+        self.timer.stop()
+        try:
+            found = worker.result()
+        except (AmError, Cancelled) as error:
+            self.tell(str(error))
+            found = ()
+        self.done(found)
+
+    def _tell(self) -> None:
+        worker = self.background.worker
+        if worker is not None:
+            share = "" if worker.fraction is None else f"{100.0 * worker.fraction:.0f} %  {worker.text}"
+            self.tell(f"{tr('Planning')} {share}")

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The fields beside the map: what it shows, and the curve by its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from PySide import QtCore, QtGui
+
+from ...core.kinematics import opw
+from ...core.parameters.joints import HIGHEST
+from ...core.planning.spin_map import ROTATION, RZ
+from ..texts import tr
+from .board import Board
+from .draft import CONSTANT, POLYNOMIALS, Draft
+from .picture import KINDS
+
+STEP = 1.0  # deg of an arrow of a coefficient
+MOST = 1e6
+AXES, CURVES = (RZ, ROTATION), (POLYNOMIALS, CONSTANT)
+
+
+class Controls(QtGui.QWidget):
+    """Functions are called with what the user chose; `fill` shows a state without calling any."""
+
+    def __init__(
+        self, chosen: Callable[[], None], curve: Callable[[], None], set_value: Callable[[int, float], None]
+    ) -> None:
+        super().__init__()
+        self.setObjectName("controls")
+        self.filling = False
+        self.chosen, self.curve, self.set_value = chosen, curve, set_value
+        self.grid = QtGui.QGridLayout(self)
+        self.grid.setContentsMargins(4, 2, 4, 2)
+        self.grid.setVerticalSpacing(3)
+        self.layer = self._spin("layer", tr("Layer"), tr("The layer that is looked at; -1 for all of them"), chosen)
+        self.layer.setSpecialValueText(tr("all"))
+        self.branch = self._combo(
+            "branch", tr("Branch"),
+            tr("Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits"), chosen,
+        )
+        self.kind = self._combo("colours", tr("Colours"), tr("What the colours tell"), chosen)
+        self.kind.addItems([tr(kind) for kind in KINDS])
+        self.axis = self._combo("axis", tr("Upwards"), tr("RZ as in Chalvin 2020, or the true rotation about the tool axis"),
+                                chosen)
+        self.axis.addItems([tr("RZ"), tr("rotation")])
+        self.type = self._combo("curve", tr("Curve"), tr("One polynomial per bead, or one RZ for the whole job"), curve)
+        self.type.addItems([tr("polynomials"), tr("constant RZ")])
+        self.bead = self._spin("bead", tr("Bead"), tr("The bead whose polynomial is shown; a click on the map chooses one"),
+                               curve)
+        self.degree = self._spin("degree", tr("Degree"), tr("Degree of the polynomials"), curve)
+        self.degree.setRange(0, HIGHEST)
+        self.together = QtGui.QCheckBox(tr("All beads together"))
+        self.together.setObjectName("together")
+        self.together.setToolTip(tr("What is changed of one bead is changed of all"))
+        self.together.setChecked(True)
+        self.grid.addWidget(self.together, self.grid.rowCount(), 0, 1, 2)
+        self.coefficients = []
+        self.names = []
+        for number in range(HIGHEST + 1):
+            spin = QtGui.QDoubleSpinBox()
+            spin.setObjectName(f"c{number}")
+            spin.setRange(-MOST, MOST)
+            spin.setDecimals(3)
+            spin.setSingleStep(STEP)
+            spin.setKeyboardTracking(False)
+            spin.setSuffix(" °" if number == 0 else " °/" + tr("turn") + ("" if number == 1 else "²³⁴⁵⁶"[number - 2]))
+            spin.valueChanged.connect(lambda value, number=number: self._entered(number, value))
+            row = self.grid.rowCount()
+            self.names.append(QtGui.QLabel())
+            self.grid.addWidget(self.names[-1], row, 0)
+            self.grid.addWidget(spin, row, 1)
+            self.coefficients.append(spin)
+        self.grid.setColumnStretch(1, 1)
+        self.grid.setRowStretch(self.grid.rowCount(), 1)
+
+    def _spin(self, name: str, text: str, help: str, act: Callable[[], None]) -> Any:
+        spin = QtGui.QSpinBox()
+        spin.valueChanged.connect(lambda *_: None if self.filling else act())
+        return self._add(spin, name, text, help)
+
+    def _combo(self, name: str, text: str, help: str, act: Callable[[], None]) -> Any:
+        combo = QtGui.QComboBox()
+        combo.setMinimumContentsLength(8)
+        combo.activated.connect(lambda *_: None if self.filling else act())
+        return self._add(combo, name, text, help)
+
+    def _add(self, widget: Any, name: str, text: str, help: str) -> Any:
+        widget.setObjectName(name)
+        widget.setToolTip(help)
+        row = self.grid.rowCount()
+        self.grid.addWidget(QtGui.QLabel(text), row, 0)
+        self.grid.addWidget(widget, row, 1)
+        return widget
+
+    def _entered(self, number: int, value: float) -> None:
+        if not self.filling:
+            self.set_value(number, value)
+
+    # ---- what is shown
+
+    def fill(self, board: Board, draft: Draft, bead: int) -> None:
+        """Show a state."""
+        self.filling = True
+        source = board.source
+        self.layer.setRange(-1, max(layer for layer, _ in source.places))
+        self.layer.setValue(-1 if board.layer is None else board.layer)
+        self._fill_branches(board, draft.branch)
+        self.axis.setCurrentIndex(AXES.index(board.axis))
+        self.type.setCurrentIndex(CURVES.index(draft.kind))
+        constant = draft.kind == CONSTANT
+        self.bead.setRange(board.beads[0], board.beads[-1])
+        self.bead.setValue(bead)
+        self.bead.setSuffix("  ({}/{})".format(*source.places[bead]))
+        self.degree.setValue(draft.degree)
+        for widget in (self.bead, self.degree, self.together):
+            widget.setEnabled(not constant)
+        values = [draft.rz] if constant else [c * (2.0 * np.pi) ** k for k, c in enumerate(draft.coefficients[bead])]
+        for number, (name, spin) in enumerate(zip(self.names, self.coefficients, strict=True)):
+            there = number < len(values)
+            name.setVisible(there)
+            spin.setVisible(there)
+            name.setText("RZ" if constant else f"c{number}")
+            if there and not (spin.hasFocus() and abs(spin.value() - np.degrees(values[number])) < 6e-4):
+                spin.setValue(float(np.degrees(values[number])))
+        self.filling = False
+
+    def _fill_branches(self, board: Board, branch: int) -> None:
+        served = None if board.map is None else board.served()
+        texts = []
+        for number in range(8):
+            text = " ".join(opw.branch_name(number))
+            text += "" if served is None else f"   {100.0 * served[number]:.0f} %"
+            texts.append(text + ("   " + tr("(planned)") if number == board.source.branch else ""))
+        if [self.branch.itemText(k) for k in range(self.branch.count())] != texts:
+            self.branch.clear()
+            self.branch.addItems(texts)
+        self.branch.setCurrentIndex(branch)
+
+
+def scrolled(widget: Any) -> Any:
+    """The widget in what lets it be higher than the room it gets."""
+    area = QtGui.QScrollArea()
+    area.setWidgetResizable(True)
+    area.setFrameShape(QtGui.QFrame.NoFrame)
+    area.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+    area.setWidget(widget)
+    area.setMinimumWidth(210)
+    return area

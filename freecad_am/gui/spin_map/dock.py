@@ -1,0 +1,384 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The dock of a map of the free rotation: cells, curves, consequences; the curve can be made that of the joint path."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+import numpy as np
+from PySide import QtCore
+
+from ...core.issues import AmError
+from ...core.planning import spin_curve
+from ...core.planning.points import TURN
+from ...core.planning.spin_curve import Compared, Sums
+from ...objects.progress import Cancelled
+from ...objects.stage import first_message, issues_of
+from .. import recorded
+from ..later import Background, Later
+from ..simulation.dock import _Dock
+from ..texts import tr
+from ..worker import Worker
+from .board import Board
+from .canvas import Canvas, Curve, Dragged, Handle
+from .comparison import Comparison
+from .controls import AXES, CURVES, Controls
+from .draft import CONSTANT, Draft
+from .figures import Figures
+from .form import Form
+from .jump import jump
+from .picture import KINDS, painted
+from .readout import joint_ranges, readout
+from .source import Source, source_of
+
+NAME = "RoboticAM_SpinMap"
+OWN, PLANNED = "own", "planned"
+WIDE, HIGH = 0.85, 380  # of the window's width; pixels
+COLOURS = {
+    OWN: (255, 140, 0), PLANNED: (255, 255, 255), "constant": (0, 215, 255), "point-by-point": (255, 70, 220),
+    "layer-by-layer": (140, 255, 120),
+}
+
+
+class SpinMapDock:
+    """Shows the map of one joint path until it is closed, or until the joint path goes."""
+
+    def __init__(self, obj: Any) -> None:
+        self.obj, self.gone = obj, False
+        self.dock = _Dock("", Gui.getMainWindow())
+        self.dock.setObjectName(NAME)
+        self.dock.closed = self.close
+        self.canvas = Canvas()
+        self.controls = Controls(self._chosen, self._curve_chosen, self._entered)
+        self.figures = Figures(self._show_curves)
+        self.form = Form(self.canvas, self.controls, self.figures)
+        for name, act in (("use", self._use), ("free", self._free), ("again", self._again), ("compare", self._compare)):
+            self.form.buttons[name].clicked.connect(lambda *_, act=act: act())
+        self.dock.setWidget(self.form)
+        self.cells, self.exact = Background(self.dock), Background(self.dock)
+        self.comparison = Comparison(self.dock, self._show_compared, self.form.tell)
+        self.renewing = Later(self.dock, self.renew)
+        self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
+        self.canvas.dragged, self.canvas.dropped = self._dragged, self._consequences_exact
+        self._take(source_of(obj))
+        Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
+        self.dock.show()
+        self.dock.raise_()
+        App.addDocumentObserver(self)
+        QtCore.QTimer.singleShot(0, self._fit)  # once it has its place among other docks
+
+    def _fit(self) -> None:
+        """As much room as a map needs."""
+        window = Gui.getMainWindow()
+        if not self.gone:
+            window.resizeDocks([self.dock], [int(WIDE * window.width())], QtCore.Qt.Horizontal)
+            window.resizeDocks([self.dock], [HIGH], QtCore.Qt.Vertical)
+
+    # ---- the joint path
+
+    def _take(self, source: Source, board: Board | None = None) -> None:
+        """Show a joint path as it is planned now, at the layer and on the axis of another board."""
+        self.source, self.draft = source, Draft(source)
+        self.dock.setWindowTitle(tr("Free rotation of {title}").format(title=source.title))
+        layers = {layer for layer, _ in source.places}
+        layer = board.layer if board is not None and board.layer in layers else None
+        self.board = Board(source, layer, AXES[0] if board is None else board.axis)
+        self.bead = self.board.beads[0]
+        self.compared: tuple[Compared, ...] = ()
+        self.comparison.cancel()
+        self.form.buttons["compare"].setText(tr("Compare methods"))
+        self.figures.clear_all()
+        self.planned = spin_curve.sums(self.draft.follow(self.draft.live.planned))
+        self.planned_exact: Sums | None = None
+        self._consequences()
+        self._consequences_exact()
+        self._renew_cells()
+
+    def renew(self) -> None:
+        """Show what the joint path is now; close where there is nothing to show any more."""
+        if self.gone:
+            return
+        try:
+            self._take(source_of(self.obj), self.board)
+        except (AmError, ReferenceError, RuntimeError, AttributeError) as error:
+            self.end(str(error))
+
+    # ---- the cells
+
+    def _renew_cells(self) -> None:
+        """Show the picture of the branch, computed first where it is not known."""
+        board, branch = self.board, self.draft.branch
+        self.controls.fill(board, self.draft, self.bead)
+        if branch in board.pictures:
+            self._show_cells()
+            return
+        self.canvas.set_map(None, board.seams, board.labels)
+
+        def show(worker: Worker) -> None:
+            board.take(worker.result())
+            if board is self.board:
+                self.controls.fill(board, self.draft, self.bead)
+                self._show_cells()
+
+        self.cells.start(lambda: board.compute(branch), show)
+
+    def _show_cells(self) -> None:
+        picture = self.board.pictures.get(self.draft.branch)
+        if picture is None:
+            return
+        kind = KINDS[max(self.controls.kind.currentIndex(), 0)]
+        self.canvas.title = self.board.title
+        self.canvas.set_map(painted(picture, kind), self.board.seams, self.board.labels)
+        self._show_curves()
+
+    def _chosen(self) -> None:
+        """Another layer, branch, axis, or other colours."""
+        layer = None if self.controls.layer.value() < 0 else self.controls.layer.value()
+        axis = AXES[self.controls.axis.currentIndex()]
+        branch = self.controls.branch.currentIndex()
+        if (layer, axis) != (self.board.layer, self.board.axis):
+            if layer is not None and layer not in {of for of, _ in self.source.places}:
+                self.controls.fill(self.board, self.draft, self.bead)
+                return
+            self.board = Board(self.source, layer, axis)
+            shown = self.board.columns.bead
+            self.bead = int(shown[np.abs(shown - self.bead).argmin()])
+        if branch != self.draft.branch:
+            self.draft.branch = branch
+            self._consequences()
+            self._consequences_exact()
+        self._renew_cells()
+
+    # ---- the curve
+
+    def _together(self) -> list[int]:
+        return list(range(len(self.source.beads))) if self.controls.together.isChecked() else [self.bead]
+
+    def _curve_chosen(self) -> None:
+        """Another kind of curve, bead or degree."""
+        self.draft.kind = CURVES[self.controls.type.currentIndex()]
+        self.bead = self.controls.bead.value()
+        if self.controls.degree.value() != self.draft.degree:
+            self.draft.set_degree(self.controls.degree.value())
+        self._consequences()
+        self._consequences_exact()
+
+    def _entered(self, number: int, value: float) -> None:
+        """A coefficient was entered, deg and deg per turn."""
+        draft = self.draft
+        if draft.kind == CONSTANT:
+            draft.rz = float(np.radians(value))
+        else:
+            wanted = np.radians(value) / TURN**number
+            draft.coefficients[self._together(), number] += wanted - draft.coefficients[self.bead, number]
+        self._consequences()
+        self._consequences_exact()
+
+    def _dragged(self, drag: Dragged, by: float) -> None:
+        """The mouse has moved the curve, or one of its handles."""
+        draft, board = self.draft, self.board
+        changed = board.change(draft, drag.column, drag.value - by, drag.value)
+        if drag.handle is not None:
+            draft.pull(drag.handle.bead, drag.handle.number, changed, self._together())
+        else:
+            self.bead = int(board.columns.bead[drag.column])
+            draft.shift(changed, self._together())
+        self._consequences()
+
+    def _handles(self, values: Any) -> list[Handle]:
+        draft, board = self.draft, self.board
+        if draft.kind == CONSTANT or not board.shows(self.bead):
+            return []
+        found = []
+        for number, parameter in enumerate(draft.handles(self.bead)):
+            column = board.column_of(self.bead, float(parameter))
+            found.append(Handle(self.bead, number, column, float(np.interp(column, np.arange(len(values)), values))))
+        return found
+
+    # ---- consequences
+
+    def _consequences(self) -> None:
+        """Tell at once what the curve as it is now means."""
+        self.followed = self.draft.followed()
+        self._tell(spin_curve.sums(self.followed), self.planned, self.draft.thinned)
+        self.form.show_joints(joint_ranges(self.followed.joints, self.source.cell))
+        self.controls.fill(self.board, self.draft, self.bead)
+        self._show_curves()
+
+    def _consequences_exact(self) -> None:
+        """The same of all points, where only some have been looked at."""
+        draft = self.draft
+        if not draft.thinned:
+            return
+        own = draft.copied()
+
+        def work() -> tuple[Sums, Sums]:
+            full = own.full
+            mine = spin_curve.sums(own.follow(own.phi(full.points, full.points.bead), False))
+            if self.planned_exact is None:
+                of_plan = own.copied()
+                of_plan.branch = own.source.branch
+                return mine, spin_curve.sums(of_plan.follow(full.planned, False))
+            return mine, self.planned_exact
+
+        def show(worker: Worker) -> None:
+            found = worker.result()
+            if draft is self.draft:
+                draft.learn(own)
+                self.planned_exact = found[1]
+                self._tell(*found, False)
+
+        self.exact.start(work, show)
+
+    def _tell(self, sums: Sums, planned: Sums, about: bool) -> None:
+        self.figures.set(OWN, tr("This curve"), COLOURS[OWN], sums, planned, about)
+        self.figures.set(PLANNED, tr("As planned"), COLOURS[PLANNED], planned, None, about)
+        edited = self.draft.edited
+        self.form.buttons["use"].setEnabled(edited)
+        if sums.lost:
+            text, wrong = tr("{} of the points looked at do not serve: they are red").format(sums.lost), True
+        elif edited and sums.ratio > 1.0:
+            asked = tr("A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse")
+            text, wrong = asked.format(100.0 * sums.ratio), True
+        else:
+            text, wrong = self._planned_text() if not edited else (tr("All points serve"), False)
+        self.form.tell(text, wrong)
+
+    def _planned_text(self) -> tuple[str, bool]:
+        with contextlib.suppress(ReferenceError, RuntimeError):
+            message = first_message(issues_of(self.obj))
+            wrong = self.obj.Status != "up to date"
+            return f"{self.obj.Status}" + (f": {message}" if message and wrong else ""), wrong
+        return "", False
+
+    def _show_curves(self) -> None:
+        """Draw the curves that are to be seen."""
+        board, draft = self.board, self.draft
+        curves, handles, bad = [], [], np.zeros((0, 2))
+        others = [(PLANNED, self.source.planned.beads), *((one.name, one.paths) for one in self.compared)]
+        for name, paths in others:
+            if self.figures.shows(name):
+                curves.append(Curve(board.path_values(draft, paths), COLOURS[name], dashed=name == PLANNED))
+        if self.figures.shows(OWN):
+            values = board.draft_values(draft)
+            curves.append(Curve(values, COLOURS[OWN], bold=True))
+            handles, bad = self._handles(values), board.bad(draft, self.followed, values)
+        self.canvas.set_curves(curves, handles, bad)
+
+    # ---- side by side
+
+    def _compare(self) -> None:
+        """Plan all methods in the background, or stop that."""
+        if self.comparison.runs:
+            self.comparison.cancel()
+            self._consequences()
+        else:
+            self.comparison.start(self.source, self.source.task(self.draft.branch))
+        self.form.buttons["compare"].setText(tr("Cancel") if self.comparison.runs else tr("Compare methods"))
+
+    def _show_compared(self, found: tuple[Compared, ...]) -> None:
+        """Another comparison has ended; empty: without a result."""
+        self.form.buttons["compare"].setText(tr("Compare methods"))
+        if found:
+            self.compared = found
+            self._consequences()
+        planned = self.planned_exact or self.planned
+        for one in self.compared:
+            help = "; ".join(issue.message for issue in one.issues[:3]) or tr("nothing forbids it")
+            self.figures.set(one.name, tr(one.name), COLOURS[one.name], one.sums, planned, help=help)
+        self._show_curves()
+
+    # ---- what the mouse is over
+
+    def _hovered(self, column: int, value: float) -> None:
+        self.form.readout.setText(readout(self.board.cell(self.draft.branch, column, value), self.source.cell.machine.axes))
+
+    def _clicked(self, column: int, value: float) -> None:
+        self.bead = int(self.board.columns.bead[column])
+        self.controls.fill(self.board, self.draft, self.bead)
+        self._show_curves()
+        with contextlib.suppress(ReferenceError, RuntimeError):  # the view is closed
+            jump(self.obj, self.board.place(column)[0], self.board.columns.points.position[column])
+
+    # ---- making it the choice
+
+    def _use(self) -> None:
+        self._change(self.draft.arguments())
+
+    def _free(self) -> None:
+        self._change({"method": "'layer-by-layer'", "given": "()", "own_branch": "'cell'"})
+
+    def _again(self) -> None:
+        self.draft.reset()
+        self._consequences()
+        self._consequences_exact()
+        self._renew_cells()
+
+    def _change(self, arguments: dict[str, str]) -> None:
+        try:
+            recorded.change(self.obj, arguments)
+        except (AmError, Cancelled, ReferenceError) as error:
+            self.form.tell(str(error) or tr("Cancelled: the document is as it was."), True)
+            return
+        self.renewing.timer.stop()
+        self.renew()
+
+    # ---- the end
+
+    def close(self) -> None:
+        """End it."""
+        if self.gone:
+            return
+        self.gone = True
+        App.removeDocumentObserver(self)
+        for background in (self.cells, self.exact, self.comparison):
+            background.cancel()
+        self.renewing.timer.stop()
+        self.dock.closed = None
+        self.dock.close()
+        self.dock.deleteLater()
+        if self in _open:
+            _open.remove(self)
+
+    def end(self, why: str) -> None:
+        """End it by itself, and say why."""
+        if not self.gone:
+            self.close()
+            Gui.getMainWindow().statusBar().showMessage(tr("The map was closed: {why}").format(why=why), 8000)
+
+    # ---- called by FreeCAD
+
+    def slotDeletedDocument(self, document: Any) -> None:
+        """A document is closed."""
+        if document.Name == self.source.document:
+            self.end(tr("the document was closed"))
+
+    def slotDeletedObject(self, obj: Any) -> None:
+        """An object is deleted."""
+        if self._reads(obj):
+            text = tr("{label} was deleted").format(label=obj.Label)
+            QtCore.QTimer.singleShot(0, lambda: self.end(text))
+
+    def slotChangedObject(self, obj: Any, name: str) -> None:
+        """A property of an object has changed."""
+        if name in ("Key", "Label") and self._reads(obj):
+            self.renewing.ask()
+
+    def _reads(self, obj: Any) -> bool:
+        return not self.gone and obj.Name in self.source.objects and obj.Document.Name == self.source.document
+
+
+_open: list[SpinMapDock] = []  # Python must keep it as long as it is open; there is one
+
+
+def show(obj: Any) -> SpinMapDock:
+    """Open the map of a joint path, in place of the one that is open. Raises InputError where there is none."""
+    source_of(obj)
+    while _open:
+        _open[0].close()
+    opened = SpinMapDock(obj)
+    _open.append(opened)
+    return opened

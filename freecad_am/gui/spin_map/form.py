@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a map's dock holds: the map, the place under the mouse, the fields, the figures, what there is to say, buttons."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ..colours import WRONG
+from ..texts import tr
+from .controls import scrolled
+
+
+class Form(QtGui.QWidget):
+    """The widgets at their places; whoever makes it connects them."""
+
+    def __init__(self, canvas: Any, controls: Any, figures: Any) -> None:
+        super().__init__()
+        row, left, right = QtGui.QHBoxLayout(self), QtGui.QVBoxLayout(), QtGui.QVBoxLayout()
+        row.setContentsMargins(4, 2, 4, 4)
+        row.setSpacing(4)
+        self.readout = QtGui.QLabel()
+        self.readout.setObjectName("readout")
+        self.readout.setMinimumHeight(2 * self.readout.fontMetrics().height() + 4)
+        self.readout.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Preferred)
+        left.addWidget(canvas, 1)
+        left.addWidget(self.readout)
+        self.verdict = QtGui.QLabel()
+        self.verdict.setObjectName("verdict")
+        self.verdict.setWordWrap(True)
+        self.joints = QtGui.QLabel()
+        self.joints.setObjectName("joints")
+        self.joints.setWordWrap(True)
+        self.joints.setTextFormat(QtCore.Qt.RichText)
+        self.joints.setToolTip(tr("From where to where each joint goes on this curve; red past a limit"))
+        right.addWidget(figures, 1)
+        right.addWidget(self.joints)
+        right.addWidget(self.verdict)
+        grid = QtGui.QGridLayout()
+        self.buttons = {name: _button(name, text, help) for name, text, help in (
+            ("use", tr("Use this"), tr("Make the curve that of the joint path, and plan it again")),
+            ("free", tr("Let the planner choose"),
+             tr("Plan the joint path again layer by layer, without a curve that is given")),
+            ("again", tr("Back"), tr("Start again from what was planned")),
+            ("compare", tr("Compare methods"),
+             tr("Plan constant, point-by-point and layer-by-layer on this branch, to look at")),
+        )}
+        for number, button in enumerate(self.buttons.values()):
+            grid.addWidget(button, number // 2, number % 2)
+        right.addLayout(grid)
+        row.addLayout(left, 7)
+        row.addWidget(scrolled(controls), 2)
+        row.addLayout(right, 4)
+
+    def tell(self, text: str, wrong: bool = False) -> None:
+        """Say how the curve stands, or what goes on."""
+        self.verdict.setText(text)
+        self.verdict.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if wrong else "")
+
+    def show_joints(self, ranges: list[tuple[str, bool]]) -> None:
+        """What each joint does, and whether it goes past a limit."""
+        whole = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
+        parts = [f'<font color="{WRONG}">{text}</font>' if wrong else text for text, wrong in whole]
+        self.joints.setText(" &nbsp; ".join(parts))
+
+
+def _button(name: str, text: str, help: str) -> Any:
+    button = QtGui.QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    return button

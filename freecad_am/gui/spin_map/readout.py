@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is told of the place under the mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...core.kinematics.cell import Cell as Station
+from ..lines import Array
+from ..texts import tr
+from .board import Cell
+
+PAST = 1e-9  # rad, of rounding
+
+
+def readout(cell: Cell, axes: Sequence[str]) -> str:
+    """Two lines: place and rotation, margins; and the joints."""
+    layer, bead, point = cell.place
+    where = tr("Layer {} bead {} point {}").format(layer, bead, point)
+    turned = f"RZ {np.degrees(cell.rz):.1f}°   " + tr("rotation") + f" {np.degrees(cell.phi):.1f}°"
+    notes = []
+    if not np.isfinite(cell.joints).all():
+        return f"{where}   {turned}\n" + tr("out of reach with this branch")
+    if cell.margin < 0.0:
+        notes.append(tr("beyond a limit"))
+    if cell.condition < cell.threshold:
+        notes.append(tr("near a singularity"))
+    if cell.outside:
+        notes.append(tr("rotation not allowed"))
+    if cell.touching:
+        notes.append(tr("the nozzle touches platform or part"))
+    margin = tr("margin {:.1f} % ({})").format(100.0 * cell.margin, cell.nearest)
+    condition = tr("condition {:.4f}, least {:.4f}").format(cell.condition, cell.threshold)
+    joints = "   ".join(f"{name} {value:.2f}°" for name, value in zip(axes, np.degrees(cell.joints), strict=False))
+    return f"{where}   {turned}   {margin}   {condition}   {', '.join(notes)}\n{joints}"
+
+
+def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
+    """For each axis from where to where joints (T, axes) go, deg, and whether that is past a limit of its own."""
+    reached = joints[np.isfinite(joints).all(axis=1)]
+    if not len(reached):
+        return []
+    low, high = reached.min(axis=0), reached.max(axis=0)
+    past = (low < station.limits.lower - PAST) | (high > station.limits.upper + PAST)
+    return [
+        (f"{name} {np.degrees(a):.1f}…{np.degrees(b):.1f}°", bool(wrong))
+        for name, a, b, wrong in zip(station.machine.axes, low, high, past, strict=True)
+    ]

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a map is made of: a joint path of a document with its toolpath and cell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ...core.issues import InputError
+from ...core.kinematics import cell as cells
+from ...core.kinematics import opw
+from ...core.kinematics.cell import Cell
+from ...core.parameters.joints import JointParameters
+from ...core.planning.joint_path import JointPath
+from ...core.planning.plan import REVOLUTION
+from ...core.planning.task import Task
+from ...core.toolpath import Bead, Toolpath
+from ...objects import user_machines
+from ...objects.joint_path import planned_of
+from ...objects.stage import stage_of
+
+
+@dataclass(frozen=True)
+class Source:
+    """All that is read of the document. objects: names of those it was read from. beads: of the toolpath, with their places
+    (layer, index)."""
+
+    document: str
+    name: str
+    title: str
+    objects: tuple[str, ...]
+    cell: Cell
+    parameters: JointParameters
+    toolpath: Toolpath
+    planned: JointPath
+    beads: tuple[Bead, ...]
+    places: tuple[tuple[int, int], ...]
+
+    @property
+    def branch(self) -> int:
+        """The branch that was planned."""
+        return opw.branch_index(self.planned.branch)
+
+    def task(self, branch: int) -> Task:
+        """What the planner has to do on a branch."""
+        return Task(self.cell, branch, self.parameters, self.toolpath.family != REVOLUTION)
+
+
+def source_of(obj: Any) -> Source:
+    """What there is about a joint path. Raises InputError where there is no map of it, saying what to do."""
+    stage = stage_of(obj)
+    if stage is None or stage.kind != "joint path":
+        raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is no joint path; select one")
+    value, toolpath, looks = planned_of(obj, obj.Label)
+    cell = cells.resolve(looks, toolpath.frame, toolpath.family, user_machines.folders())
+    if cell.machine.is_table or not value.joint_path.branch:
+        raise InputError(
+            "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; a map "
+            "is for robots",
+        )
+    return Source(
+        document=obj.Document.Name, name=obj.Name, title=obj.Label,
+        objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))), cell=cell,
+        parameters=obj.Proxy.parameters(obj, JointParameters), toolpath=toolpath, planned=value.joint_path,
+        beads=tuple(bead for _, _, bead in toolpath), places=tuple((layer, index) for layer, index, _ in toolpath),
+    )

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The tool that opens the map of the free rotation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from ...core.issues import AmError
+from ...objects.stage import stage_of
+from ..texts import tr
+from . import dock
+
+
+def spin_map() -> None:
+    """Open the map of the selected joint path, or that of a selected program, else of the last one with a result."""
+    chosen = [found for found in map(_joint_path, Gui.Selection.getSelection()) if found is not None]
+    made = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
+    if not chosen and not made:
+        _say(tr("There is no joint path to map; make one first."))
+        return
+    try:
+        dock.show(chosen[0] if chosen else made[-1])
+    except AmError as error:
+        App.Console.PrintWarning(error.line() + "\n")
+        Gui.getMainWindow().statusBar().showMessage(str(error), 8000)
+
+
+def _joint_path(obj: Any) -> Any:
+    stage = stage_of(obj)
+    if stage is not None and stage.kind == "program":
+        return obj.JointPath
+    return obj if stage is not None and stage.kind == "joint path" else None
+
+
+def _say(text: str) -> None:
+    App.Console.PrintWarning(text + "\n")
+    Gui.getMainWindow().statusBar().showMessage(text, 8000)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the macro interface offers of this package: files of wires, and paths of other workbenches."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from typing import Any
+
+from ..core.issues import InputError
+from . import cam_path, dxf, robot_trajectory, step_wires
+from .lines import Line
+from .source import lines_of
+
+STEP, DXF = (".step", ".stp"), (".dxf",)
+
+
+def write_wires(obj: Any, path: str, rapids: bool) -> str:
+    """Write the lines of a stage as STEP or DXF, whichever the path ends in; the path. The file appears whole or not at all.
+
+    Raises InputError UNSUPPORTED_FILE, NOT_WRITABLE, and what `lines_of` raises.
+    """
+    ending = os.path.splitext(path)[1].lower()
+    if ending not in STEP + DXF:
+        raise InputError("UNSUPPORTED_FILE", path, "wires are written as .step or .dxf; end the name with one of them")
+    lines = lines_of(obj, rapids)
+    folder = os.path.dirname(os.path.abspath(path))
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as beside:
+            unfinished = os.path.join(beside, f"wires{ending}")
+            _write(lines, unfinished, ending, obj.Label)
+            os.replace(unfinished, path)
+    except OSError as error:
+        raise InputError("NOT_WRITABLE", path, f"{error.strerror or error}; choose a file you can write") from None
+    return path
+
+
+def add_cam_path(obj: Any) -> Any:
+    """The lines of a stage as a path of the CAM workbench, in its document."""
+    return cam_path.add(obj.Document, lines_of(obj), f"{obj.Label} (CAM)")
+
+
+def add_trajectory(obj: Any, tolerance: float, turn: float) -> Any:
+    """The lines of a stage as a trajectory of the Robot workbench, in its document: within `tolerance` mm and `turn` rad."""
+    for name, value in (("tolerance", tolerance), ("turn", turn)):
+        if not value > 0.0:
+            raise InputError("OUT_OF_RANGE", name, f"{value:g} is not above 0")
+    return robot_trajectory.add(obj.Document, lines_of(obj), f"{obj.Label} (trajectory)", tolerance, turn)
+
+
+def _write(lines: Sequence[Line], path: str, ending: str, label: str) -> None:
+    if ending in STEP:
+        step_wires.write(lines, path, label)
+        if not os.path.isfile(path):
+            raise InputError("NOT_WRITTEN", label, "FreeCAD wrote no STEP file; see the report view, or write DXF instead")
+    else:
+        with open(path, "w", encoding="ascii", newline="") as stream:
+            stream.writelines(dxf.text(lines))

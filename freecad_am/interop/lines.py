@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A toolpath or a motion as the lines that other programs draw: a polyline per bead and per rapid move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.geometry.frames import smallest_rotation
+from ..core.motion import Motion
+from ..core.toolpath import Toolpath
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Line:
+    """Points (n, 3) mm in part coordinates, n >= 2, with the tool axis (n, 3) and the speed (n,) mm/s towards each of them.
+
+    layer, bead: from 0; a rapid carries those of the bead it leads to, the last one those of the last bead.
+    closed: the last point repeats the first.
+    """
+
+    layer: int
+    bead: int
+    deposit: bool
+    points: Array
+    tool: Array
+    speed: Array
+    closed: bool = False
+
+    @property
+    def name(self) -> str:
+        """Such as L003 B01 or L003 rapid."""
+        return f"L{self.layer + 1:03d} B{self.bead + 1:02d}" if self.deposit else f"L{self.layer + 1:03d} rapid"
+
+    def chosen(self, rows: NDArray[np.intp]) -> Line:
+        """The line through some of its points, the speed towards each kept."""
+        return Line(self.layer, self.bead, self.deposit, self.points[rows], self.tool[rows], self.speed[rows], self.closed)
+
+
+def of_toolpath(toolpath: Toolpath) -> tuple[Line, ...]:
+    """Its beads, in the order of deposit."""
+    return tuple(
+        Line(layer, index, True, bead.points, bead.tool, bead.speed, bead.closed) for layer, index, bead in toolpath
+    )
+
+
+def of_motion(motion: Motion) -> tuple[Line, ...]:
+    """Its beads and, from the second on, the rapid moves to them, in the order of motion; the last lifts off."""
+    other = (np.diff(motion.bead) != 0) | (np.diff(motion.layer) != 0)
+    change = np.flatnonzero((motion.deposit[1:] != motion.deposit[:-1]) | (motion.deposit[1:] & other)) + 1
+    starts, ends = np.r_[0, change], np.r_[change, len(motion)]
+    found = []
+    for start, end in zip(starts, ends, strict=True):
+        deposit = bool(motion.deposit[start])
+        first = start if deposit or start == 0 else start - 1
+        points = motion.position[first:end]
+        if len(points) < 2 or not (np.isfinite(points).all() and np.ptp(points, axis=0).any()):
+            continue
+        closed = deposit and len(points) > 3 and bool(np.abs(points[0] - points[-1]).max() < 1e-9)
+        found.append(Line(
+            int(motion.layer[start]), int(motion.bead[start]), deposit, points, motion.tool[first:end],
+            motion.speed[first:end], closed,
+        ))
+    return tuple(found)
+
+
+def thinned(line: Line, tolerance: float, turn: float) -> Line:
+    """The line through so few of its points that none of the others is farther than `tolerance` mm from it, nor turned
+    farther than `turn` rad from the tool axis at the nearest of them (Douglas and Peucker 1973)."""
+    keep = np.zeros(len(line.points), dtype=np.bool_)
+    keep[[0, -1]] = True
+    stack = [(0, len(line.points) - 1)]
+    while stack:
+        first, last = stack.pop()
+        if last - first < 2:
+            continue
+        inner = np.arange(first + 1, last)
+        off = _off(line.points[inner], line.points[first], line.points[last]) / tolerance
+        turned = np.minimum(_angle(line.tool[inner], line.tool[first]), _angle(line.tool[inner], line.tool[last])) / turn
+        worst = np.maximum(off, turned)
+        k = int(np.argmax(worst))
+        if worst[k] > 1.0:
+            keep[inner[k]] = True
+            stack += [(first, int(inner[k])), (int(inner[k]), last)]
+    return line.chosen(np.flatnonzero(keep))
+
+
+def attitudes(tool: Array) -> Array:
+    """Rotations (n, 3, 3) whose Z points out of the nozzle, against the tool axes (n, 3), with no needless turn about it."""
+    return np.asarray(smallest_rotation((0.0, 0.0, 1.0), tool) * np.array([1.0, -1.0, -1.0]))
+
+
+def _off(points: Array, start: Array, end: Array) -> Array:
+    """Distance (n,) of points from the segment from start to end."""
+    along = end - start
+    length = float(along @ along)
+    share = np.clip((points - start) @ along / length, 0.0, 1.0) if length > 0.0 else np.zeros(len(points))
+    return np.asarray(np.linalg.norm(points - start - share[:, None] * along, axis=1))
+
+
+def _angle(directions: Array, other: Array) -> Array:
+    return np.asarray(2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(directions - other, axis=1), 0.0, 1.0)))

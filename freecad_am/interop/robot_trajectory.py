@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lines as a trajectory of the Robot workbench, which plays it with robots of its own. Thinned, for it is slow with many."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+
+from ..core.geometry.frames import pose
+from ..core.issues import InputError
+from .lines import Line, attitudes, thinned
+
+
+def add(document: Any, lines: Sequence[Line], label: str, tolerance: float, turn: float) -> Any:
+    """A Robot::TrajectoryObject through so few points that the path keeps within `tolerance` mm and `turn` rad.
+
+    Z of a waypoint points out of the nozzle. InputError NO_MODULE where this FreeCAD has no Robot workbench.
+    """
+    try:
+        import Robot
+    except ImportError:
+        raise InputError(
+            "NO_MODULE", "trajectory", "this FreeCAD has no Robot workbench; install it or make a CAM path instead"
+        ) from None
+    obj = document.addObject("Robot::TrajectoryObject", "AmTrajectory")
+    obj.Label = label
+    trajectory = Robot.Trajectory()
+    trajectory.insertWaypoints([
+        Robot.Waypoint(place, type="LIN", name=name, vel=speed) for name, place, speed in waypoints(lines, tolerance, turn)
+    ])
+    obj.Trajectory = trajectory
+    return obj
+
+
+def waypoints(lines: Sequence[Line], tolerance: float, turn: float) -> list[tuple[str, Any, float]]:
+    """Name, placement and speed in mm/s of each waypoint; the end of one line and the same start of the next are one."""
+    found: list[tuple[str, Any, float]] = []
+    last = None
+    for line in lines:
+        few = thinned(line, tolerance, turn)
+        skipped = 1 if last is not None and np.array_equal(last, few.points[0]) else 0
+        last = few.points[-1]
+        poses = pose(attitudes(few.tool), few.points)
+        speed = np.where(np.arange(len(few.speed)) == 0, few.speed[1], few.speed)
+        found += [
+            (f"{line.name} {k + 1}", App.Placement(App.Matrix(*poses[k].ravel().tolist())), float(speed[k]))
+            for k in range(skipped, len(few.points))
+        ]
+    return found

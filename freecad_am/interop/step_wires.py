@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lines as wires in a STEP file: one named component per layer, one for the rapid moves.
+
+Each line is one spline of the first degree, which is the polyline itself and a fifth of the size of an edge per segment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import numpy as np
+import Part
+
+from ..core.issues import InputError
+from .lines import Line
+
+RAPID = "Rapid"
+
+
+def write(lines: Sequence[Line], path: str, label: str) -> None:
+    """Write the file; InputError NO_MODULE where this FreeCAD cannot."""
+    try:
+        import Import
+    except ImportError:
+        raise InputError("NO_MODULE", "STEP", "this FreeCAD has no module Import; write DXF instead") from None
+    active = App.ActiveDocument
+    document = App.newDocument("RoboticAM_Export", label, True, True)
+    try:
+        Import.export([_component(document, name, of) for name, of in _components(lines).items()], path)
+    finally:
+        App.closeDocument(document.Name)
+        if active is not None:
+            App.setActiveDocument(active.Name)
+
+
+def edge(line: Line) -> Any:
+    """The edge through all points of a line."""
+    apart = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+    points = line.points[np.r_[True, apart > 0.0]]
+    knots = np.r_[0.0, np.cumsum(apart[apart > 0.0])].tolist()
+    curve = Part.BSplineCurve()
+    curve.buildFromPolesMultsKnots(
+        [App.Vector(*point) for point in points.tolist()], [2, *[1] * (len(points) - 2), 2], knots, False, 1,
+    )
+    return curve.toShape()
+
+
+def _components(lines: Sequence[Line]) -> dict[str, list[Line]]:
+    found: dict[str, list[Line]] = {}
+    for line in lines:
+        found.setdefault(f"Layer {line.layer + 1:03d}" if line.deposit else RAPID, []).append(line)
+    return found
+
+
+def _component(document: Any, name: str, lines: list[Line]) -> Any:
+    obj = document.addObject("Part::Feature", "Wires")
+    obj.Label = name
+    obj.Shape = Part.Compound([Part.Wire([edge(line)]) for line in lines])
+    return obj

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measured points against what was planned, in a document."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import os
+from collections.abc import Callable
+from typing import Any
+
+from ..brep.distance import skin
+from ..core.geometry.profile import RevolvedWall
+from ..core.inspection import inspect, point_file, surfaces, table
+from ..core.inspection.planned import Planned, of_triangles
+from ..core.issues import InputError
+from ..core.parameters.inspection import InspectionParameters
+from . import progress
+from .properties import HIDDEN, OUTPUT
+from .shapes import fingerprint, taken
+from .stage import Link, Outcome, Section, Stage, Work, checked, stage_of
+
+KINDS = ("feature", "toolpath")
+FACES_FITTED = 3000  # points that a fit to exact faces is made with
+
+
+class Inspection(Stage):
+    """Result: core.inspection.inspect.Inspected. The points are kept with it: the file may go."""
+
+    kind = "inspection"
+    sections = (Section(InspectionParameters, "inspection", "Inspection"),)
+    links = (Link("Planned", "", "The feature, toolpath, or object with a shape or mesh that was measured."),)
+    figures = (
+        ("Points", "App::PropertyInteger", "Number of points that count."),
+        ("Mean", "App::PropertyDistance", "Mean deviation, outside with a plus."),
+        ("Deviation", "App::PropertyDistance", "Standard deviation of the deviations."),
+        ("Least", "App::PropertyDistance", "Least deviation."),
+        ("Most", "App::PropertyDistance", "Largest deviation."),
+        ("WithinTolerance", "App::PropertyFloat", "Share of the points within tolerance (%)."),
+        ("Sphericity", "App::PropertyString", "Width of the narrowest zone between two spheres that holds all points."),
+        ("Circularity", "App::PropertyStringList", "Width of the narrowest zone between two circles, by height."),
+    )
+
+    def complete(self, obj: Any) -> None:
+        if "File" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyString", "File", "Inputs", "The file of measured points or of a scanned mesh.")
+        if "FileDigest" not in obj.PropertiesList:
+            obj.addProperty("App::PropertyString", "FileDigest", "Inputs", "What was in the file.", HIDDEN | OUTPUT)
+        super().complete(obj)
+
+    def prepare(self, obj: Any) -> Work:
+        linked = self.linked(obj)
+        parameters, path, where = self.parameters(obj, InspectionParameters), file_of(obj), f"{obj.Label}.File"
+        if not path:
+            raise InputError("NO_FILE", where, "no file of measured points is given; choose one")
+        obj.FileDigest = _digest(path, where)
+        planned = _stage_surface(linked["Planned"]) if linked else _shape_surface(obj.Planned)
+
+        def work() -> Outcome:
+            progress.report(0.0, "reading the points")
+            measured = point_file.read(path, parameters.unit)
+            found = inspect.inspect(measured, planned(), parameters, progress.report)
+            return Outcome(found, found.issues, _figures(found))
+
+        return work
+
+    def linked(self, obj: Any) -> dict[str, Any]:
+        missing = self.missing(obj)
+        if missing:
+            raise InputError("NO_INPUT", obj.Label, missing)
+        stage = stage_of(obj.Planned)
+        if stage is None:
+            return {}
+        kind = stage.kind if stage.kind in KINDS else " or ".join(KINDS)
+        return {"Planned": checked(obj, Link("Planned", kind, self.links[0].help))}
+
+    def _linked_stages(self, obj: Any) -> list[Any]:
+        return [] if stage_of(obj.Planned) is None else [obj.Planned]
+
+    def further_inputs(self, obj: Any) -> list[str]:
+        path = file_of(obj)
+        # a file that is gone is taken to be what it was: the result has its points
+        content = _digest(path, f"{obj.Label}.File") if os.path.isfile(path) else obj.FileDigest
+        shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
+        return [os.path.basename(path), content, *shape]
+
+
+def file_of(obj: Any) -> str:
+    """The path of the measured points, that of a relative one starting at the document."""
+    path = os.path.expanduser(obj.File.strip())
+    folder = os.path.dirname(obj.Document.FileName or "")
+    return os.path.join(folder, path) if path and folder else path
+
+
+def _digest(path: str, where: str) -> str:
+    try:
+        with open(path, "rb") as file:
+            return hashlib.sha256(file.read()).hexdigest()
+    except OSError as error:
+        why = (error.strerror or "no access").lower()
+        raise InputError("NO_FILE", where, f"{path} cannot be read ({why}); choose the file again") from None
+
+
+def _stage_surface(target: Any) -> Callable[[], Planned]:
+    value, label = target.Proxy.value(target), target.Label
+    feature = getattr(target, "Feature", None)
+    wall = None if feature is None else feature.Proxy.value(feature)
+    if isinstance(wall, RevolvedWall):  # circles of its beads are told along its meridian
+        return lambda: dataclasses.replace(surfaces.planned(value, label), wall=wall)
+    return lambda: surfaces.planned(value, label)
+
+
+def _shape_surface(target: Any) -> Callable[[], Planned]:
+    """The faces of a shape, exactly, or the triangles of a mesh."""
+    source = taken(target)
+
+    def of_mesh() -> Planned:
+        body = source.body()
+        return of_triangles(source.label, body.vertices, body.triangles)
+
+    def of_shape() -> Planned:
+        faces = skin(source.shape.copy(False), source.label)
+        return of_triangles(
+            source.label, faces.vertices, faces.triangles, exact=faces.exact, chord=faces.deflection, most=FACES_FITTED
+        )
+
+    return of_mesh if source.shape is None else of_shape
+
+
+def _figures(found: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
+    spread = found.spread
+    return (
+        ("Points", spread.count), ("Mean", spread.mean), ("Deviation", spread.deviation), ("Least", spread.least),
+        ("Most", spread.most), ("WithinTolerance", 100.0 * spread.within),
+        ("Sphericity", "" if found.ball is None else f"{found.ball.zone.zone:.4f} mm"),
+        ("Circularity", [f"{one.height:g} mm: {one.zone.zone:.4f} mm" for one in found.circles]),
+    )
+
+
+def files_of_figures(obj: Any) -> dict[str, bytes]:
+    """The figures of an inspection as a table and as JSON, and all points with their deviations. InputError NO_RESULT."""
+    found, name = obj.Proxy.value(obj), obj.Label
+    figures = "figure,value,unit\n" + "".join(f"\"{row.name}\",{row.value:.6f},{row.unit}\n" for row in table.rows(found))
+    files = {
+        f"{name}.csv": figures, f"{name}-deviations.csv": "".join(table.deviations(found)),
+        f"{name}.json": json.dumps(table.as_data(found), indent=1, ensure_ascii=False) + "\n",
+    }
+    return {"".join("_" if sign in "/\\:" else sign for sign in key): text.encode() for key, text in files.items()}

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The group of a job's stages in the tree. It computes nothing: stages may be dragged out of it and in again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from . import hooks
+from .stage import stage_of
+
+TYPE = "App::DocumentObjectGroupPython"
+
+
+class JobGroup:
+    """Proxy of a group of stages. Its class path is a file format."""
+
+    def __init__(self, obj: Any) -> None:
+        obj.Proxy = self
+        hooks.attach(obj)
+
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Show one that was made without a window."""
+        hooks.attach(obj)
+
+    def dumps(self) -> None:
+        """Nothing: all is in properties."""
+
+    def loads(self, state: Any) -> None:
+        """Nothing to restore."""
+
+    # FreeCAD up to 0.21.1 calls this pair, later ones the other
+    __getstate__ = dumps
+    __setstate__ = loads
+
+
+def grouped(doc: Any, label: str, stages: Sequence[Any]) -> Any:
+    """A new group of stages."""
+    group = doc.addObject(TYPE, "Job")
+    JobGroup(group)
+    group.Label = label
+    group.addObjects(list(stages))
+    group.purgeTouched()
+    return group
+
+
+def is_group(obj: Any) -> bool:
+    """Whether an object is the group of a job."""
+    return isinstance(getattr(obj, "Proxy", None), JobGroup)
+
+
+def stages_in(group: Any) -> list[Any]:
+    """The stages that are in a group now, in the order of the tree."""
+    return [obj for obj in group.Group if stage_of(obj) is not None]

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stretches of numbers that stand in a list before are left out of it, and put back.
+
+A result says many things twice: a motion repeats the points, directions and joints of its beads, a tool axis is mostly
+the build direction. The window of a zip file is too short to notice. Columns that are the same in many rows are runs of
+one number, which is kept once, for FreeCAD reads number by number. Numbers are compared bit by bit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Words = NDArray[np.uint64]
+
+SHORTEST = 32  # numbers in a stretch worth leaving out
+EVERY = 16  # numbers from one place that may be found again to the next: half of SHORTEST, so that none is missed
+TABLE = 22  # bits
+MOST_TRIED = 300_000
+FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93], dtype=np.uint64)
+
+
+def without_runs(numbers: Array) -> tuple[Array, Index]:
+    """The numbers (n,) with one of each run of the same number, and of each such run (k, 2) where it is in what comes back
+    and how often it stands there."""
+    words = np.ascontiguousarray(numbers).view(np.uint64)
+    edges = np.concatenate([[0], np.flatnonzero(words[1:] != words[:-1]) + 1, [len(words)]])
+    count = np.diff(edges)
+    long = count >= SHORTEST
+    keep = np.ones(len(words), dtype=bool)
+    for start, size in zip(edges[:-1][long].tolist(), count[long].tolist()):
+        keep[start + 1 : start + size] = False
+    place = np.cumsum(keep) - 1
+    return numbers[keep], np.column_stack([place[edges[:-1][long]], count[long]]).astype(np.int64)
+
+
+def with_runs(rest: Array, runs: Index) -> Array:
+    """The numbers of which runs were left out. ValueError where rest and runs do not make them."""
+    place, count = runs.T
+    if (place < 0).any() or (place >= len(rest)).any() or (np.diff(place) <= 0).any() or (count < 1).any():
+        raise ValueError("its runs are damaged")
+    parts, end = [], 0
+    for at, size in zip((place + 1).tolist(), (count - 1).tolist()):
+        parts += [rest[end:at], np.broadcast_to(rest[at - 1], size)]
+        end = at
+    return np.concatenate([*parts, rest[end:]])
+
+
+def folded(numbers: Array) -> tuple[Array, Index]:
+    """The numbers (n,) without the stretches that stand before in them, and of each such stretch (k, 3) where it was, where
+    it stands before, and how long it is. No stretch overlaps the one that it repeats."""
+    words = np.ascontiguousarray(numbers).view(np.uint64)
+    found: list[tuple[int, int, int]] = []
+    places, sources = _candidates(words)
+    end, j, tried = 0, 0, 0
+    while j < len(places) and tried < MOST_TRIED:
+        tried += 1
+        place, source = int(places[j]), int(sources[j])
+        back = _alike(words[max(end, place - EVERY) : place][::-1], words[max(0, source - EVERY) : source][::-1])
+        place, source = place - back, source - back
+        length = _length(words, source, place)
+        j += 1
+        if length >= SHORTEST:
+            found.append((place, source, length))
+            end = place + length
+            j += int(np.searchsorted(places[j:], end))
+    copies = np.array(found, dtype=np.int64).reshape(-1, 3)
+    return numbers[_kept(len(numbers), copies)], copies
+
+
+def unfolded(rest: Array, copies: Index, size: int) -> Array:
+    """The numbers (size,) that were folded. ValueError where rest and copies do not make them."""
+    place, source, length = copies.T
+    sound = (length > 0).all() and (source >= 0).all() and (source + length <= place).all()
+    if not sound or (place[1:] < (place + length)[:-1]).any() or (place + length > size).any():
+        raise ValueError("its repetitions are damaged")
+    if size - int(length.sum()) != len(rest):
+        raise ValueError("it is cut short")
+    numbers, end, taken = np.empty(size), 0, 0
+    for at, before, count in [*copies.tolist(), (size, 0, 0)]:
+        numbers[end:at] = rest[taken : taken + at - end]
+        numbers[at : at + count] = numbers[before : before + count]
+        taken += at - end
+        end = at + count
+    return numbers
+
+
+def _kept(size: int, copies: Index) -> NDArray[np.bool_]:
+    step = np.zeros(size + 1, dtype=np.int8)
+    step[copies[:, 0]] += 1
+    step[copies[:, 0] + copies[:, 2]] -= 1
+    kept: NDArray[np.bool_] = np.cumsum(step[:-1], dtype=np.int8) == 0
+    return kept
+
+
+def _candidates(words: Words) -> tuple[Index, Index]:
+    """Places (k,) in order where four words stand that stand before at a multiple of EVERY, and there the first of these."""
+    count = len(words) - len(FACTORS) + 1
+    if count < 2 * SHORTEST:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    marks = words[:count] * FACTORS[0]
+    for k in range(1, len(FACTORS)):
+        marks += words[k : count + k] * FACTORS[k]
+    marks ^= marks >> np.uint64(29)
+    marks *= FACTORS[1]
+    anchors = np.arange(0, count, EVERY)
+    # runs of one number, which are left out elsewhere
+    anchors = anchors[(words[anchors] != words[anchors + 1]) | (words[anchors + 1] != words[anchors + 2])]
+    known, first = np.unique(marks[anchors], return_index=True)
+    if not len(known):
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    shift = np.uint64(64 - TABLE)
+    table = np.zeros(1 << TABLE, dtype=bool)
+    table[(known >> shift).astype(np.intp)] = True
+    places = np.flatnonzero(table[(marks >> shift).astype(np.intp)])
+    at = np.minimum(np.searchsorted(known, marks[places]), len(known) - 1)
+    source = anchors[first[at]]
+    good = (known[at] == marks[places]) & (source + SHORTEST <= places)
+    return places[good].astype(np.int64), source[good].astype(np.int64)
+
+
+def _length(words: Words, source: int, place: int) -> int:
+    """How many words from `source` on stand at `place` too, none of them counted from both sides."""
+    most = min(place - source, len(words) - place)
+    length, step = 0, 2 * SHORTEST
+    while length < most:
+        step = min(step, most - length)
+        same = _alike(words[source + length : source + length + step], words[place + length : place + length + step])
+        length += same
+        if same < step:
+            break
+        step *= 4
+    return length
+
+
+def _alike(one: Words, other: Words) -> int:
+    """How many of the first words are the same."""
+    size = min(len(one), len(other))
+    differ = one[:size] != other[:size]
+    return int(np.argmax(differ)) if differ.any() else size

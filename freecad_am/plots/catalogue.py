@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""All pictures by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from . import joints, process
+from .chart import Chart, Picture
+from .fit import fit
+from .rows import TIME, Rows, rows
+from .source import Source
+
+Charts = tuple[Chart, ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A picture. along: drawn over time or path, by which its charts come; else `of`, from layers. machine: needs a cell."""
+
+    title: str
+    along: Callable[[Source, Rows], Charts] | None = None
+    of: Callable[[Source, tuple[int, int]], Charts] | None = None
+    machine: bool = False
+    lacking: str = "there is nothing to be seen in these layers"
+
+
+def _fit(source: Source, layers: tuple[int, int]) -> Charts:
+    found = source.model
+    return () if found is None else (fit(*found, source.process.bead_width),)
+
+
+_NO_MODEL = "no bead model sets the speeds (process.bead_model)"
+PICTURES = {
+    "angles": Entry("Joint angles", joints.angles, machine=True),
+    "speeds": Entry("Joint speeds", joints.speeds, machine=True),
+    "shares": Entry("Joint speeds in %", joints.shares, machine=True),
+    "accelerations": Entry("Joint accelerations", joints.accelerations, machine=True),
+    "jerks": Entry("Joint jerks", joints.jerks, machine=True),
+    "condition": Entry("Condition", joints.condition, machine=True, lacking="this machine has no condition"),
+    "travel": Entry("Speed along the path", process.travel),
+    "deposit": Entry("Deposit rate", process.deposit),
+    "spacing": Entry("Distance between layers", of=process.spacing, lacking="none of these layers lies on another"),
+    "heights": Entry("Predicted heights", of=process.heights, lacking=_NO_MODEL),
+    "spread": Entry("Predicted widths and speeds", of=process.spread, lacking=_NO_MODEL),
+    "fit": Entry("Fit of the bead widths", of=_fit, lacking=_NO_MODEL),
+}
+
+
+def picture(name: str, source: Source, over: str = TIME, layers: tuple[int, int] | None = None) -> Picture:
+    """A picture of PICTURES, over TIME or PATH where it is one along the job. layers: first and last, all when left out.
+
+    One that there is not has no charts and says why. InputError where a table of a bead model cannot be read.
+    """
+    entry = PICTURES[name]
+    if entry.machine and source.cell is None:
+        return Picture(name, entry.title, (), "a toolpath has no joints yet; choose a joint path")
+    if entry.along is not None:
+        charts = entry.along(source, rows(source, over, layers))
+    else:
+        assert entry.of is not None
+        charts = entry.of(source, layers or (0, len(source.toolpath.layers) - 1))
+    return Picture(name, entry.title, charts, "" if charts else entry.lacking)

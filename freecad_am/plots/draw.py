@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pictures drawn by matplotlib: charts in, a Figure out, and where in it each frame lies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
+
+from .chart import DOTS, MARKED, STEP, Chart, Curve
+from .envelope import envelope
+from .look import BAR, Look
+
+DPI = 100.0
+# of a frame, in pixels: what is left free at its sides, above for its title, below for its scale
+LEFT, RIGHT, ABOVE, BELOW, BARE = 66.0, 14.0, 24.0, 37.0, 6.0
+NUMBERS = 12.0  # above a frame that has the numbers of layers
+TEXT, TITLE, SMALL = 7.6, 8.6, 6.4  # points
+CHARACTER = 6.0  # pixels, about, of a text
+MOST_BORDERS, FEW_WRONG = 80, 40
+APART = 26.0  # pixels between the numbers of layers, at least
+BORDER, FRAME, FORBIDDEN, WANTED = 0.35, 0.5, 0.13, 0.14  # opacities
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Window:
+    """The part that is shown, by the number of a chart: across, the range of x, by 0 for all charts that share it; up, that
+    of y. All there is, where left out."""
+
+    across: Mapping[int, Range] = field(default_factory=dict)
+    up: Mapping[int, Range] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the frame of a chart lies in its picture: pixels from the left and from the top, and the ranges it shows."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+    across: Range
+    up: Range
+
+
+def figure(
+    charts: Sequence[Chart], look: Look, width: int, height: int, window: Window | None = None
+) -> tuple[Figure, tuple[Place, ...]]:
+    """Charts one below the other, width times height pixels at 100 to the inch; where they count the same across, only the
+    last one has the numbers. The same charts make the same figure."""
+    window = window or Window()
+    made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor=look.paper, edgecolor="none")
+    shared = share(charts)
+    across = (min(chart.across()[0] for chart in charts), max(chart.across()[1] for chart in charts)) if shared else None
+    places, top = [], 0.0
+    above = [ABOVE + (NUMBERS if chart.borders is not None and (number == 0 or not shared) else 0.0)
+             for number, chart in enumerate(charts)]
+    fixed = sum(above) + sum(BELOW if _numbered(shared, number, charts) else BARE for number in range(len(charts)))
+    tall = max((height - fixed) / len(charts), 12.0)
+    for number, chart in enumerate(charts):
+        numbered = _numbered(shared, number, charts)
+        place = Place(
+            LEFT, top + above[number], max(width - LEFT - RIGHT, 20.0), tall,
+            window.across.get(0 if shared else number) or across or chart.across(), window.up.get(number) or chart.up(),
+        )
+        _Frame(made, chart, look, place, width, height, numbered, above[number] > ABOVE).draw()
+        places.append(place)
+        top += above[number] + tall + (BELOW if numbered else BARE)
+    return made, tuple(places)
+
+
+def share(charts: Sequence[Chart]) -> bool:
+    """Whether several charts count the same across, so that they are looked at together."""
+    return len(charts) > 1 and len({chart.x for chart in charts}) == 1
+
+
+def _numbered(shared: bool, number: int, charts: Sequence[Chart]) -> bool:
+    return not shared or number == len(charts) - 1
+
+
+@dataclass(frozen=True)
+class _Frame:
+    made: Figure
+    chart: Chart
+    look: Look
+    place: Place
+    width: int
+    height: int
+    numbered: bool
+    layers: bool
+
+    def draw(self) -> None:
+        place = self.place
+        bottom = 1.0 - (place.top + place.height) / self.height
+        axes = self.made.add_axes((place.left / self.width, bottom, place.width / self.width, place.height / self.height),
+                                  facecolor="none")
+        axes.set_xlim(*place.across)
+        axes.set_ylim(*place.up)
+        self._scales(axes)
+        self._grounds(axes)
+        self._borders(axes)
+        if self.chart.bars is not None:
+            axes.stairs(self.chart.bars.heights, self.chart.bars.edges, fill=True, color=BAR, linewidth=0.0)
+        for curve in self.chart.curves:
+            self._curve(axes, curve)
+        self._marks(axes)
+        self._title()
+
+    def _scales(self, axes: Any) -> None:
+        for spine in axes.spines.values():
+            spine.set(color=self.look.soft, linewidth=0.7, alpha=FRAME)
+        across = max(3, min(10, int(self.place.width / 75.0)))
+        up = max(2, min(6, int(self.place.height / 26.0)))
+        for axis, most in ((axes.xaxis, across), (axes.yaxis, up)):
+            axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
+            numbers = ScalarFormatter(useOffset=False)
+            numbers.set_powerlimits((-4, 6))
+            axis.set_major_formatter(numbers)
+            axis.get_offset_text().set(color=self.look.soft, size=SMALL)
+        axes.tick_params(length=0.0, pad=3.0, labelsize=TEXT, labelcolor=self.look.soft, labelbottom=self.numbered,
+                         grid_color=self.look.grid, grid_linewidth=0.8)
+        axes.grid(True)
+        axes.set_axisbelow(True)
+        if self.numbered:
+            self._text(self.place.left + 0.5 * self.place.width, self.place.top + self.place.height + 30.0,
+                       self.chart.x.label, ha="center")
+        label = self.chart.y.unit if self.place.height < CHARACTER * len(self.chart.y.label) else self.chart.y.label
+        self._text(12.0, self.place.top + 0.5 * self.place.height, label, rotation=90.0, ha="center", va="center")
+
+    def _grounds(self, axes: Any) -> None:
+        """What limits forbid, and the band that is wanted."""
+        (low, high), (least, most) = self.place.up, self.chart.limits
+        for start, end in ((low, min(least, high)), (max(most, low), high)):
+            if np.isfinite(end - start) and end > start:
+                axes.add_patch(Rectangle((0.0, start), 1.0, end - start, transform=axes.get_yaxis_transform(),
+                                         facecolor=self.look.bad, alpha=FORBIDDEN, linewidth=0.0))
+        for value in self.chart.limits:
+            if low <= value <= high:
+                self._across(axes, value, self.look.bad, f"{value:.6g}")
+        if self.chart.band is not None:
+            start, end = self.chart.band
+            axes.add_patch(Rectangle((start, 0.0), end - start, 1.0, transform=axes.get_xaxis_transform(),
+                                     facecolor=self.look.good, alpha=WANTED, linewidth=0.0))
+
+    def _borders(self, axes: Any) -> None:
+        """Where layers begin; some of them where there are many."""
+        chart = self.chart
+        if chart.borders is None or chart.layers is None:
+            return
+        low, high = self.place.across
+        seen = np.flatnonzero((chart.borders >= low) & (chart.borders <= high))
+        seen = seen[:: -(-len(seen) // MOST_BORDERS) or 1]
+        x = np.repeat(chart.borders[seen], 3)
+        y = np.tile([0.0, 1.0, np.nan], len(seen))
+        axes.add_line(Line2D(x, y, transform=axes.get_xaxis_transform(), color=self.look.soft, alpha=BORDER, linewidth=0.7,
+                             linestyle=(0, (1, 2))))
+        if not self.layers:
+            return
+        last = -np.inf
+        for number in seen:
+            share = (float(chart.borders[number]) - low) / (high - low)
+            text = f"{'' if last >= 0.0 else 'layer '}{chart.layers[number]}"
+            if share * self.place.width >= last + APART:
+                self._text(self.place.left + share * self.place.width, self.place.top - 4.0, text, size=SMALL)
+                last = share * self.place.width + CHARACTER * len(text)
+
+    def _curve(self, axes: Any, curve: Curve) -> None:
+        colour = self.look.colour(curve.colour)
+        style = {"drawstyle": "steps-pre"} if curve.kind == STEP else {}
+        if curve.kind == DOTS:
+            axes.add_line(Line2D(curve.x, curve.y, color=colour, linestyle="none", marker="o", markersize=4.0))
+            return
+        rows = envelope(curve.x, curve.y, int(self.place.width), *self.place.across)
+        x, y = curve.x[rows], curve.y[rows]
+        dots = {"marker": "o", "markersize": 2.6} if curve.kind == MARKED and len(x) < 0.2 * self.place.width else {}
+        axes.add_line(Line2D(x, y, color=colour, linewidth=1.1, **dots, **style))
+        wrong = self.chart.wrong(y)
+        if wrong.any():  # with dots where they are few: one alone makes no line
+            few = {"marker": "o", "markersize": 2.6} if wrong.sum() <= FEW_WRONG else {}
+            axes.add_line(Line2D(x, np.where(wrong, y, np.nan), color=self.look.bad, linewidth=2.2, **few, **style))
+
+    def _marks(self, axes: Any) -> None:
+        low, high = self.place.up
+        for value, name in self.chart.marks:
+            if low <= value <= high:
+                self._across(axes, value, self.look.soft, name, left=True)
+        for value, name in self.chart.upright:
+            start, end = self.place.across
+            if start <= value <= end:
+                axes.add_line(Line2D([value, value], [0.0, 1.0], transform=axes.get_xaxis_transform(), color=self.look.ink,
+                                     linewidth=1.0, linestyle="--"))
+                share = (value - start) / (end - start)
+                self._text(self.place.left + share * self.place.width + 4.0, self.place.top + 10.0, name, size=SMALL)
+
+    def _across(self, axes: Any, value: float, colour: str, name: str, left: bool = False) -> None:
+        """A dashed line with its name at its right or left end, below it where there is no room above."""
+        axes.add_line(Line2D([0.0, 1.0], [value, value], transform=axes.get_yaxis_transform(), color=colour, linewidth=1.0,
+                             linestyle="--"))
+        low, high = self.place.up
+        down = self.place.top + (high - value) / (high - low) * self.place.height
+        above = down - self.place.top > 11.0
+        self._text(self.place.left + (4.0 if left else self.place.width - 4.0), down - 3.0 if above else down + 10.0, name,
+                   color=colour, ha="left" if left else "right", size=SMALL)
+
+    def _title(self) -> None:
+        count = self.chart.wrong_count
+        title = self.chart.title + (f": {count:,} points beyond the limit" if count else "")
+        down = self.place.top - (7.0 + NUMBERS if self.layers else 7.0)
+        self._text(self.place.left, down, title, color=self.look.bad if count else self.look.ink, size=TITLE,
+                   weight="bold")
+        named = [curve for curve in self.chart.curves if curve.kind != DOTS]
+        right = self.place.left + self.place.width
+        least, most = self.chart.limits
+        if len(named) < 2:
+            ends = f"{least:.6g} to {most:.6g}" if np.isfinite(least) else f"up to {most:.6g}"
+            if np.isfinite(most):
+                self._text(right, down, f"limits {ends} {self.chart.y.unit}", ha="right", size=SMALL)
+            return
+        if CHARACTER * (1.2 * len(title) + sum(len(curve.name) + 3.0 for curve in named)) > self.place.width:
+            self._column(named)
+            return
+        for curve in reversed(named):
+            right -= CHARACTER * len(curve.name) + 4.0
+            self._key(right, down, curve)
+            right -= 14.0
+
+    def _column(self, named: Sequence[Curve]) -> None:
+        """Names of curves one below the other in the frame, where they have no room above it."""
+        left = self.place.left + self.place.width - CHARACTER * max(len(curve.name) for curve in named)
+        for number, curve in enumerate(named):
+            self._key(left, self.place.top + 12.0 * (number + 1), curve)
+
+    def _key(self, left: float, down: float, curve: Curve) -> None:
+        self._text(left, down, curve.name)
+        self._text(left - 10.0, down, "●", color=self.look.colour(curve.colour))
+
+    def _text(self, left: float, down: float, text: str, **style: Any) -> None:
+        style = {"color": self.look.soft, "size": TEXT, "va": "baseline", "parse_math": False, **style}
+        self.made.text(left / self.width, 1.0 - down / self.height, text, **style)

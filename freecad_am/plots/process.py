@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pictures of the deposit: speed along the path, rate, distances between layers, and what a bead model predicts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..core.process import predicted
+from .chart import LINE, MARKED, STEP, Array, Bars, Chart, Curve, Quantity
+from .rows import Rows
+from .source import Source
+
+BINS = 48
+# g/s in kg/h, and mm^3 in cm^3
+KG_PER_HOUR, MM3_PER_CM3 = 3.6, 1000.0
+
+
+def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
+    """The speed of the deposition point, as asked for and, where the machine cannot keep it, what it becomes."""
+    motion, kept = source.motion, source.pace
+    speed = np.where(motion.point > 0, motion.speed, np.nan)
+    rapid, deposit = (rows.along(np.where(some, values, np.nan)) for some, values in (
+        (~motion.deposit, motion.speed), (motion.deposit, speed),
+    ))
+    rapid[rows.standing] = deposit[rows.standing] = np.nan
+    curves = [Curve("rapid", rows.x, rapid, "soft", STEP, rows.layer)] if (~motion.deposit).any() else []
+    curves.append(Curve("deposit", rows.x, deposit, 2, STEP, rows.layer))
+    if kept is not None and (kept.slowed & motion.deposit).any():
+        slowed = rows.along(np.where(kept.slowed & motion.deposit, kept.achieved, np.nan))
+        slowed[rows.standing] = np.nan
+        curves.append(Curve("as the axes can", rows.x, slowed, "bad", STEP, rows.layer))
+    top = 1.12 * float(np.nanmax([np.nanmax(curve.y, initial=0.0) for curve in curves])) or 1.0
+    chart = Chart("Speed along the path", rows.quantity, Quantity("speed", "mm/s"), tuple(curves), borders=rows.borders,
+                  layers=rows.layers, span=(0.0, top))
+    return (chart,)
+
+
+def deposit(source: Source, rows: Rows) -> tuple[Chart, ...]:
+    """The deposit rate of each segment, and the mass that has been deposited so far."""
+    motion, density = source.motion, source.process.density
+    mass = source.volumes / MM3_PER_CM3 * density
+    rate = np.divide(KG_PER_HOUR * mass, motion.duration, out=np.zeros_like(mass), where=motion.duration > 0.0)
+    so_far = np.cumsum(mass)
+    most = float(rate.max(initial=0.0))
+    return (
+        Chart("Deposit rate", rows.quantity, Quantity("rate", "kg/h"),
+              (Curve("rate", rows.x, rows.along(rate), 2, STEP, rows.layer),), borders=rows.borders, layers=rows.layers,
+              span=(0.0, 1.12 * most or 1.0)),
+        Chart("Deposited mass", rows.quantity, Quantity("mass", "g"),
+              (Curve("mass", rows.x, rows.at(so_far), 3, LINE, rows.layer),), borders=rows.borders, layers=rows.layers),
+    )
+
+
+def distances(values: Array, asked: float, band: float | None = None) -> Chart:
+    """How the local distances (n,) mm between layers are spread about the layer height, and the band they may lie in."""
+    low, high = float(values.min(initial=asked)), float(values.max(initial=asked))
+    pad = max(0.15 * (high - low), 0.002 * asked)
+    edges = np.linspace(low - pad, high + pad, BINS + 1)
+    share = np.histogram(values, edges)[0] * (100.0 / max(len(values), 1))
+    return Chart(
+        f"Distance to the layer before (asked: {asked:g} mm)", Quantity("local distance", "mm"),
+        Quantity("share of the points", "%"), bars=Bars("share", edges, share),
+        band=None if band is None else (asked * (1.0 - band), asked * (1.0 + band)),
+        upright=((asked, "layer height"),),
+    )
+
+
+def spacing(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """`distances` of layers; none where no layer lies on another."""
+    values, layer = source.distances
+    taken = values[(layer >= layers[0]) & (layer <= layers[1])]
+    return (distances(taken, source.toolpath.layer_height, source.band),) if len(taken) else ()
+
+
+def spread(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """How travel speeds, bead widths and heights are spread over the length; none without a bead model."""
+    found = source.segments(layers)
+    if not len(found.length):
+        return ()
+    return (
+        _histogram("Travel speed", Quantity("travel speed", "mm/min"), found.speed, found.length),
+        _histogram("Predicted width of the bead", Quantity("width", "mm"), found.width, found.length),
+        _histogram("Predicted height of the bead", Quantity("height", "mm"), found.height, found.length),
+    )
+
+
+def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """Predicted heights against the layer height, layer by layer, and how far the layers are off by them; none without a
+    bead model."""
+    return height_charts(predicted.beads(source.toolpath), layers)
+
+
+def height_charts(told: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """The charts of what `predicted.beads` finds."""
+    rows = [] if told is None else [row for row in told["layers"] if layers[0] <= row["layer"] <= layers[1]]
+    if told is None or not rows:
+        return ()
+    x, asked = np.array([row["layer"] for row in rows], float), float(told["layer_height_mm"])
+
+    def curve(name: str, values: list[float], colour: int) -> Curve:
+        return Curve(name, x, np.array(values), colour, MARKED)
+
+    spread = [curve(name, [row["height_mm"][kind] for row in rows], colour)
+              for colour, (kind, name) in enumerate((("min", "lowest"), ("mean", "mean"), ("max", "highest")))]
+    layer = Quantity("layer")
+    return (
+        Chart("Predicted height by layer", layer, Quantity("height", "mm"), tuple(spread),
+              marks=((asked, f"layer height {asked:g} mm"),)),
+        Chart("Sum of the heights, off the layers", layer, Quantity("off", "mm"),
+              (curve("drift", [row["drift_mm"] for row in rows], 3),), marks=((0.0, ""),)),
+    )
+
+
+def _histogram(title: str, x: Quantity, values: Array, length: Array) -> Chart:
+    low, high = float(values.min()), float(values.max())
+    pad = max(0.05 * (high - low), 0.002 * high)
+    edges = np.linspace(low - pad, high + pad, BINS + 1)
+    share = np.histogram(values, edges, weights=length)[0] * (100.0 / length.sum())
+    return Chart(title, x, Quantity("share of the length", "%"), bars=Bars("share", edges, share))

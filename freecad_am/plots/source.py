@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What pictures are made from, and what is derived of it once it is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.kinematics.cell import Cell
+from ..core.motion import Motion
+from ..core.parameters.process import ProcessParameters
+from ..core.process import bead_model, bead_table, predicted, spacing
+from ..core.process.bead_model import BeadModel
+from ..core.process.bead_table import Measured
+from ..core.simulation.deposit import volumes
+from ..core.simulation.pace import Pace, pace
+from ..core.simulation.rates import Rates, rates
+from ..core.simulation.timeline import Timeline, timeline
+from ..core.toolpath import Toolpath
+from .chart import Array
+
+
+@dataclass(frozen=True)
+class Source:
+    """A job: its toolpath as it is run, and its motion, that of the deposit alone where there is no cell.
+
+    condition, threshold: (n,) of the rows of the motion, NaN where there is none. band: share of the layer height by which
+    local distances may differ, None where nobody asks.
+    """
+
+    toolpath: Toolpath
+    motion: Motion
+    process: ProcessParameters
+    cell: Cell | None = None
+    condition: Array | None = None
+    threshold: Array | None = None
+    band: float | None = None
+
+    @cached_property
+    def times(self) -> Timeline:
+        """When each row is reached and left."""
+        return timeline(self.motion, self.process, [layer.wait for layer in self.toolpath.layers])
+
+    @cached_property
+    def rates(self) -> Rates:
+        """Speeds, accelerations and jerks of the axes."""
+        return rates(self.motion)
+
+    @cached_property
+    def volumes(self) -> Array:
+        """(n,) mm^3 of each row's segment."""
+        return volumes(self.motion, self.process, self.toolpath.layer_height)
+
+    @cached_property
+    def pace(self) -> Pace | None:
+        """What the machine keeps of the speeds; None without one."""
+        if self.cell is None:
+            return None
+        return pace(self.motion, self.cell.machine.max_speed, self.cell.machine.max_acceleration)
+
+    @cached_property
+    def distances(self) -> tuple[Array, NDArray[np.int64]]:
+        """(n,) mm, the local distances between layers that are known, beads that close gaps left out; the layer of each."""
+        beads = list(self.toolpath)
+        local = spacing.local_distances(self.toolpath)
+        taken = [values for (_, _, bead), values in zip(beads, local, strict=True) if not bead.closing]
+        layers = [np.full(len(bead), layer) for layer, _, bead in beads if not bead.closing]
+        values, layer = np.concatenate([*taken, np.zeros(0)]), np.concatenate([*layers, np.zeros(0, np.int64)])
+        known = np.isfinite(values)
+        return values[known], layer[known].astype(np.int64)
+
+    @cached_property
+    def model(self) -> tuple[Measured, BeadModel] | None:
+        """The table of the bead model and its fit; None without one. InputError where the table cannot be read."""
+        if self.process.bead_model == "none":
+            return None
+        measured = bead_table.measured(self.process.bead_model)
+        return measured, bead_model.fit(*measured)
+
+    def segments(self, layers: tuple[int, int]) -> predicted.Segments:
+        """What the bead model predicts of the beads of layers, the last one included."""
+        low, high = layers
+        return predicted.segments([bead for layer, _, bead in self.toolpath if low <= layer <= high])

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Names of programs: what a controller takes, what is proposed for one it refuses, and the names of parts."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from ..core.issues import InputError
+
+# names that files cannot have on the computers programs pass through
+DEVICES = frozenset(("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))))
+
+
+@dataclass(frozen=True)
+class Naming:
+    """The rules of a controller.
+
+    written: how it writes a name. start, starts: a pattern of how one begins, and in words. longest: characters; spare of
+    them are left free in proposals, for the digits of parts. reserved: words, upper case, that are none; those of DEVICES
+    never are. prefix: what proposals begin with where the name itself would not do.
+    """
+
+    written: Callable[[str], str]
+    start: str
+    starts: str
+    longest: int
+    spare: int
+    prefix: str
+    reserved: frozenset[str] = field(default_factory=frozenset)
+    what: str = "a program's name"
+
+    def checked(self, name: str, where: str) -> str:
+        """The name as the controller has it. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+        shown = self.written(name) if name.isascii() else name
+        if not name:
+            raise self.refused(name, where, "it is empty")
+        if re.search(r"[^A-Za-z0-9_]", shown):
+            raise self.refused(name, where, "it may hold only the letters A to Z, digits and underscores")
+        if not re.match(self.start, shown):
+            raise self.refused(name, where, f"it must start with {self.starts}")
+        if len(shown) > self.longest:
+            raise self.refused(name, where, f"it has more than {self.longest} characters")
+        if self._taken(shown):
+            raise self.refused(name, where, "it is a reserved word")
+        return shown
+
+    def refused(self, name: str, where: str, why: str) -> InputError:
+        """The error for a name that is none, with one that is."""
+        proposal = self.written(re.sub(r"[^A-Za-z0-9]+", "_", plain(name)).strip("_"))
+        if not re.match(self.start, proposal) or self._taken(proposal):
+            proposal = f"{self.prefix}{proposal}".rstrip("_")
+        proposal = proposal[: self.longest - self.spare].rstrip("_")
+        return InputError(
+            "PROGRAM_NAME", where, f"{name!r} cannot be {self.what} on the controller: {why}; use {proposal!r}"
+        )
+
+    def parts(self, name: str, count: int) -> list[str]:
+        """Names of so many parts. Raises InputError PROGRAM_NAME where there is no room for their digits."""
+        digits = max(2, len(str(count)))
+        names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
+        if len(names[0]) > self.longest:
+            raise self.refused(
+                name, "name", f"with the {digits} digits of its parts it has more than {self.longest} characters"
+            )
+        return names
+
+    def _taken(self, name: str) -> bool:
+        return name.upper() in DEVICES | self.reserved
+
+
+def plain(text: str) -> str:
+    """The text in ASCII characters that can be printed."""
+    apart = unicodedata.normalize("NFKD", text.replace("ß", "ss")).encode("ascii", "ignore").decode("ascii")
+    return re.sub(r"[^ -~]+", " ", apart)

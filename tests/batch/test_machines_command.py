@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`freecad-am machines NAME`: a machine in the words of other programs."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.kinematics import denavit_hartenberg as dh
+from freecad_am.core.kinematics import machine, urdf
+from freecad_am.kdl.chain import KdlArm
+
+Q = np.random.default_rng(8).uniform(-3, 3, (20, 6))
+
+
+def test_a_urdf_from_the_command_line_is_the_machine(workshop):
+    done = workshop.run("machines", "kuka-kr16-2", "--urdf")
+    path = workshop.folder / "arm.urdf"
+    path.write_text(done.out, encoding="utf-8")
+    found = urdf.Urdf(path).between("base_link", "tool0")
+    np.testing.assert_allclose(found.chain.forward(Q), KdlArm(machine.load("kuka-kr16-2")).forward(Q), atol=1e-9)
+
+
+@pytest.mark.parametrize("form", ["dh", "modified-dh"])
+def test_a_table_from_the_command_line_is_the_machine(workshop, form):
+    before, heading, *rows, after = workshop.run("machines", "staubli-tx60", f"--{form}").out.splitlines()
+    assert heading == "axis theta d a alpha" and len(rows) == 6
+
+    def pose(line):
+        figures = [float(word) for word in line.split()[1:]]
+        return frames.from_rpy(figures[:3], np.radians(figures[3:]))
+
+    table = dh.Table(tuple(
+        dh.Row(np.radians(theta), d, a, np.radians(alpha))
+        for theta, d, a, alpha in ([float(word) for word in row.split()[1:]] for row in rows)
+    ), pose(before), pose(after), form != "dh")
+    np.testing.assert_allclose(dh.chain_of(table).forward(Q), KdlArm(machine.load("staubli-tx60")).forward(Q), atol=1e-7)
+
+
+@pytest.mark.parametrize("words,told", [
+    (["kuka-kr16-2"], "in what form is 'kuka-kr16-2' to be written"), (["--urdf"], "--urdf of what machine"),
+    (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"), (["kuka-kr16-2", "--dh", "--urdf"], "not allowed with"),
+])
+def test_slips_on_the_command_line_are_told(workshop, words, told):
+    done = workshop.run("machines", *words)
+    assert done.status == 2 and told in done.err and not done.out

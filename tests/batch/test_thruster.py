@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The thruster of Dai 2020 whole, as it is shipped: 180 layers of eighteen blades to a program for an 840D."""
+
+import csv
+import json
+import math
+import os
+import re
+import subprocess
+from itertools import groupby
+
+import numpy as np
+import pytest
+
+HEIGHT, CHORD = 2.5, 0.05  # of thruster.yaml
+WRITTEN = 1e-6  # mm, of waypoints.csv: half a digit of three numbers
+# hubs by where their middle is and the largest circumcircle of their blades
+HUBS = ((70.0, 466.5), (205.0, 399.9), (326.0, 384.3))
+TAPER = math.atan2(60.0, 200.0)
+
+
+class Whole:
+    """What a run wrote, read again: columns of the rows that deposit."""
+
+    def __init__(self, out):
+        self.report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+        with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
+            lines = csv.reader(stream)
+            header = next(lines)
+            names = ("layer", "bead", "point", "x_mm", "y_mm", "z_mm", "speed_mm_s", "tx", "ty", "tz", "width_mm")
+            kept = [header.index(name) for name in names]
+            kind = header.index("kind")
+            rows = np.array([[row[k] for k in kept] for row in lines if row[kind] == "deposit"], dtype=np.float64)
+        self.layer, self.bead, self.point = rows[:, :3].astype(int).T
+        self.places, self.speed, self.tool, self.width = rows[:, 3:6], rows[:, 6], rows[:, 7:10], rows[:, 10]
+        self.texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+
+    def away(self, places):
+        """Distance of places (n, 3) from the three bases: (3, n)."""
+        rho, z = np.hypot(places[:, 0], places[:, 1]), places[:, 2]
+        cone = (rho - 60.0) * math.cos(TAPER) + (z - 280.0) * math.sin(TAPER)
+        return np.stack([rho - 75.0, rho - 60.0, cone])
+
+
+def check_levels(whole):
+    """Every point on its cone, the cones a layer height apart; between points within the chord error."""
+    moves = whole.point > 0
+    middle = np.roll(whole.places, 1, axis=0)
+    middle = 0.5 * (middle + whole.places)
+    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [at for at, _ in HUBS]), axis=1)
+    row = np.arange(len(hub))
+    away, between = whole.away(whole.places)[hub, row], whole.away(middle)[hub, row]
+    level = np.rint(away / HEIGHT)
+    assert np.abs(away - level * HEIGHT).max() < 1e-6 + WRITTEN
+    assert np.abs(between - level * HEIGHT)[moves].max() < CHORD
+    for k, (_, diameter) in enumerate(HUBS):
+        mine = hub == k
+        layers = sorted(set(zip(whole.layer[mine].tolist(), level[mine].tolist(), strict=True)))
+        assert [number for _, number in layers] == list(range(len(layers)))  # each once, and from the hub outwards
+        mean = np.array([away[mine & (whole.layer == layer)].mean() for layer, _ in layers])
+        assert np.abs(np.diff(mean) - HEIGHT).max() < 1e-6
+        tip = np.hypot(*whole.places[mine, :2].T).max()
+        assert 0.5 * diameter - HEIGHT < tip <= 0.5 * diameter + WRITTEN
+
+
+def check_order(whole):
+    """Ring by ring around the axis: no two beads running are on the same blade, but of those a ring has in several pieces;
+    each blade has the same share of each layer."""
+    first = np.flatnonzero(whole.point == 0)
+    ends = np.append(first[1:], len(whole.point))
+    blade = []
+    for low, high in zip(first, ends, strict=True):
+        x, y = whole.places[low:high, :2].mean(axis=0)
+        blade.append(round(math.degrees(math.atan2(y, x)) / 60.0) % 6)
+    blades, layers = np.array(blade), whole.layer[first]
+    for layer in np.unique(layers):
+        mine = blades[layers == layer]
+        assert (np.bincount(mine, minlength=6) == len(mine) / 6).all()
+        turns = [one for one, _ in groupby(mine.tolist())]
+        step = np.remainder(np.diff(turns), 6)
+        assert len(turns) % 6 == 0 and len(set(step.tolist())) == 1 and step[0] in (1, 5)
+
+
+def check_program(whole):
+    """All deposit of the texts, in the order of the parts: the places, directions and speeds of waypoints.csv."""
+    number = r"=?(-?\d+\.?\d*)"
+    asked = re.compile(" ".join(f"{word}{number}" for word in ("X", "Y", "Z", "A3", "B3", "C3")) + rf"(?:.* F{number})?")
+    told, feed = [], math.nan
+    for name in sorted(whole.texts):
+        if name.endswith(".SPF"):
+            for line in whole.texts[name].splitlines():
+                found = asked.search(line)
+                if found:
+                    feed = float(found[7]) if found[7] else feed
+                    told.append([*map(float, found.groups()[:6]), feed])
+    told, moves = np.array(told), whole.point > 0
+    assert len(told) == moves.sum() > 100_000
+    assert np.abs(told[:, :3] - whole.places[moves]).max() < 6e-6
+    assert np.abs(told[:, 3:6] - whole.tool[moves]).max() < 1.1e-6
+    np.testing.assert_allclose(told[:, 6] / 60.0, whole.speed[moves], rtol=1e-4)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory, root):
+    folder = tmp_path_factory.mktemp("thruster")
+    words = ["plan", str(root / "resources" / "examples" / "thruster" / "thruster.yaml"), "-o", str(folder), "--no-page"]
+    done = subprocess.run(
+        [str(root / "freecad-am"), *words], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False,
+        stdin=subprocess.DEVNULL, env={**os.environ, "FREECAD_USER_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
+        timeout=1800,  # a minute of work, on a machine that may be busy
+    )
+    assert done.returncode == 0, done.stderr
+    return Whole(folder)
+
+
+def test_it_is_planned_whole(whole):
+    report = whole.report
+    assert report["status"] == "ok" and report["counts"]["layers"] == whole.layer.max() + 1
+    assert report["counts"]["beads"] == (whole.point == 0).sum()
+    moving = whole.speed[whole.point > 0] * 60.0
+    assert 410.0 < moving.min() < 450.0 and 700.0 < moving.max() < 830.0
+    assert whole.width.min() > 9.5 - 1e-6
+    assert np.abs(np.linalg.norm(whole.tool, axis=1) - 1.0).max() < 2e-6
+
+
+def test_its_layers_lie_on_their_cones(whole):
+    check_levels(whole)
+
+
+def test_it_is_laid_around_the_axis(whole):
+    check_order(whole)
+
+
+def test_its_program_reads_the_same(whole):
+    check_program(whole)

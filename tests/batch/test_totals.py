@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Time, length, volume and mass of the report, against the toolpath and the joint path's properties."""
+
+import json
+
+import numpy as np
+import pytest
+
+from freecad_am import api
+
+
+def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
+    part = doc.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    doc.recompute()
+    feature = api.make_feature(doc, part, layer_height=15)
+    cell = api.make_cell(doc, limits="paper")
+    toolpath = api.make_toolpath(
+        doc, feature, cell, between_layers_wait=3.0, lead_on=0.5, lead_off=0.25, bead_width=4.0, density=2.7,
+    )
+    path = api.make_joint_path(doc, toolpath, cell)
+    beads = [bead for _, _, bead in api.result(toolpath)]
+    length = sum(bead.length for bead in beads)
+    assert path.DepositLength.Value == pytest.approx(length, rel=1e-6)
+    assert path.DepositVolume == pytest.approx(length * 4.0 * 15.0 / 1000.0, rel=1e-6)
+    assert path.DepositMass == pytest.approx(2.7 * path.DepositVolume, rel=1e-12)
+    assert path.DepositTime == pytest.approx(length / 6.0, rel=1e-6)
+    assert path.WaitTime == pytest.approx(0.75 * len(beads) + 3.0 * (len(api.result(toolpath).layers) - 1))
+    assert path.TotalTime == pytest.approx(path.Duration + path.WaitTime)
+    assert np.isfinite(path.TotalTime)
+
+    from freecad_am.batch import report  # after FreeCAD is found
+    from freecad_am.core.parameters.process import ProcessParameters
+
+    process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    told = report.build("x", api.result(toolpath), api.result(path).motion, (), process, ())
+    sums = json.loads(report.text(told))["totals"]
+    assert told["duration_s"] == pytest.approx(path.TotalTime)
+    assert [sums[key] for key in ("time_s", "deposit_s", "wait_s", "deposit_mm", "volume_cm3", "mass_g")] == pytest.approx(
+        [path.TotalTime, path.DepositTime, path.WaitTime, path.DepositLength.Value, path.DepositVolume, path.DepositMass]
+    )

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cover at the defaults of a job, measured on a raster by distances of its own: no wedges, no gaps, nothing outside."""
+
+import importlib.util
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.filling.curve import Beads
+from freecad_am.core.filling.fill import fill, open_at_slits, open_places
+from freecad_am.core.geometry.region import joined, regions
+from freecad_am.core.geometry.strip import Period, strips
+from freecad_am.core.parameters.strategy import DevelopableParameters
+
+_spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
+shapes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(shapes)
+
+DEFAULT = DevelopableParameters()
+S, GAP = DEFAULT.bead_spacing, DEFAULT.gap * DEFAULT.bead_spacing
+BEADS = Beads(S, GAP, DEFAULT.shortest, DEFAULT.thin, chord_error=0.2 * DEFAULT.chord_error)
+PITCH, STEP = 0.3, 0.1
+WAYS = [
+    ("contours", 0.0), ("spiral", 0.0), ("lines", 0.0), ("lines", 0.52), ("lines", 1.57), ("zigzag", 0.0), ("zigzag", 0.8),
+]
+IDS = [f"{pattern} {angle}" for pattern, angle in WAYS]
+
+
+def star(seed):
+    """A polygon with corners at random, seen all from its middle."""
+    rng = np.random.default_rng(seed)
+    angle = 2.0 * np.pi * (np.arange(9) + rng.uniform(-0.3, 0.3, 9)) / 9
+    return [rng.uniform(16.0, 34.0, (9, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=1)]
+
+
+REGIONS = {
+    "rectangle": shapes.polygon((0, 0), (40, 0), (40, 16), (0, 16)),
+    "L": shapes.polygon((0, 0), (50, 0), (50, 21), (24, 21), (24, 40), (0, 40)),
+    "lens": shapes.blade(80.0, 22.0, 6.0),
+    "ring": [shapes.circle(26.0), shapes.circle(11.3)[::-1]],
+    "star 1": star(1),
+    "star 2": star(2),
+    "star 3": star(3),
+}
+
+
+def whole(curve):
+    return np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
+
+
+@pytest.mark.parametrize("pattern,angle", WAYS, ids=IDS)
+@pytest.mark.parametrize("name", REGIONS)
+def test_at_least_99_percent_is_covered_and_no_bead_is_outside(name, pattern, angle):
+    loops = REGIONS[name]
+    region, = regions(loops)
+    curves = fill(region, BEADS, pattern, angle, DEFAULT.contour)
+    grid, within = shapes.raster(loops, PITCH)
+    border = shapes.tree([(loop, True) for loop in loops], STEP)
+    from_border = border.query(grid)[0]
+    away = shapes.tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
+    # what beads inside can reach: within half a bead of a place that is half a bead inside
+    reach = cKDTree(grid[within & (from_border >= 0.5 * S)]).query(grid)[0] < 0.5 * S - PITCH
+    covered = away <= 0.5 * S + 1e-3
+    assert (covered & reach).sum() >= 0.99 * reach.sum()
+    assert away[reach].max() < 0.5 * (S + GAP) + 0.02, "no gap is wider than stated"
+    assert not (covered & ~within & (from_border > 0.05)).any()
+    assert open_places(region, curves, BEADS) == []
+    for curve in curves:
+        line = whole(curve)
+        assert np.hypot(*np.diff(line, axis=0).T).sum() >= DEFAULT.shortest - 1e-9
+        if curve.kind == "zigzag":  # no step turns the travel for nothing
+            assert np.hypot(*np.diff(line, axis=0).T).min() >= 2.0 * BEADS.chord_error
+
+
+def test_lines_keep_their_spacing_from_the_contour_round_them():
+    for angle in (0.0, 0.5 * np.pi):
+        curves = fill(regions(REGIONS["rectangle"])[0], BEADS, "lines", angle, True)
+        across = np.array([-np.sin(angle), np.cos(angle)])
+        level = np.sort([(curve.points @ across).mean() for curve in curves if curve.kind == "line"])
+        extent = np.sort(REGIONS["rectangle"][0] @ across)[[0, -1]]
+        assert level[0] - extent[0] == pytest.approx(1.5 * S, rel=1e-3)
+        assert extent[1] - level[-1] == pytest.approx(1.5 * S, rel=1e-3)
+
+
+def test_a_gap_that_no_bead_closes_is_told():
+    """Without the beads in the middle their places are told, with widths."""
+    region, = regions(REGIONS["star 1"])
+    curves = [curve for curve in fill(region, BEADS, "lines", 0.52, True) if curve.kind != "closing"][:-1]
+    found = open_places(region, curves, BEADS)
+    tree = shapes.tree([(curve.points, curve.closed) for curve in curves], 0.02)
+    assert found
+    for place, width in found:
+        assert region.contains(place[None])[0] and width >= 0.99 * GAP
+        assert tree.query(place)[0] > 0.5 * S
+
+
+@pytest.mark.parametrize("apex", [math.inf, 150.0])
+@pytest.mark.parametrize("pattern,angle", [("contours", 0.0), ("lines", 0.0), ("spiral", 0.0), ("zigzag", 1.57)])
+def test_a_strip_round_a_hub_is_covered(apex, pattern, angle):
+    turn = 190.0
+    period = Period(turn if math.isinf(apex) else turn / apex, apex)
+    u = turn * (np.arange(400) / 400 - 0.5)
+    low, high = 1.2 * np.sin(2.0 * np.pi * 3 * u / turn), 23.0 + 0.8 * np.cos(2.0 * np.pi * 2 * u / turn)
+    lower, upper = np.stack([u, low], axis=1), np.stack([u, high], axis=1)[::-1]
+    strip, = strips([(period.laid(lower), 1), (period.laid(upper), -1)], period)
+    curves = fill(strip, BEADS, pattern, angle, DEFAULT.contour)
+    assert open_places(strip, curves, BEADS) == []
+    # half of it and somewhat more, for what is beside; on the plane
+    reach_of = 0.35 * turn
+
+    def cloud(lines):
+        cover = period.unrolled(np.vstack([shapes.dense(line, False, 0.1) for line in lines]))
+        every = np.vstack([cover + np.array([k * turn, 0.0]) for k in (-1, 0, 1)])
+        return cKDTree(period.laid(every[np.abs(every[:, 0]) < reach_of + 4.0 * S]))
+
+    grid = np.stack(np.meshgrid(np.arange(-reach_of, reach_of, PITCH), np.arange(-5.0, 29.0, PITCH)), axis=-1).reshape(-1, 2)
+    border = np.interp(grid[:, 0], u, low), np.interp(grid[:, 0], u, high)
+    within, flat = (grid[:, 1] > border[0]) & (grid[:, 1] < border[1]), period.laid(grid)
+    edge = cloud([period.laid(lower), period.laid(upper)])
+    lines = [
+        np.vstack([curve.points, period.moved(curve.points[:1], curve.turns)]) if curve.closed else curve.points
+        for curve in curves
+    ]
+    away, from_border = cloud(lines).query(flat)[0], edge.query(flat)[0]
+    middle = np.abs(grid[:, 0]) < reach_of - 2.0 * S
+    reach = (cKDTree(flat[within & (from_border >= 0.5 * S)]).query(flat)[0] < 0.5 * S - PITCH) & middle
+    covered = away <= 0.5 * S + 0.02
+    assert (covered & reach).sum() >= 0.99 * reach.sum()
+    assert not (covered & ~within & middle & (from_border > 0.1)).any()
+
+
+@pytest.mark.parametrize("pattern,angle", WAYS, ids=IDS)
+@pytest.mark.parametrize("name", ["rectangle", "L", "ring", "star 2"])
+def test_beads_wider_than_their_spacing_cover_as_much_and_stay_inside(name, pattern, angle):
+    """As laid: 9.5 mm wide at 6.5 mm, measured by the width."""
+    width, beads = 9.5, replace(BEADS, spacing=6.5, gap=1.3, width=9.5)
+    loops = [1.6 * loop for loop in REGIONS[name]]
+    region, = regions(loops)
+    curves = fill(region, beads, pattern, angle, DEFAULT.contour)
+    grid, within = shapes.raster(loops, PITCH)
+    from_border = shapes.tree([(loop, True) for loop in loops], STEP).query(grid)[0]
+    away = shapes.tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
+    reach = cKDTree(grid[within & (from_border >= 0.5 * width)]).query(grid)[0] < 0.5 * width - PITCH
+    single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]  # stand out, and are told
+    covered = away <= 0.5 * width + 1e-3
+    assert (covered & reach).sum() >= 0.99 * reach.sum()
+    assert away[reach].max() < 0.5 * width + 0.02 or away[reach].max() < 0.5 * (width + beads.gap)
+    assert single or (covered & ~within & (from_border > 0.05)).sum() <= 0.01 * within.sum()
+    middle = shapes.tree([(curve.points, curve.closed) for curve in curves if curve not in single], STEP)
+    assert middle.query(shapes.dense(loops[0], True, STEP))[0].min() > 0.5 * width - 0.05
+    assert open_places(region, curves, beads) == []
+
+
+def test_slits_are_closed_and_wedges_beside_them_told():
+    """A slit across a rectangle at 25 deg: beads reach into neither of the sharp corners beside it."""
+    t = math.tan(math.radians(25.0))
+
+    def halves(slit):
+        a, b = 20.0 - 10.0 / t, 20.0 + 10.0 / t
+        left = shapes.polygon((-20, 0), (a - slit, 0), (b - slit, 20), (-20, 20))
+        return left + shapes.polygon((a, 0), (60, 0), (60, 20), (b, 20))
+
+    for slit in (0.0, 1e-6, 0.02):
+        whole, = joined(regions(halves(slit)), 0.05)
+        assert len(whole.rings()) == 1 and whole.area == pytest.approx(1600.0, abs=0.3 + 20.0 * slit)
+    apart = regions(halves(0.5))
+    assert joined(apart, 0.05) == apart and len(apart) == 2
+    curves = [curve for region in apart for curve in fill(region, BEADS)]
+    assert [place for region in apart for place in open_places(region, curves, BEADS)] == []
+    told = open_at_slits(apart, curves, BEADS)
+    tree = shapes.tree([(curve.points, curve.closed) for curve in curves], 0.02)
+    assert told  # one place along the slit
+    for place, width in told:
+        assert tree.query(place)[0] > 0.5 * S and width > GAP
+    assert open_at_slits(regions(REGIONS["L"]), [], BEADS) is None
+
+
+def test_strips_of_beads_wider_than_their_spacing_stay_inside():
+    period = Period(190.0)
+    u = 190.0 * (np.arange(200) / 200 - 0.5)
+    low, high = np.stack([u, np.zeros(200)], axis=1), np.stack([u, np.full(200, 41.0)], axis=1)[::-1]
+    strip, = strips([(low, 1), (high, -1)], period)
+    beads = replace(BEADS, spacing=6.5, gap=1.3, width=9.5)
+    for pattern, angle, ring in (
+        ("contours", 0.0, False), ("lines", 0.0, False), ("lines", 0.0, True), ("lines", 1.57, True),
+    ):
+        curves = fill(strip, beads, pattern, angle, ring)
+        height = np.concatenate([curve.points[:, 1] for curve in curves])
+        assert height.min() == pytest.approx(4.75, abs=0.02) and height.max() == pytest.approx(36.25, abs=0.02)
+        assert open_places(strip, curves, beads) == []
+        rows = np.unique(np.round([curve.points[:, 1].mean() for curve in curves if curve.turns], 2))
+        assert np.diff(rows).max() <= 6.6 or angle

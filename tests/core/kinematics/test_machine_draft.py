@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines while they are made: poses as pendants write them, what is wrong with a machine, and the file that is made."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import machine, machine_draft, opw_recognition, pendant, pose_figures, urdf, urdf_text
+from freecad_am.core.kinematics.pendant import Shown
+from freecad_am.kdl.chain import KdlArm
+
+FANUC = machine.load("fanuc-arcmate120ic")
+TRUE = Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
+
+
+def seen(arm=FANUC, count=4, seed=5, digits=2):
+    """Values as the controller of a shipped machine shows them, and its flange poses, rounded as on a display."""
+    values = np.random.default_rng(seed).uniform(-80, 80, (count, 6)).round(2)
+    values[0] = np.degrees(arm.controller_offset)
+    poses = KdlArm(arm).forward(arm.from_controller(np.radians(values)))
+    poses[:, :3, 3] = poses[:, :3, 3].round(digits)
+    return values, poses
+
+
+# ---- poses as they are written
+
+@pytest.mark.parametrize("convention", pose_figures.CONVENTIONS)
+def test_poses_are_written_and_read_in_every_convention(convention):
+    rng = np.random.default_rng(2)
+    figures = np.column_stack((rng.uniform(-900, 900, (60, 3)), rng.uniform(-179, 179, (60, 3))))
+    turned = pose_figures.rotation(pose_figures.FANUC, figures[:, 3:])
+    turned[:6] = [np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1), (1, -1, -1))]
+    turned[6] = frames.about_y(np.pi / 2)  # where W and R, or A and C, are one
+    poses = frames.pose(turned, figures[:, :3])
+    written = pose_figures.figures_of(convention, poses)
+    base, tool = frames.bryant((10.0, 20.0, 330.0, 0.1, 0.2, 0.3)), frames.bryant((1.0, 2.0, 3.0, -0.4, 0.5, 0.6))
+    read = pose_figures.flange_poses(convention, written, base, tool)
+    np.testing.assert_allclose(read @ tool, base @ poses, atol=1e-9)
+
+
+@pytest.mark.parametrize("convention,figures,turned", [
+    (pose_figures.FANUC, (90, 0, 90), [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),  # W about X, then R about the outer Z
+    (pose_figures.KUKA, (90, 0, 90), [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),  # A about Z, then C about its own X
+    (pose_figures.STAUBLI, (90, 0, 90), [[0, -1, 0], [0, 0, -1], [1, 0, 0]]),  # RX, then RZ about its own Z
+    (pose_figures.ZYZ, (90, 90, 0), [[0, -1, 0], [0, 0, 1], [-1, 0, 0]]),
+    (pose_figures.QUATERNION, (0, 0, 2, 0), [[-1, 0, 0], [0, 1, 0], [0, 0, -1]]),  # half a turn about Y
+])
+def test_conventions_are_those_of_the_makers(convention, figures, turned):
+    np.testing.assert_allclose(pose_figures.rotation(convention, np.array(figures, float)), turned, atol=1e-12)
+
+
+# ---- what is wrong
+
+def test_a_machine_that_is_right_gives_its_poses_and_nothing_is_suspected():
+    values, poses = seen()
+    plain = FANUC.from_controller(np.radians(values))
+    np.testing.assert_allclose(pendant.serial(TRUE, FANUC.chain, values), plain, atol=1e-12)
+    found = pendant.deviations(FANUC.chain, TRUE, values, poses)
+    assert max(one.position for one in found) < 0.01 and pendant.fits(found)
+    assert pendant.suspects(FANUC.chain, TRUE, values, poses) == []
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_a_wrong_sign_is_found(axis):
+    values, poses = seen()
+    wrong = dataclasses.replace(TRUE, signs=tuple(-1 if index == axis else 1 for index in range(6)))
+    first = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
+    assert (first.kind, first.axes, first.shown) == (pendant.SIGN, (axis,), TRUE)
+
+
+@pytest.mark.parametrize("axis,off", [(1, 90.0), (2, -90.0), (4, 12.34), (3, 180.0), (2, -3.5)])
+def test_a_wrong_zero_is_found(axis, off):
+    values, poses = seen()
+    wrong = dataclasses.replace(TRUE, zeros=tuple(off if index == axis else 0.0 for index in range(6)))
+    first = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
+    assert (first.kind, first.axes) == (pendant.ZERO, (axis,))
+    assert np.isclose(np.mod(np.array(first.shown.zeros) + 1.0, 360.0), 1.0, atol=0.011).all()
+
+
+def test_two_signs_and_the_coupling_are_found():
+    values, poses = seen()
+    first = pendant.suspects(FANUC.chain, Shown((1, 1, 1, -1, 1, -1), TRUE.zeros, TRUE.coupling), values, poses)[0]
+    assert first.axes == (3, 5) and first.shown == TRUE
+    first = pendant.suspects(FANUC.chain, dataclasses.replace(TRUE, coupling=pendant.NONE), values, poses)[0]
+    assert first.kind == pendant.COUPLED and first.shown == TRUE
+
+
+@pytest.mark.parametrize("kind", [pendant.BASE, pendant.FLANGE])
+def test_another_base_or_flange_is_found_with_its_pose(kind):
+    values, poses = seen(digits=6)
+    moved = frames.bryant((30.0, -20.0, 525.0, 0.3, 0.0, -0.2))
+    given = frames.inverse(moved) @ poses if kind == pendant.BASE else poses @ moved
+    found = [one for one in pendant.suspects(FANUC.chain, TRUE, values, given) if one.kind == kind]
+    np.testing.assert_allclose(found[0].pose, moved, atol=1e-4)
+
+
+def test_a_sign_is_found_in_an_unknown_base():
+    values, poses = seen()
+    moved = frames.bryant((0.0, 0.0, 525.0, 0.0, 0.0, 0.0))
+    wrong = dataclasses.replace(TRUE, signs=(1, 1, 1, 1, -1, 1))
+    first = pendant.suspects(FANUC.chain, wrong, values, frames.inverse(moved) @ poses)[0]
+    assert (first.kind, first.axes, first.shown) == (pendant.SIGN, (4,), TRUE)
+    np.testing.assert_allclose(first.pose, moved, atol=0.02)
+
+
+def test_a_slip_in_one_figure_is_not_explained_away():
+    values, poses = seen(count=6)
+    poses[2, 0, 3] += 40.0
+    assert pendant.suspects(FANUC.chain, TRUE, values, poses) == []
+
+
+# ---- the file
+
+def draft(tmp_path, name="fanuc-arcmate120ic", **changes):
+    """The draft of a shipped machine as the wizard makes it from its URDF."""
+    path = tmp_path / "arm.urdf"
+    path.write_text(urdf_text.text(machine.load(name)), encoding="utf-8")
+    found = machine_draft.of_description(urdf.Urdf(path).between("base_link", "tool0"), "URDF arm.urdf")
+    values, poses = seen(machine.load(name))
+    return dataclasses.replace(found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE, **changes)
+
+
+def test_a_draft_makes_a_machine_file_that_loads(tmp_path):
+    made_of = draft(tmp_path, horizontal=(-185.0, 273.0), posts=("fanuc",), remarks=("hall 3",))
+    (tmp_path / "mine.json").write_text(machine_draft.text(made_of), encoding="utf-8")
+    made = machine.load("mine", [tmp_path])
+    q = np.random.default_rng(3).uniform(-3, 3, (30, 6))
+    np.testing.assert_allclose(made.chain.forward(q), KdlArm(FANUC).forward(q), atol=1e-9)
+    np.testing.assert_allclose(made.opw.forward(q), KdlArm(FANUC).forward(q), atol=1e-9)
+    np.testing.assert_allclose(made.to_controller(q), FANUC.to_controller(q), atol=1e-12)
+    ours, theirs = made.limits("maker"), FANUC.limits("maker")
+    np.testing.assert_allclose(ours.lower, theirs.lower)
+    np.testing.assert_allclose(ours.coefficients, theirs.coefficients)
+    np.testing.assert_allclose([ours.coupled_lower, ours.coupled_upper], [theirs.coupled_lower, theirs.coupled_upper])
+    np.testing.assert_allclose(made.max_speed, FANUC.max_speed)
+    assert made.posts == ("fanuc",) and made.remarks == ("hall 3",) and made.sources[0] == "URDF arm.urdf"
+
+
+@pytest.mark.parametrize("name", [name for name, _ in machine.known()])
+def test_every_machine_can_be_copied(name, tmp_path):
+    copy = machine_draft.of_machine(name)
+    (tmp_path / f"{copy.id}.json").write_text(machine_draft.text(copy), encoding="utf-8")
+    made, original = machine.load(copy.id, [tmp_path]), machine.load(name)
+    q = np.random.default_rng(3).uniform(-3, 3, (20, len(made.axes)))
+    np.testing.assert_allclose(made.chain.forward(q), original.chain.forward(q), atol=1e-9)
+    np.testing.assert_allclose(made.to_controller(q), original.to_controller(q), atol=1e-9)
+    np.testing.assert_allclose(made.base, original.base, atol=1e-12)
+    np.testing.assert_allclose(made.limits("maker").upper[:6], original.limits("maker").upper[:6])
+    assert made.axes == original.axes and made.posts == original.posts
+
+
+@pytest.mark.parametrize("change,words", [
+    (lambda one: {"values": None}, "at least 3 joint vectors"),
+    (lambda one: {"values": one.values[:2], "poses": one.poses[:2]}, "at least 3 joint vectors"),
+    (lambda one: {"values": one.values[1:], "poses": one.poses[1:]}, "the pose at all zeros is missing|at least 3"),
+    (lambda one: {"shown": Shown((1, 1, 1, -1, 1, 1), TRUE.zeros, TRUE.coupling)}, "correct the geometry or the pose"),
+    (lambda one: {"id": "my robot"}, "cannot be the name"),
+    (lambda one: {"title": ""}, "give maker and model"),
+])
+def test_no_file_without_what_it_needs(tmp_path, change, words):
+    one = draft(tmp_path)
+    with pytest.raises(InputError, match=words):
+        machine_draft.text(dataclasses.replace(one, **change(one)))
+
+
+def test_rounded_poses_say_so_and_rounding_has_an_end(tmp_path):
+    content = json.loads(machine_draft.text(draft(tmp_path)))
+    assert "within" not in content["check_poses"][0]  # nothing is rounded at zero
+    assert content["check_poses"][1]["within"] == {"mm": 0.01, "deg": 0.001}
+    path = tmp_path / "mine.json"
+
+    def load_with(**changes):
+        path.write_text(json.dumps({**content, "check_poses": [
+            content["check_poses"][0], {**content["check_poses"][1], **changes}, *content["check_poses"][2:]]}))
+        return machine.load("mine", [tmp_path])
+
+    x, y, z = content["check_poses"][1]["origin"]
+    assert load_with().id == "mine"
+    with pytest.raises(InputError, match=r"check_poses\[1\].within.mm: 2 is more than the rounding"):
+        load_with(within={"mm": 2.0, "deg": 0.0})
+    with pytest.raises(InputError, match=r"the key 'cm' is not known"):
+        load_with(within={"cm": 0.1})
+    with pytest.raises(InputError, match=r"check_poses\[1\].*from it"):
+        load_with(origin=[x + 0.1, y, z])
+
+
+def test_meshes_of_a_urdf_are_those_of_the_machine_file(tmp_path):
+    (tmp_path / "base.stl").touch()
+    text = urdf_text.text(FANUC).replace('<link name="base_link"/>', '''<link name="base_link"><visual>
+        <origin xyz="0 0 0.1" rpy="0 0 1.5708"/><geometry><mesh filename="base.stl"/></geometry></visual></link>''')
+    path = tmp_path / "arm.urdf"
+    path.write_text(text, encoding="utf-8")
+    found = machine_draft.of_description(urdf.Urdf(path).between("base_link", "tool0"), "URDF")
+    values, poses = seen()
+    content = json.loads(machine_draft.text(dataclasses.replace(
+        found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE)))
+    assert content["shapes"] == {
+        "base": {"file": str(tmp_path / "base.stl"), "origin": [0, 0, 100], "rpy": [0, 0, 90], "scale": 1000.0}}
+
+
+def test_figures_of_an_arm_give_a_draft_of_that_arm():
+    found = machine_draft.of_chain(opw_recognition.chain_of(FANUC.opw), "figures")
+    arm = machine_draft.closed_form(found)
+    assert (arm.a1, arm.a2, arm.c3, arm.signs) == (150.0, -250.0, 835.0, FANUC.opw.signs)
+    assert np.array_equal(found.base, np.eye(4)) and np.isinf(found.upper).all()

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machines from URDF, tables and figures, and written so: every shipped machine there and back, random arms, mistakes."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import denavit_hartenberg as dh
+from freecad_am.core.kinematics import machine, opw_recognition, urdf, urdf_text
+from freecad_am.core.kinematics.chain import Chain
+from freecad_am.core.kinematics.opw import OpwArm
+from freecad_am.kdl.chain import KdlArm
+
+NAMES = [name for name, _ in machine.known()]
+ROBOTS = [name for name in NAMES if machine.load(name).opw is not None]
+LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+
+
+def joints(count, axes):
+    return np.random.default_rng(7).uniform(-3.0, 3.0, (count, axes))
+
+
+def read(tmp_path, text, base="", tip=""):
+    path = tmp_path / "arm.urdf"
+    path.write_text(text, encoding="utf-8")
+    robot = urdf.Urdf(path)
+    base = base or robot.bases()[0]
+    return robot.between(base, tip or robot.tips(base)[0])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_machine_as_urdf_is_the_same_machine(name, tmp_path):
+    given = machine.load(name)
+    found = read(tmp_path, urdf_text.text(given))
+    q = joints(40, len(given.axes))
+    # KDL's chain is of the machine file alone
+    np.testing.assert_allclose(found.chain.forward(q), KdlArm(given).forward(q), atol=1e-9, rtol=0)
+    limits, count = given.limits("maker"), len(given.axes)
+    np.testing.assert_allclose(found.lower, limits.lower[:count], rtol=1e-14)
+    np.testing.assert_allclose(found.upper, limits.upper[:count], rtol=1e-14)
+    np.testing.assert_allclose(found.max_speed, given.max_speed, rtol=1e-14)
+    np.testing.assert_allclose(np.eye(4) if found.base is None else found.base, given.base, atol=1e-9)
+
+
+@pytest.mark.parametrize("name,modified", itertools.product(NAMES, (False, True)))
+def test_a_machine_as_table_is_the_same_machine(name, modified):
+    given = machine.load(name)
+    table = dh.table_of(given.chain, modified)
+    q = joints(40, len(given.axes))
+    np.testing.assert_allclose(dh.chain_of(table).forward(q), KdlArm(given).forward(q), atol=1e-9, rtol=0)
+    # a table's own formula, written out
+    pose = table.before
+    for row, value in zip(table.rows, q[0]):
+        theta, d = (row.theta, row.d + value) if row.sliding else (row.theta + value, row.d)
+        ca, sa, ct, st = np.cos(row.alpha), np.sin(row.alpha), np.cos(theta), np.sin(theta)
+        standard = [[ct, -st * ca, st * sa, row.a * ct], [st, ct * ca, -ct * sa, row.a * st], [0, sa, ca, d], [0, 0, 0, 1]]
+        craig = [[ct, -st, 0, row.a], [st * ca, ct * ca, -sa, -sa * d], [st * sa, ct * sa, ca, ca * d], [0, 0, 0, 1]]
+        pose = pose @ np.array(craig if modified else standard)
+    np.testing.assert_allclose(pose @ table.after, KdlArm(given).forward(q[:1])[0], atol=1e-9, rtol=0)
+
+
+def test_signs_of_a_table_turn_its_joints():
+    table = dh.table_of(machine.load("staubli-tx60").chain)
+    signs = (1, -1, -1, 1, -1, 1)
+    rows = tuple(dh.Row(row.theta, row.d, row.a, row.alpha, sign) for row, sign in zip(table.rows, signs))
+    turned = dh.Table(rows, table.before, table.after)
+    q = joints(20, 6)
+    np.testing.assert_allclose(dh.chain_of(turned).forward(q), dh.chain_of(table).forward(q * signs), atol=1e-9)
+    with pytest.raises(InputError, match=r"row 2: 3 is no sign"):
+        dh.chain_of(dh.Table((table.rows[0], dh.Row(0, 0, 0, 0, 3)), np.eye(4), np.eye(4)))
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_closed_form_of_a_chain_is_that_of_its_file(name):
+    given = machine.load(name)
+    for chain in (given.chain, dh.chain_of(dh.table_of(given.chain)), opw_recognition.chain_of(given.opw)):
+        found = opw_recognition.recognise(chain)
+        assert found.signs == given.opw.signs and np.allclose(found.offsets, given.opw.offsets, atol=1e-12)
+        for length in LENGTHS:
+            assert getattr(found, length) == pytest.approx(getattr(given.opw, length), abs=1e-9)
+
+
+def random_arm(rng, square):
+    offsets = rng.integers(-1, 3, 6) * np.pi / 2 if square else rng.uniform(-3.1, 3.1, 6)
+    offsets[4] = 0.0
+    return OpwArm(*rng.uniform(-300, 300, 3), *rng.uniform(100, 900, 3), rng.uniform(-50, 200), tuple(offsets.tolist()),
+                  tuple(rng.choice([-1, 1], 6).tolist()))
+
+
+@pytest.mark.parametrize("square", [True, False])
+def test_random_arms_are_recognised(square):
+    rng = np.random.default_rng(11)
+    q = joints(30, 6)
+    for _ in range(150):
+        arm = random_arm(rng, square)
+        chain = opw_recognition.chain_of(arm)
+        np.testing.assert_allclose(chain.forward(q), arm.forward(q), atol=1e-9)
+        found = opw_recognition.recognise(chain)
+        np.testing.assert_allclose(found.forward(q), arm.forward(q), atol=1e-8)
+        assert found.c2 > 0 and found.c3 > 0 and found.a1 >= 0 and found.offsets[4] == 0.0
+
+
+def test_an_arm_that_stands_elsewhere_is_seen_from_its_first_axis():
+    arm = machine.load("fanuc-arcmate120ic")
+    turn = np.array([[0.0, 0, 1, 300], [1, 0, 0, -20], [0, 1, 0, 55], [0, 0, 0, 1]])
+    origins = np.concatenate((turn @ arm.chain.origins[:1], arm.chain.origins[1:]))
+    moved = Chain(origins, arm.chain.directions, arm.chain.flange)
+    with pytest.raises(InputError, match="axis 1 is not the Z of the base frame"):
+        opw_recognition.recognise(moved)
+    rooted, old = opw_recognition.rooted(moved)
+    q = joints(20, 6)
+    np.testing.assert_allclose(rooted.forward(q), old @ moved.forward(q), atol=1e-9)
+    assert opw_recognition.recognise(rooted).c2 == pytest.approx(790.0)
+
+
+def changed(chain, index, step):
+    origins = chain.origins.copy()
+    origins[index] = origins[index] @ step
+    return Chain(origins, chain.directions, chain.flange)
+
+
+def shift(x=0.0, y=0.0, z=0.0, about=None, deg=0.0):
+    from freecad_am.core.geometry import frames
+
+    turn = np.eye(3) if about is None else frames.rotation_about(np.eye(3)[about], np.radians(deg))
+    return frames.pose(turn, (x, y, z))
+
+
+@pytest.mark.parametrize("index,step,reason", [
+    (4, {"z": 12.0}, r"axis 4 passes 12 mm beside"),
+    (5, {"y": 3.0}, r"axis 6 passes 3 mm beside"),
+    (1, {"about": 0, "deg": 2.0}, r"axes 1 and 2 are 88 deg apart"),
+    (2, {"about": 2, "deg": 0.01}, r"axes 2 and 3 are not parallel, but 0.01 deg"),
+    (3, {"about": 2, "deg": 90.0}, r"axes 3 and 4 are 0 deg apart"),
+    (4, {"about": 1, "deg": 30.0}, r"the wrist is bent by 30 deg"),
+])
+def test_what_is_no_such_arm_is_refused_with_the_reason(index, step, reason):
+    chain = machine.load("fanuc-arcmate120ic").chain
+    with pytest.raises(InputError, match=reason) as found:
+        opw_recognition.recognise(changed(chain, index, shift(**step)))
+    assert found.value.code == "NO_CLOSED_FORM"
+
+
+def test_flanges_and_counts_that_will_not_do():
+    chain = machine.load("kuka-kr16-2").chain
+    with pytest.raises(InputError, match="the Z of the flange does not lie along axis 6"):
+        opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(about=1, deg=90.0)))
+    with pytest.raises(InputError, match="does not lie on axis 6"):
+        opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(x=5.0)))
+    with pytest.raises(InputError, match="it has 5 axes, 3 of which slide"):
+        opw_recognition.recognise(machine.load("table-xyzac").chain)
+
+
+# ---- URDF
+
+ARM = """<?xml version="1.0"?>
+<robot name="two">
+  <material name="orange"><color rgba="1 0.5 0 1"/></material>
+  <link name="world"/>
+  <link name="base_link"><visual><origin xyz="0 0 0.01" rpy="0 0 1.5708"/>
+    <geometry><mesh filename="package://two_support/meshes/base.stl" scale="0.001 0.001 0.001"/></geometry>
+    <material name="orange"/></visual></link>
+  <link name="arm"><visual><geometry><mesh filename="package://two_support/meshes/arm.dae"/></geometry></visual></link>
+  <link name="plate"/>
+  <link name="hand"/>
+  <link name="finger"/>
+  <joint name="stand" type="fixed"><parent link="world"/><child link="base_link"/><origin xyz="1 2 3"/></joint>
+  <joint name="turn" type="revolute"><parent link="base_link"/><child link="arm"/>
+    <origin xyz="0 0 0.5" rpy="1.5708 0 0"/><axis xyz="0 0 2"/>
+    <limit lower="-2.967" upper="2.9671" velocity="3.4034" effort="0"/></joint>
+  <joint name="bolted" type="fixed"><parent link="arm"/><child link="plate"/><origin xyz="0.1 0 0"/></joint>
+  <joint name="spin" type="continuous"><parent link="plate"/><child link="hand"/><origin xyz=".2 0 0" rpy="0 1 0"/></joint>
+  <joint name="grip" type="prismatic"><parent link="hand"/><child link="finger"/>
+    <limit lower="0" upper="0.04" velocity="0.1" effort="0"/><mimic joint="spin"/></joint>
+</robot>
+"""
+
+
+def test_a_urdf_is_read_with_fixed_joints_units_rounded_angles_and_meshes(tmp_path):
+    folder = tmp_path / "two_support"
+    (folder / "meshes").mkdir(parents=True)
+    (folder / "urdf").mkdir()
+    for name in ("base.stl", "arm.dae"):
+        (folder / "meshes" / name).touch()
+    found = read(folder / "urdf", ARM, "base_link", "hand")
+    assert found.joints == ("turn", "spin") and found.name == "two"
+    # 1.5708 is a right angle; both limits are 170 deg, of which one is cut off
+    np.testing.assert_allclose(
+        np.degrees([found.lower[0], found.upper[0], found.max_speed[0]]), [-170, 170, 195], atol=1e-12
+    )
+    assert np.isinf([found.lower[1], found.upper[1], found.max_speed[1]]).all()
+    place = found.chain.forward([np.radians(90.0), 0.0])
+    np.testing.assert_allclose(place[:3, 3], [0, 0, 800], atol=1e-9)  # both links up
+    np.testing.assert_allclose(found.chain.directions, [[0, 0, 1], [1, 0, 0]])
+    looks = found.shapes[0]
+    assert looks.path == folder / "meshes" / "base.stl" and looks.scale == 1.0 and looks.colour == (1.0, 0.5, 0.0)
+    np.testing.assert_allclose(looks.pose, [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]], atol=1e-12)
+    assert found.shapes[1:] == (None, None) and any("arm.dae cannot be drawn" in note for note in found.notes)
+
+
+def test_links_to_choose_from(tmp_path):
+    path = tmp_path / "two.urdf"
+    path.write_text(ARM, encoding="utf-8")
+    robot = urdf.Urdf(path)
+    assert robot.bases()[:2] == ["base_link", "world"]
+    assert robot.tips("base_link") == ["finger", "hand", "arm", "plate"]
+    assert robot.tips("world")[0] == "finger"
+
+
+@pytest.mark.parametrize("old,new,line,words", [
+    ('"0 0 2"', '"0 0 x"', 14, "'x', which is no number"),
+    ('"0 0 2"', '"0 0"', 14, "is not 3 numbers"),
+    ('"0 0 2"', '"0 0 0"', 14, "has no direction"),
+    ('type="revolute"', 'type="floating"', 13, "is floating"),
+    ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower one first"),
+    ('<child link="hand"/>', '<child link="arm"/>', 17, "is moved by 'turn' already"),
+    ('<child link="hand"/>', '<child link="fist"/>', 17, "there is no link 'fist'"),
+    ('<child link="hand"/>', "", 17, "<joint> 'spin' has no <child>"),
+    ('name="bolted" ', "", 16, "<joint> has no name"),
+    ('<link name="hand"/>', '<link name="arm"/>', 10, "there is a link 'arm' already, in line 8"),
+    ("</joint>\n  <joint name=\"bolted\"", "\n  <joint name=\"bolted\"", 20, "this is not XML: mismatched tag"),
+    ('<?xml version="1.0"?>', '<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]>', 1, "entities such as 'b'"),
+])
+def test_mistakes_in_a_urdf_are_told_with_their_line(tmp_path, old, new, line, words):
+    assert old in ARM
+    with pytest.raises(InputError) as found:
+        read(tmp_path, ARM.replace(old, new, 1), "base_link", "hand")
+    assert found.value.code == "BAD_URDF"
+    assert found.value.where == f"arm.urdf: line {line}" and words in found.value.message
+
+
+def test_chains_that_cannot_be_are_refused(tmp_path):
+    with pytest.raises(InputError, match=r"line 19: the joint 'grip' follows another one"):
+        read(tmp_path, ARM, "base_link", "finger")
+    with pytest.raises(InputError, match="'hand' does not carry 'arm'"):
+        read(tmp_path, ARM, "hand", "arm")
+    with pytest.raises(InputError, match="no joint moves 'plate'"):
+        read(tmp_path, ARM, "arm", "plate")
+    with pytest.raises(InputError, match="this is xacro"):
+        urdf.Urdf(tmp_path / "arm.xacro")
+    with pytest.raises(InputError, match="cannot be read"):
+        urdf.Urdf(tmp_path / "missing.urdf")
+    loop = ARM.replace('<parent link="base_link"/><child link="arm"/>', '<parent link="hand"/><child link="arm"/>')
+    with pytest.raises(InputError, match="carries itself"):
+        read(tmp_path, loop, "arm", "hand")

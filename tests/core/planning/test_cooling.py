@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Waiting for a temperature before a solid is returned to, from beads to programs read back; tampering is found."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, CoolingParameters, ProcessParameters
+from freecad_am.core.parameters.program import NcParameters, ProgramParameters
+from freecad_am.core.parameters.strategy import DevelopableParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.program import build, returning
+from freecad_am.core.program import Moves, WaitBelow
+from freecad_am.core.strategies import developable
+from freecad_am.posts import catalogue
+from freecad_am.verify import verify
+from tests.core.planning.test_leaning_programs import CHORD_ERROR, HUB, ON_ROBOT, TABLE, UP
+from tests.core.strategies.test_developable import box
+
+COOLING = CoolingParameters(below=150.0, input=3, gain=0.01, zero=0.25)
+LIFT = 20.0
+
+
+def toolpath(frame, order="around-axis", apart=0.9):
+    """Two blades side by side, three layers each, two rings in each layer."""
+    one = box(np.array([40.0, -11.0, 20.0]), np.array([76.0, 11.0, 44.0]))
+    bodies = []
+    for number, turn in enumerate((0.0, apart)):
+        cos, sin = math.cos(turn), math.sin(turn)
+        turned = one.vertices @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        bodies.append(dataclasses.replace(one, name=f"blade {number}", vertices=turned @ frame[:3, :3].T))
+    strategy = DevelopableParameters(layer_height=5.0, chord_error=CHORD_ERROR, bead_spacing=6.0, order=order)
+    solids = SolidsOnHub("part", (Group(Base("hub", HUB, frame), tuple(bodies)),), 0.0)
+    return developable.plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(), None)
+
+
+def planned(settings, frame, **changes):
+    path = toolpath(frame, **changes)
+    cell = cells.resolve(settings, np.eye(4), "developable")
+    found = plan_joints(path, cell, JointParameters(degree=1))
+    assert found.feasible, [issue.message for issue in found.issues]
+    return cell, path, found, assemble(found, cell, process())[0]
+
+
+def process(cooling=COOLING):
+    return ProcessParameters(cooling=cooling, between_layers=BetweenLayersParameters(lift=LIFT))
+
+
+def program(cell, path, found, motion, post, cooling=COOLING, kind="joint", **more):
+    parameters = ProgramParameters(post=post, nc=NcParameters(), motion=kind, **more)
+    return build(motion, cell, process(cooling), parameters, "cool", (), returning(path, found.beads))
+
+
+@pytest.fixture(scope="module")
+def on_table():
+    return planned(TABLE, np.eye(4))
+
+
+@pytest.mark.parametrize("order", ["around-axis", "feature"])
+def test_the_torch_waits_above_each_solid_once_a_layer(order):
+    cell, path, found, motion = planned(TABLE, np.eye(4), order=order)
+    made = program(cell, path, found, motion, "siemens")
+    waits = [block for block in made.blocks if isinstance(block, WaitBelow)]
+    beads = {(one.layer, one.index): one.bead for one in found.beads}
+
+    def blade(bead):
+        return int(math.atan2(*bead.points.mean(axis=0)[[1, 0]]) > 0.45)
+
+    def level(bead):
+        return round(float(np.hypot(*bead.points[0, :2]) - 60.0) / 5.0)
+
+    # the first bead of each layer of each blade, but of its first layer
+    firsts = {}
+    for place, bead in beads.items():
+        firsts.setdefault((blade(bead), level(bead)), place)
+    wanted = [place for place in beads if place in firsts.values() and level(beads[place]) > 0]
+    assert [(wait.layer, wait.bead) for wait in waits] == wanted and len(wanted) >= 4
+    assert all((wait.number, wait.below) == (3, pytest.approx(1.75)) for wait in waits)
+    # right before it the torch stands above where the bead begins, right after it goes down there and deposits
+    for number, block in enumerate(made.blocks):
+        if isinstance(block, WaitBelow):
+            above, down = made.blocks[number - 1], made.blocks[number + 1]
+            assert isinstance(above, Moves) and isinstance(down, Moves) and len(down) == 1
+            bead = beads[block.layer, block.bead]
+            for moves, lift in ((above, LIFT), (down, 0.0)):
+                joints = cell.machine.from_controller(moves.joints[-1:])
+                tip, _ = cell.tip_in_part(cell.machine.chain.forward(joints))
+                np.testing.assert_allclose(tip[0], bead.points[0] + lift * bead.tool[0], atol=1e-6)
+
+
+@pytest.mark.parametrize(("post", "kind"), [("siemens", "joint"), ("siemens", "cartesian"), ("linuxcnc", "joint"),
+                                            ("linuxcnc", "cartesian")])  # fmt: skip
+def test_programs_of_tables_read_the_sensor(on_table, post, kind):
+    cell, path, found, motion = on_table
+    writer = catalogue.load(post)
+    made = program(cell, path, found, motion, post, kind=kind, max_points=60)
+    files = writer.write(made)
+    count = sum(isinstance(block, WaitBelow) for block in made.blocks)
+    assert count >= 4 and len(files) > 1
+    checked = verify(cell, motion, made, files, writer, CHORD_ERROR)
+    assert checked.issues == ()
+    told, lost = {"siemens": (b"WHILE $A_INA[3]>=1.75", b"WHILE $A_IN[3]==0"),
+                  "linuxcnc": (b"while [#5399 GE 1.75]", b"")}[post]  # fmt: skip
+    assert sum(text.count(told) for text in files.values()) == count
+    name = max(name for name, text in files.items() if told in text)
+    changes = [(told, told.replace(b"1.75", b"1.76")), (told, told.replace(b"[3]", b"[2]") if lost else told + b"1")]
+    changes += [(told, lost)] if lost else [(b"M66 E2 L0\no<cool", b"M66 E1 L0\no<cool")]
+    for old, new in changes:
+        spoilt = {**files, name: files[name].replace(old, new, 1)}
+        try:
+            codes = [issue.code for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues]
+        except InputError as error:
+            codes = [error.code]
+        assert codes in (["VERIFY_COOLING"], ["UNREADABLE_PROGRAM"]), (old, new)
+    without = program(cell, path, found, motion, post, CoolingParameters(), kind=kind, max_points=60)
+    assert not any(isinstance(block, WaitBelow) for block in without.blocks)
+    (told,) = verify(cell, motion, without, files, writer, CHORD_ERROR).issues
+    assert told.code == "VERIFY_COOLING" and f"{count} of" in told.message
+
+
+def test_loops_that_read_once_are_not_understood(on_table):
+    cell, path, found, motion = on_table
+    writer = catalogue.load("linuxcnc")
+    (name, text), = writer.write(program(cell, path, found, motion, "linuxcnc", max_points=10**6)).items()
+    start = text.index(b"M66 E2 L0")
+    loop = text[start : text.index(b"endwhile", start)]
+    for old, new in (
+        (b"G4 P0.100\nM66 E2 L0\n", b"G4 P0.100\n"), (b"M66 E2 L0\no<", b"o<"), (b"G4 P0.100", b"G1 X0 F5"),
+        (b"G4 P0.100\nM66 E2 L0", b"G4 P0.100\nM66 E1 L0"),
+    ):
+        assert old in loop
+        with pytest.raises(InputError) as raised:
+            writer.read({name: text.replace(old, new, 1)})
+        assert raised.value.code == "UNREADABLE_PROGRAM"
+
+
+def test_robots_wait_or_say_why_not():
+    cell, path, found, motion = planned(ON_ROBOT, UP, apart=0.6)
+    writer = catalogue.load("fanuc")
+    whole = CoolingParameters(below=150.0, input=2, gain=8.0, zero=-3.0)
+    made = program(cell, path, found, motion, "fanuc", whole)
+    files = writer.write(made)
+    count = sum(isinstance(block, WaitBelow) for block in made.blocks)
+    assert sum(text.count(b"WAIT AI[2]<1197 ") for text in files.values()) == count >= 4
+    assert verify(cell, motion, made, files, writer, CHORD_ERROR).issues == ()
+    name = next(name for name in files if b"WAIT AI[2]" in files[name])
+    for new in (b"WAIT AI[3]<1197", b"WAIT AI[2]<1198", b"WAIT DI[2]=ON"):
+        spoilt = {**files, name: files[name].replace(b"WAIT AI[2]<1197", new, 1)}
+        assert [issue.code for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues] == ["VERIFY_COOLING"]
+    for post, cooling, code in (
+        ("fanuc", COOLING, "ANALOGUE_INPUT"), ("fanuc", CoolingParameters(below=150.0, input=26), "ANALOGUE_INPUT"),
+        ("staubli", whole, "NO_ANALOGUE_INPUT"),
+    ):
+        other = dataclasses.replace(program(cell, path, found, motion, "fanuc", cooling), endless=(False,) * 6)
+        with pytest.raises(InputError) as raised:
+            catalogue.load(post).write(other)
+        assert raised.value.code == code

@@ -1,0 +1,333 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The map of the free rotation says of each cell what the planner, and PyKDL, say of a point."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import ERROR, InputError
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import opw
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
+from freecad_am.core.planning import plan, spin_curve, spin_map
+from freecad_am.core.planning.points import TURN, gather
+from freecad_am.core.planning.task import Task
+from freecad_am.kdl.chain import KdlArm
+
+PART_ON_ROBOT = {}
+TOOL_ON_ROBOT = {"setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0)}
+FLIP = 1  # front up flip
+
+
+@pytest.fixture(scope="module")
+def dome(sliced):
+    return sliced("sphere", 9.0)
+
+
+@pytest.fixture(scope="module")
+def funnel(sliced):
+    return sliced("intake funnel", 9.0)
+
+
+def beads_of(toolpath):
+    return [bead for _, _, bead in toolpath], [(layer, index) for layer, index, _ in toolpath]
+
+
+def seen(toolpath, axis=spin_map.RZ, branch=FLIP, rows=61, **more):
+    setup = more.pop("setup", PART_ON_ROBOT)
+    cell = cells.resolve(CellParameters(**{"limits": "paper", **setup}), toolpath.frame)
+    task = Task(cell, branch, JointParameters(**more))
+    at = spin_map.columns(beads_of(toolpath)[0], cell, 50)
+    found = spin_map.spin_map(task, at, axis, values=np.linspace(-np.pi, np.pi, rows))
+    return task, found, spin_map.picture(task, found, branch)
+
+
+@pytest.mark.parametrize("setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"])
+@pytest.mark.parametrize("axis", [spin_map.RZ, spin_map.ROTATION])
+def test_cells_are_where_pykdl_finds_them(funnel, setup, axis):
+    task, found, _ = seen(funnel, axis, setup=setup)
+    cell, arm = task.cell, KdlArm(task.cell.machine)
+    random = np.random.default_rng(1)
+    points = found.columns.points
+    rows = random.integers(0, len(found.values), 60)
+    columns = random.integers(0, len(points), 60)
+    reached = 0
+    for row, column in zip(rows, columns):
+        for branch, q in enumerate(spin_map.joints_at(task, found.columns, int(column), float(found.phi[row, column]))):
+            margin = found.margin[branch, row, column]
+            assert (margin > -np.inf) == np.isfinite(q).all()
+            if not np.isfinite(q).all():
+                continue
+            reached += 1
+            flange = arm.forward([q])
+            tip, tool = cell.tip_in_part(flange)
+            assert np.abs(tip[0] - points.position[column]).max() < 1e-6
+            assert np.abs(tool[0] - points.tool[column]).max() < 1e-9
+            assert cell.machine.opw.branch_of(q) == branch
+            low, high = cell.limits.lower, cell.limits.upper
+            share = [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(q, low, high) if np.isfinite(b - a)]
+            share += [2 * min(v - a, b - v) / (b - a) for v, a, b in zip(
+                cell.limits.coefficients @ q, cell.limits.coupled_lower, cell.limits.coupled_upper)]
+            assert margin == pytest.approx(min(share), abs=1e-9)
+            if axis == spin_map.RZ:  # the last Bryant angle of the same rotation, from the flange that PyKDL finds
+                mounted = np.eye(3) if setup is not PART_ON_ROBOT else None
+                platform = flange[0] @ cell.carried
+                turned = (cell.station[:3, :3].T @ platform[:3, :3]) if mounted is None else None
+                if turned is not None:
+                    rz = np.arctan2(-turned[0, 1], turned[0, 0])
+                    assert abs((rz - found.values[row] + np.pi) % TURN - np.pi) < 1e-6
+    assert reached > 100
+
+
+@pytest.mark.parametrize("branch", [1, 0, 3])
+def test_cells_are_what_the_planner_says_of_points(funnel, branch):
+    task, found, picture = seen(funnel, branch=branch)
+    points = found.columns.points
+    threshold = task.thresholds(points)
+    for row in (0, 13, 30, 47):
+        phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), found.values[row]))
+        assert np.abs(np.exp(1j * phi) - np.exp(1j * found.phi[row])).max() < 1e-7
+        joints = task.joints(points, phi)
+        assert np.abs(picture.margin[row] - task.given_rows.margin(joints))[picture.reachable[row]].max(initial=0.0) < 1e-7
+        assert np.abs(picture.condition[row] - task.condition(points, phi, joints)).max() < 1e-7
+    assert np.array_equal(picture.threshold, threshold)
+
+
+def test_a_wrist_turned_over_is_as_near_to_a_singularity(dome):
+    task, found, flipped = seen(dome)
+    other = spin_map.picture(task, found, FLIP - 1)
+    assert np.abs(flipped.condition - other.condition).max() < 1e-9
+
+
+@pytest.mark.parametrize("part", ["dome", "funnel"])
+@pytest.mark.parametrize("rz", [-2.0, -0.4, 0.9, 2.6])
+def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasible(request, part, rz):
+    """But for axes that run out of turns along a bead, which no cell can know."""
+    toolpath = request.getfixturevalue(part)
+    beads, places = beads_of(toolpath)
+    verdicts = []
+    for branch in range(8):
+        cell = cells.resolve(CellParameters(limits="paper", branch=opw.branch_name(branch)), toolpath.frame)
+        task = Task(cell, branch, JointParameters(method="constant", rz=rz))
+        paths, issues = plan.METHODS["constant"](task, beads, places, lambda *_: None)
+        issues = [issue for path in paths for issue in spin_curve.findings(task, path)]
+        at = spin_map.columns(beads, cell, 10**6)
+        assert len(at) == sum(map(len, beads))
+        picture = spin_map.picture(task, spin_map.spin_map(task, at, values=np.array([rz])), branch)
+        points = gather(beads, cell)
+        followed = spin_curve.follow(
+            task, points, task.thresholds(points), spin_curve.durations(beads),
+            np.concatenate([path.phi for path in paths]),
+        )
+        feasible = not any(issue.level == ERROR for issue in issues)
+        assert followed.good.all() == feasible
+        assert np.array_equal(picture.feasible[0] & ~followed.wound, followed.good)
+        # an axis that runs out of turns is off by whole turns from where the cell has it
+        if followed.wound.any():
+            k = int(np.flatnonzero(followed.wound)[0])
+            off = followed.joints[k] - spin_map.joints_at(task, at, k, followed.phi[k])[branch]
+            assert np.abs(off - TURN * np.round(off / TURN)).max() < 1e-6 and np.abs(off[~task.endless]).max() > 6.0
+        verdicts.append(feasible)
+    assert len(set(verdicts)) == 2 or part == "funnel"
+
+
+def test_what_the_job_does_not_allow_is_outside(dome):
+    _, found, picture = seen(dome, spin_map.ROTATION, rotation_range=(np.radians(-30.0), np.radians(200.0)))
+    turned = np.degrees(found.values)
+    allowed = (turned >= -30.0) | (turned <= -160.0)
+    assert np.array_equal(~found.outside, np.repeat(allowed[:, None], len(found.columns), axis=1))
+    assert not picture.feasible[~allowed].any()
+
+
+def test_columns_with_a_body_under_the_nozzle_are_forbidden(dome):
+    cell = cells.resolve(CellParameters(limits="paper"), dome.frame)
+    task = Task(cell, FLIP, JointParameters())
+    at = spin_map.columns(beads_of(dome)[0], cell, 60)
+    here = at.points.position[20] + 30.0 * at.points.tool[20]
+    corners = here + np.array([[-1.0, -1, -1], [1, -1, 1], [0, 1, 0]])
+    body = Body("flag", corners, np.array([[0, 1, 2]]))
+    clear, touching = (spin_map.spin_map(task, at, bodies=bodies) for bodies in ((), (body,)))
+    assert not clear.touching.any() and touching.touching[20] and not touching.touching.all()
+    # where the nozzle stands on a part it may touch it beside its tip
+    floor = Body("floor", at.points.position[20] + 0.3 * at.points.tool[20] + 0.2 * (corners - here), body.triangles)
+    assert not spin_map.spin_map(task, at, bodies=(floor,)).touching[20]
+    assert spin_map.picture(task, touching, FLIP).forbidden[:, 20].all()
+
+
+def test_columns_are_even_and_have_the_ends_of_beads(dome, funnel):
+    for toolpath in (dome, funnel):
+        beads, _ = beads_of(toolpath)
+        cell = cells.resolve(CellParameters(limits="paper"), toolpath.frame)
+        at = spin_map.columns(beads, cell, 100)
+        assert 80 <= len(at) <= 100
+        for k, bead in enumerate(beads):
+            of_bead = at.point[at.bead == k]
+            assert of_bead[0] == 0 and of_bead[-1] == len(bead) - 1 and (np.diff(of_bead) > 0).all()
+            assert np.array_equal(at.points.position[at.bead == k], bead.points[of_bead])
+            assert np.array_equal(at.points.parameter[at.bead == k], bead.parameter[of_bead])
+        few = spin_map.columns(beads, cell, 3 * spin_map.LEAST)
+        assert list(np.unique(few.bead)) == [0, len(beads) // 2, len(beads) - 1]
+        assert (np.bincount(few.bead)[np.unique(few.bead)] == spin_map.LEAST).all()
+        for k in np.unique(few.bead):
+            assert few.point[few.bead == k][-1] == len(beads[k]) - 1
+
+
+def test_values_and_rotations_are_each_others_inverse(funnel):
+    cell = cells.resolve(CellParameters(limits="paper"), funnel.frame)
+    tool = np.concatenate([bead.tool for bead in beads_of(funnel)[0]])
+    tool = tool[np.abs(tool @ cell.mount[:3, 2]) > 0.05]
+    random = np.random.default_rng(3).uniform(-np.pi, np.pi, len(tool))
+    for axis in (spin_map.RZ, spin_map.ROTATION):
+        phi = spin_map.rotation_of(cell, tool, random, axis)
+        assert np.abs(spin_map.value_of(cell, tool, phi, axis) - random).max() < 1e-7
+    assert np.abs(np.exp(1j * spin_map.rotation_of(cell, tool, random, spin_map.RZ))
+                  - np.exp(1j * cell.phi_of_rz(tool, random)[0])).max() < 1e-7
+
+
+# ---- given polynomials
+
+
+def planned(toolpath, **joints):
+    cell = cells.resolve(CellParameters(limits="paper"), toolpath.frame)
+    return cell, plan.plan_joints(toolpath, cell, JointParameters(**joints))
+
+
+def test_what_the_planner_found_can_be_given_back_to_it(dome):
+    _, free = planned(dome)
+    given = tuple(given_text((path.layer, path.index), tuple(path.coefficients)) for path in free.beads)
+    _, again = planned(dome, given=given)
+    assert again.feasible and [path.reason for path in again.beads] == ["given"] * len(free.beads)
+    for one, other in zip(free.beads, again.beads):
+        assert np.abs(one.phi - other.phi).max() < 1e-9 and np.abs(one.joints - other.joints).max() < 1e-7
+        assert other.objective == pytest.approx(one.objective, rel=1e-6)
+
+
+def test_some_beads_may_be_given_and_the_rest_is_searched(dome):
+    _, free = planned(dome)
+    constant, slope = free.beads[2].coefficients
+    text = given_text((2, 0), (constant + 0.1, slope))
+    _, mixed = planned(dome, given=(text,))
+    assert mixed.feasible
+    assert np.allclose(mixed.beads[2].coefficients, [constant + 0.1, slope], atol=1e-9)
+    assert [path.reason == "given" for path in mixed.beads] == [k == 2 for k in range(len(mixed.beads))]
+    assert mixed.beads[0].objective == pytest.approx(free.beads[0].objective, rel=1e-6)
+
+
+def test_what_is_given_is_judged_like_all_else(dome):
+    """A rotation at rest asks the last axis for a turn more, and others for what the planner would avoid."""
+    cell, path = planned(dome, given=("*:0",))
+    beads, places = beads_of(dome)
+    points = gather(beads, cell)
+    task = Task(cell, FLIP, JointParameters())
+    followed = spin_curve.follow(
+        task, points, task.thresholds(points), spin_curve.durations(beads), np.zeros(len(points)))
+    assert path.feasible == followed.good.all()
+    ends = np.append(points.first, len(points))
+    lost = {issue.layer for issue in path.issues if issue.level == ERROR}
+    for k, (layer, _) in enumerate(places):
+        assert (layer in lost) == (not followed.good[ends[k]:ends[k + 1]].all())
+    assert np.allclose(followed.displacement, [one.objective for one in path.beads], rtol=1e-9)
+
+
+def test_the_branch_of_a_joint_path_is_its_own(dome):
+    _, path = planned(dome, own_branch="front-up-noflip")
+    assert path.branch == ("front", "up", "noflip")
+    assert list(BRANCHES) == ["-".join(opw.branch_name(k)) for k in range(8)]
+
+
+def test_given_texts_are_read_back():
+    random = np.random.default_rng(2)
+    for degree in range(7):
+        values = tuple(random.uniform(-3, 3, degree + 1))
+        text = given_text((12, 3), values)
+        assert given_polynomials((text,))[12, 3] == pytest.approx(values, abs=1e-9)
+    assert given_polynomials(("*:90:-360", "4:10")) == {
+        None: pytest.approx((np.pi / 2, -1.0)), (4, 0): pytest.approx((np.radians(10),))}
+
+
+@pytest.mark.parametrize("given", [
+    ("1/0",), ("1/0:",), ("a:1",), ("1/0:x",), ("-1:3",), ("1:nan",), ("1:inf",), ("1:1:1:1:1:1:1:1:1",), ("2:1", "2/0:3"),
+    ("*:1", "*:2"), ("",),
+])
+def test_what_cannot_be_read_is_refused(given):
+    with pytest.raises(InputError) as refused:
+        JointParameters(given=given)
+    assert refused.value.where == "joints.given"
+
+
+def test_beads_that_are_not_there_are_told(dome):
+    _, path = planned(dome, given=("99/0:10",))
+    assert path.feasible and [issue.message for issue in path.issues if issue.code == "GIVEN_NOT_USED"]
+    _, path = planned(dome, method="constant", given=("*:10",))
+    assert [issue.code for issue in path.issues if issue.code == "GIVEN_NOT_USED"]
+
+
+# ---- curves
+
+
+def test_a_curve_follows_what_the_planner_planned(funnel):
+    cell, path = planned(funnel)
+    beads, _ = beads_of(funnel)
+    task = Task(cell, FLIP, JointParameters())
+    points = gather(beads, cell)
+    coefficients = np.array([one.coefficients for one in path.beads])
+    followed = spin_curve.follow(
+        task, points, task.thresholds(points), spin_curve.durations(beads), points.polynomial(coefficients))
+    assert np.allclose(followed.displacement, [one.objective for one in path.beads], rtol=1e-9)
+    sums = spin_curve.sums(followed)
+    figures = plan.comparison.of_path(dataclasses.replace(path, beads=tuple(
+        dataclasses.replace(
+            one, bead=bead, joints=followed.joints[a:b], condition=followed.condition[a:b], phi=followed.phi[a:b])
+        for one, bead, a, b in zip(path.beads, beads, points.first, np.append(points.first[1:], len(points)))
+    )), cell, JointParameters())
+    assert sums.lost == 0
+    assert sums.ratio == pytest.approx(max(figures["speed_ratio_max"]), rel=1e-9)
+    assert sums.condition == pytest.approx(figures["condition_min"], rel=1e-9)
+    assert sums.displacement == pytest.approx(figures["objective_value"], rel=1e-9)
+
+
+def test_polynomials_are_fitted_exactly_where_there_is_one(funnel):
+    beads, _ = beads_of(funnel)
+    cell = cells.resolve(CellParameters(limits="paper"), funnel.frame)
+    points = gather(beads, cell)
+    random = np.random.default_rng(5)
+    for degree in range(5):
+        wanted = random.uniform(-1, 1, (len(beads), degree + 1)) / 3.0 ** np.arange(degree + 1)
+        found = spin_curve.fitted(points, points.polynomial(wanted), degree)
+        assert np.abs(points.polynomial(found) - points.polynomial(wanted)).max() < 1e-8
+
+
+@pytest.mark.parametrize("joined", [False, True])
+def test_a_handle_moves_alone(funnel, joined):
+    beads, _ = beads_of(funnel)
+    cell = cells.resolve(CellParameters(limits="paper"), funnel.frame)
+    points = gather(beads, cell)
+    task = Task(cell, FLIP, JointParameters(), joined)
+    random = np.random.default_rng(7)
+    for degree in range(7):
+        start = np.zeros(degree + 1)
+        start[0] = random.uniform(-1, 1)
+        at = spin_curve.handles(task, points, 1, degree)
+        assert len(at) == (max(degree, 1) if joined else degree + 1)
+        for handle in range(len(at)):
+            after = start + 0.3 * spin_curve.pull(task, points, 1, degree, handle)
+            value = np.polynomial.polynomial.polyval(at, after) - start[0]
+            assert value == pytest.approx(np.where(np.arange(len(at)) == handle, 0.3, 0.0), abs=1e-6)
+            if joined:
+                low, high = (end[1] for end in points.ends)
+                ends = np.polynomial.polynomial.polyval(np.array([low, high]), after)
+                assert ends[1] - ends[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_methods_side_by_side_are_those_of_the_planner(dome):
+    beads, places = beads_of(dome)
+    cell, path = planned(dome)
+    found = spin_curve.compared(Task(cell, FLIP, JointParameters(given=("*:0",))), beads, places, lambda *_: None)
+    assert [one.name for one in found] == list(plan.METHODS)
+    by_layer = found[0]
+    assert by_layer.feasible
+    assert by_layer.sums.displacement == pytest.approx(sum(one.objective for one in path.beads), rel=1e-6)
+    assert by_layer.sums.displacement < 1.001 * min(one.sums.displacement for one in found[1:] if one.feasible)

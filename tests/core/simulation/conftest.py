@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A short planned motion with its program, and motions of random numbers."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.sampling import sampled
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.motion import Motion
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.program import build
+from freecad_am.core.strategies import revolution
+
+
+@pytest.fixture(scope="session")
+def blocks_of():
+    """Motion, program, process and waits of a hemisphere of few layers, with leads and waits."""
+    process = ProcessParameters(
+        lead_on=0.5, lead_off=0.25, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0)
+    )
+
+    def dome(t):
+        return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
+
+    wall = RevolvedWall(Meridian.chained([sampled(dome, [0, np.pi / 2])]), np.eye(4))
+    toolpath = revolution.plan(
+        wall, RevolutionParameters(layer_height=15.0), BuildDirectionParameters(), process, NozzleParameters(), 113.0, None
+    )
+    cell = cells.resolve(CellParameters(limits="paper"), toolpath.frame)
+    planned = plan_joints(toolpath, cell, JointParameters())
+    motion, _ = assemble(planned, cell, process)
+    waits = [3.0 * k for k in range(len(toolpath.layers))]
+    return motion, build(motion, cell, process, ProgramParameters(), "DOME", waits), process, waits
+
+
+@pytest.fixture(scope="session")
+def a_motion():
+    """Random beads with rapids between them as `planning.motion` puts them; every number differs."""
+
+    def make(seed, layers=4, beads=2, points=7, rapids=3, axes=6):
+        random = np.random.default_rng(seed)
+        rows = []
+        for layer in range(layers):
+            for bead in range(beads):
+                count = 2 if not rows else rapids
+                rows += [(False, layer, bead, k) for k in range(count)] + [(True, layer, bead, k) for k in range(points)]
+        rows.append((False, layers - 1, beads - 1, 0))
+        deposit, layer, bead, point = map(np.array, zip(*rows))
+        n = len(rows)
+        position, joints = random.uniform(-50, 50, (n, 3)), random.uniform(-3, 3, (n, axes))
+        duration = random.uniform(0.05, 2.0, n)
+        first = np.flatnonzero(deposit & (point == 0))
+        for column in (position, joints):
+            column[first] = column[first - 1]
+        duration[first] = duration[0] = 0.0
+        axis = np.tile([0.0, 0.0, 1.0], (n, 1))
+        length = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
+        speed = length / np.where(duration > 0, duration, 1.0)
+        return Motion(
+            deposit=deposit, layer=layer, bead=bead, point=point, position=position, build=axis, tool=axis, speed=speed,
+            width=np.full(n, np.nan), joints=joints, duration=duration,
+        )
+
+    return make

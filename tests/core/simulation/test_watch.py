@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Findings along a motion: each violation that is made is found where it was made, and nothing else."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import ERROR, NOTE, Issue
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.simulation import watch as watching
+from freecad_am.core.simulation.pace import pace
+from freecad_am.core.simulation.watch import bad_links, shown_margins, watch
+
+
+@pytest.fixture(scope="module")
+def cell():
+    return cells.resolve(CellParameters(), np.eye(4))
+
+
+@pytest.fixture
+def calm(cell, a_motion):
+    """A motion in the middle of the limits and slow."""
+    motion = a_motion(1)
+    joints = 0.01 * motion.joints + np.radians([0, 10, 20, 0, 40, 0])
+    return dataclasses.replace(motion, joints=joints)
+
+
+def seen(motion, cell, condition=None, issues=()):
+    n = len(motion)
+    condition = np.full(n, 0.5) if condition is None else condition
+    return watch(motion, cell, pace(motion, cell.machine.max_speed), condition, np.full(n, 0.1), issues)
+
+
+def test_a_calm_motion_has_no_findings(calm, cell):
+    found = seen(calm, cell)
+    assert found.findings == ()
+    assert found.margin.min() > 40.0
+
+
+def test_what_is_made_wrong_is_found_where_it_was_made(calm, cell):
+    motion = calm
+    joints, duration = motion.joints.copy(), motion.duration.copy()
+    joints[5:8, 0] = np.radians([169.8, 171.5, 169.7])  # near, past, near the limit of 170
+    joints[20] = np.nan
+    joints[30, 3] = joints[29, 3] + 1.0
+    duration[30] = 1.0 / (5.0 * cell.machine.max_speed[3])
+    condition = np.full(len(motion), 0.5)
+    condition[40:44] = [0.09, 0.04, 0.06, 0.099]
+    condition[60] = np.nan
+    motion = dataclasses.replace(motion, joints=joints, duration=duration)
+    issues = (Issue(ERROR, "X", "made up", 2, 1, 3), Issue(NOTE, "Y", "only a note", 1))
+    found = seen(motion, cell, condition, issues)
+    by_kind = {kind: [one for one in found.findings if one.kind == kind] for kind in {one.kind for one in found.findings}}
+    assert set(by_kind) == {
+        watching.UNREACHABLE, watching.LIMIT, watching.NEAR_LIMIT, watching.SINGULAR, watching.SLOWED, watching.ISSUE,
+    }
+    assert [one.row for one in by_kind[watching.UNREACHABLE]] == [20]
+    limit, = by_kind[watching.LIMIT]
+    assert (limit.row, limit.label) == (6, "q1") and limit.value == pytest.approx(-1.5)
+    assert [(one.row, one.label) for one in by_kind[watching.NEAR_LIMIT]] == [(5, "q1"), (7, "q1")]
+    singular, = by_kind[watching.SINGULAR]
+    assert (singular.row, singular.value, singular.than) == (40, 0.04, 0.1)
+    slowed = {one.row: one for one in by_kind[watching.SLOWED]}
+    assert slowed[30].label == "q4" and slowed[30].value == pytest.approx(motion.speed[30] / 5.0)
+    issue, = by_kind[watching.ISSUE]
+    assert (motion.layer[issue.row], motion.bead[issue.row], motion.point[issue.row]) == (2, 1, 3)
+    assert motion.deposit[issue.row] and issue.label == "made up"
+    rows = [one.row for one in found.findings]
+    assert rows == sorted(rows)
+
+
+def test_links_are_marked_for_their_own_axis(cell):
+    q = np.radians([0, 10, 20, 0, 40, 0])
+    none = np.zeros(6)
+    assert not bad_links(cell, shown_margins(cell, q), none, False, True).any()
+    q[4] = np.radians(139.8)
+    assert bad_links(cell, shown_margins(cell, q), none, False, True).tolist() == [False] * 5 + [True, False]
+    q[4], ratios = 0.5, np.array([0, 0, 0, 1.2, 0, 0.9])
+    assert bad_links(cell, shown_margins(cell, q), ratios, False, True).tolist() == [False] * 4 + [True] + [False] * 2
+    q[1], q[2] = np.radians([-80.0, 200.0])  # each within its own limits, q3 - q2 past 273
+    assert bad_links(cell, shown_margins(cell, q), none, False, True).tolist() == [False, False, True, True] + [False] * 3
+    for singular, reachable in ((True, True), (False, False)):
+        marked = bad_links(cell, shown_margins(cell, 0.1 * np.ones(6)), none, singular, reachable)
+        assert marked.tolist() == [False] + [True] * 6

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surfaces that only touch a face: where rounding puts it decides nothing."""
+
+import math
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.plane_curve import doubled_area
+from freecad_am.core.slicing.equidistant import Facets
+from freecad_am.core.slicing.laid_flat import cut
+from tests.core.slicing.test_equidistant import hull
+
+CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (-10.0, 10.0) for z in (-20.0, 20.0)])
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.8, math.pi / 2])
+@pytest.mark.parametrize("off", [-3e-5, -1e-9, 0.0, 1e-9, 3e-5])
+@pytest.mark.parametrize("surface", [Developable(60.0), Developable(60.0, 200.0)], ids=["cylinder", "cone"])
+def test_a_flat_top_that_touches_a_layer_does_not_divide_it(surface, off, turned):
+    """A box with its top in the tangent plane of the layer at 16 mm, turned about the normal there: one loop with the area
+    of its cut, and none of a box that stands on that plane."""
+    cos, sin = math.cos(surface.taper), math.sin(surface.taper)
+    foot = np.array([0.0 if math.isinf(surface.height) else 60.0 * (1.0 - 30.0 / 200.0), 0.0, 30.0])
+    foot[0] = foot[0] or 60.0
+    out, up = np.array([cos, 0.0, sin]), np.array([-sin, 0.0, cos])
+    side = np.array([0.0, 1.0, 0.0])
+    along, across = math.cos(turned) * up + math.sin(turned) * side, math.cos(turned) * side - math.sin(turned) * up
+    assert abs(float(surface.distance(foot[None])[0])) < 1e-12
+
+    def loops(low, high):
+        depth = low + (high - low) * CORNERS[:, :1]
+        vertices, faces, _ = hull(foot + depth * out + CORNERS[:, 1:2] * across + CORNERS[:, 2:] * along)
+        return cut(Facets(surface, vertices, faces), 16.0, 0.0125)
+
+    loop, = loops(-8.0, 16.0 + off)
+    assert loop.turns == 0
+    assert np.abs(surface.distance(loop.points) - 16.0).max() < 1e-9
+    area = 0.5 * doubled_area(surface.offset(16.0).flat(loop.points))
+    assert 800.0 < area < 830.0  # of 20 x 40 mm seen along the normal
+    assert loops(16.0 + off, 30.0) == []

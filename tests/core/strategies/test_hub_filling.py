@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fillings of layers on hubs: equal solids filled once, kinds of beads, overlap, findings with their places."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import InfeasibleError, InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import DevelopableParameters
+from freecad_am.core.strategies import developable, hub_filling
+from freecad_am.objects.store import pack, unpack
+from tests.core.strategies.test_developable import collar
+
+HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0)}
+
+
+def box(turned, thick=24.0):
+    """A box on the hub's side, turned about its axis."""
+    corners = np.array([[x, y, z] for x in (20.0, 70.0) for y in (-0.5 * thick, 0.5 * thick) for z in (20.0, 60.0)])
+    hull = ConvexHull(corners)
+    faces = hull.simplices.copy()
+    a, b, c = (corners[faces[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0.0
+    faces[inward] = faces[inward][:, ::-1]
+    cos, sin = math.cos(turned), math.sin(turned)
+    return Body("blade", corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]]), faces.astype(np.int64))
+
+
+def planned(hub, turns, thick=24.0, width=8.0, **values):
+    bodies = tuple(box(turn, thick) for turn in turns)
+    made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), bodies),), 0.0)
+    given = {"layer_height": 12.0, "bead_spacing": 6.0, "order": "feature", **values}
+    return developable.plan(
+        made, DevelopableParameters(**given), BuildDirectionParameters(), ProcessParameters(bead_width=width), None
+    )
+
+
+@pytest.mark.parametrize("hub", HUBS)
+@pytest.mark.parametrize("fill", ["contours", "lines"])
+def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeypatch):
+    turns = (0.1, 0.1 + 2.0 * math.pi / 3.0, 4.0)
+    calls = []
+    real = hub_filling.fill
+    monkeypatch.setattr(hub_filling, "fill", lambda *given: calls.append(given) or real(*given))
+    together = planned(hub, turns, fill=fill)
+    layers = len(together.layers) // 3
+    assert len(calls) == layers
+    for number, turn in enumerate(turns):
+        alone = planned(hub, (turn,), fill=fill)
+        mine = [bead for layer in together.layers[number * layers : (number + 1) * layers] for bead in layer.beads]
+        theirs = [bead for _, _, bead in alone]
+        assert len(mine) == len(theirs)
+        for a, b in zip(mine, theirs):
+            assert (a.kind, a.ring) == (b.kind, b.ring) and abs(a.length - b.length) < 1e-4
+            assert np.linalg.norm(a.points[0] - b.points[0]) < 1e-4
+    planned(hub, (0.1,), fill=fill, fill_angle=0.3)
+    assert len(calls) == 5 * layers, "another filling is not the same"
+
+
+def test_beads_carry_their_kind_and_ring_through_documents():
+    for fill, kinds in (("contours", {"contour", "centre"}), ("lines", {"contour", "line", "closing"}),
+                        ("zigzag", {"contour", "zigzag", "closing"}), ("spiral", {"spiral", "closing", "centre"})):
+        path = planned("cylinder", (0.0,), fill=fill)
+        assert {bead.kind for _, _, bead in path} <= kinds
+        again = unpack(*pack(path, "key"), "key", "toolpath")
+        assert [(b.kind, b.ring) for _, _, b in again] == [(b.kind, b.ring) for _, _, b in path]
+        floats, text = pack(path, "key")
+        old = re.sub(r',"kind":"[a-z]*","ring":\d+', "", text)
+        assert old != text and {bead.kind for _, _, bead in unpack(floats, old, "key", "toolpath")} == {""}
+
+
+def test_overlap_sets_the_spacing():
+    by_overlap = planned("cylinder", (0.0,), width=7.5, bead_overlap=0.2, bead_spacing=99.0)
+    by_spacing = planned("cylinder", (0.0,), width=7.5, bead_spacing=6.0)
+    assert [len(bead) for _, _, bead in by_overlap] == [len(bead) for _, _, bead in by_spacing]
+    for (_, _, a), (_, _, b) in zip(by_overlap, by_spacing):
+        assert np.array_equal(a.points, b.points)
+
+
+def test_places_are_told_in_the_part():
+    turn = 2.0
+    with pytest.raises(InfeasibleError) as caught:
+        planned("cylinder", (turn,), thick=3.0, thin="refuse")
+    place = np.array([float(word) for word in re.findall(r"\(([^)]*)\)", str(caught.value))[0].split(",")])
+    assert place.shape == (3,)
+    assert math.hypot(place[0], place[1]) == pytest.approx(30.0, rel=1e-3)
+    assert math.atan2(place[1], place[0]) == pytest.approx(turn, abs=0.06) and 20.0 < place[2] < 60.0
+
+
+@pytest.mark.parametrize(("fill", "instead"), [("spiral", "contours"), ("zigzag", "lines")])
+@pytest.mark.parametrize("hub", HUBS)
+def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, instead):
+    """A collar, and a blade on the same hub: the blade gets the pattern asked for, the collar the one that is told."""
+    ring = collar(20.0, 80.0, 70.0, 90.0)
+    made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), (box(0.3), ring)),), 0.0)
+
+    def beads(pattern):
+        path = developable.plan(
+            made, DevelopableParameters(layer_height=12.0, bead_spacing=6.0, fill=pattern, order="feature"),
+            BuildDirectionParameters(), ProcessParameters(), None,
+        )
+        return path, [[bead for _, _, bead in path if (bead.points[:, 2].min() > 65.0) == on_collar]
+                      for on_collar in (True, False)]
+
+    path, (round_it, aside) = beads(fill)
+    (told,) = [issue for issue in path.issues if issue.code == "PATTERN_ROUND_HUB"]
+    assert told.level == "note" and f"is filled with {instead}" in told.message and f"strategy.fill = {fill}" in told.message
+    levels = {layer for layer, _, bead in path if bead.points[:, 2].min() > 65.0}
+    assert f"(and {len(levels) - 1} layers of solids more)" in told.message and len(levels) > 2
+    other, (same, _) = beads(instead)
+    assert not [issue for issue in other.issues if issue.code == "PATTERN_ROUND_HUB"]
+    assert len(round_it) == len(same) and all((one.points == two.points).all() for one, two in zip(round_it, same))
+    assert fill in {bead.kind for bead in aside} and fill not in {bead.kind for bead in round_it}
+
+
+def test_beads_wider_apart_than_they_are_wide_are_refused():
+    with pytest.raises(InputError) as caught:
+        planned("cylinder", (0.0,), width=9.5, bead_spacing=14.0)
+    assert caught.value.code == "BEAD_SPACING" and caught.value.where == "strategy.bead_spacing"
+    assert "9.5 mm wide" in str(caught.value) and "stripes of 4.5 mm" in str(caught.value)
+    assert planned("cylinder", (0.0,), width=9.5, bead_spacing=9.5).layers
+
+
+@pytest.mark.parametrize("hub", HUBS)
+@pytest.mark.parametrize(("fill", "contour"), [("contours", True), ("spiral", True), ("lines", False), ("zigzag", True)])
+def test_no_bead_of_its_width_stands_out(hub, fill, contour):
+    """The box's sides are planes: a bead 9.5 mm wide and straight keeps half of it from them along the hub."""
+    path = planned(hub, (0.0,), thick=40.0, width=9.5, bead_spacing=6.5, fill=fill, contour=contour)
+    cos = math.cos(HUBS[hub].taper)
+    for _, _, bead in path:
+        assert bead.points[:, 2].min() >= 20.0 + 4.75 * cos - 0.05 and bead.points[:, 2].max() <= 60.0 - 4.75 * cos + 0.05
+        assert np.abs(bead.points[:, 1]).max() <= 20.0 - 4.75 * math.cos(math.atan2(20.0, 30.0)) + 1.0
+    reach = [min(bead.points[:, 2].min() for bead in layer.beads) - 20.0 for layer in path.layers]
+    assert np.allclose(reach[:2], 4.75 * cos, atol=0.06)  # farther out the cone meets the box away from its lower side
+
+
+def test_a_single_bead_wider_than_its_region_is_told_with_place_and_overhang():
+    path = planned("cylinder", (0.0,), thick=3.0, width=9.5, bead_spacing=6.5)
+    (told,) = [issue for issue in path.issues if issue.code == "THIN_SINGLE"]
+    assert told.level == "note" and "9.5 mm" in told.message
+    out = float(re.findall(r"by up to ([\d.]+) mm", told.message)[0])
+    place = np.array([float(word) for word in re.findall(r"mm at \(([^)]*)\)", told.message)[0].split(",")])
+    y, z = abs(place[1]), place[2]
+    border = min(1.5 - y, z - 20.0, 60.0 - z)
+    assert out == pytest.approx(4.75 - border, abs=0.05) and out > 3.2
+    assert not [issue for issue in planned("cylinder", (0.0,)).issues if issue.code == "THIN_SINGLE"]

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Export Path by clicks: files and objects appear, errors stay in the panel, one step of undo."""
+
+import os
+
+import FreeCAD as App
+import Part
+import pytest
+
+from freecad_am import api
+
+NAME = "RoboticAM_ExportPath"
+
+
+@pytest.fixture
+def job(person):
+    doc = App.newDocument("Export")
+    doc.UndoMode = 1
+    part = doc.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1, part.Angle2 = 45.0, 0, 90
+    doc.recompute()
+    feature = api.make_feature(doc, part, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature)
+    person.open_workbench()
+    person.gui.Selection.clearSelection()
+    person.gui.Selection.addSelection(doc.Name, toolpath.Name)
+    name = doc.Name
+    yield toolpath
+    if name in App.listDocuments():
+        App.closeDocument(name)
+
+
+def opened(person):
+    person.click("RoboticAM_ExportPath")
+    return person.panel(NAME)
+
+
+def taken(person):
+    person.press("Ok")
+    person.panel_closed()
+
+
+def refused(person):
+    person.press("Ok")
+    person.idle()
+
+
+def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
+    folder = tmp_path / "fils"  # screenshots may be in the other
+    panel = opened(person)
+    assert person.field(panel, "Path").currentText() == job.Label
+    path = str(folder / "mes fils é.step")
+    person.type(panel, "File", path)
+    person.screenshot("export_path")
+    taken(person)
+    assert len(Part.read(path).Edges) == api.result(job).bead_count
+    panel = opened(person)
+    person.choose(panel, "Kind", "DXF file of polylines")
+    assert person.field(panel, "File").text() == str(folder / f"{job.Label}.dxf")
+    assert not person.field(panel, "Tolerance").isVisible()
+    taken(person)
+    assert sorted(os.listdir(folder)) == sorted([f"{job.Label}.dxf", "mes fils é.step"])
+
+
+def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    panel = opened(person)
+    person.type(panel, "File", str(tmp_path / "file" / "a.step"))
+    refused(person)
+    assert "choose a file you can write" in person.panel_error(panel)
+    person.press("Cancel")
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_cam_path_and_trajectory_are_objects_in_one_step(person, job):
+    doc = job.Document
+    for kind, type_name in (("CAM path in this document", "Path::Feature"), (
+            "Robot trajectory in this document", "Robot::TrajectoryObject")):
+        before, steps = len(doc.Objects), doc.UndoCount
+        panel = opened(person)
+        person.choose(panel, "Kind", kind)
+        assert not person.field(panel, "File").isVisible()
+        taken(person)
+        assert doc.Objects[-1].TypeId == type_name and len(doc.Objects) == before + 1
+        assert doc.UndoCount == steps + 1
+        doc.undo()
+        person.idle()
+        assert len(doc.Objects) == before
+
+
+def test_a_document_closed_meanwhile_is_told(person, job):
+    panel = opened(person)
+    App.closeDocument(job.Document.Name)
+    person.idle()
+    if person.gui.Control.activeDialog():
+        refused(person)
+        assert "closed" in person.panel_error(panel) or "gone" in person.panel_error(panel)
+        person.press("Cancel")

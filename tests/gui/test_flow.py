@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From a selection to a program: every family by one tool, whatever is selected and however; menus, groups, deletion."""
+
+from pathlib import Path
+
+import FreeCAD as App
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.gui.commands import GROUPS
+from freecad_am.objects.job_group import is_group
+
+EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
+V = App.Vector
+
+
+def kinds(doc):
+    return [obj.Proxy.kind for obj in api.stages_of(doc)]
+
+
+def jobs(doc):
+    return [obj for obj in doc.Objects if is_group(obj)]
+
+
+def new_job(person, **texts):
+    """Click the tool, look at how the selection is understood, and press OK; the panel's texts."""
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    person.until(lambda: "looking" not in person.field(panel, "reason").text(), "the selection to be understood", 20)
+    told = {name: person.field(panel, name).text() for name in ("Source", "Ground", "reason", "error")}
+    told["Kind"] = person.field(panel, "Kind").currentText()
+    for name, text in texts.items():
+        person.type(panel, name, text)
+    person.press("Ok")
+    person.until(lambda: not person.gui.Control.activeDialog(), "the job to be made", 60)
+    return told
+
+
+def cup(doc):
+    """A body of PartDesign that is a cone, within a part that is moved and turned; the body and its outer part."""
+    outer = doc.addObject("App::Part", "Outer")
+    outer.Placement = App.Placement(V(40, -20, 5), App.Rotation(V(1, 2, 3), 50))
+    body = doc.addObject("PartDesign::Body", "Body")
+    outer.addObject(body)
+    cone = doc.addObject("PartDesign::AdditiveCone", "Cone")
+    body.addObject(cone)
+    cone.Radius1, cone.Radius2, cone.Height = 20, 10, 12
+    body.Placement.Base = V(3, 4, 5)
+    doc.recompute()
+    return outer, body
+
+
+def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
+    bar = next(bar for bar in person.window.findChildren(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
+    actions = bar.actions()
+    names = ["|" if action.isSeparator() else action.objectName() or action.data() for action in actions]
+    there = [name.removeprefix("RoboticAM_") for name in names if name != "|"]
+    order = [name for group in GROUPS for name in group]
+    assert there == [name for name in order if name in there] and there[0] == "NewJob"
+    for before, after in zip(names, names[1:], strict=False):
+        apart = next(k for k, group in enumerate(GROUPS) if before[10:] in group) if before != "|" else None
+        if apart is not None and after != "|":
+            assert after[10:] in GROUPS[apart]
+    menu = next(
+        menu for menu in person.window.menuBar().findChildren(person.widgets.QMenu) if menu.title() == "Robotic AM"
+    )
+    assert [action.isSeparator() for action in menu.actions()] == [name == "|" for name in names]
+    assert menu.toolTipsVisible()
+
+
+@pytest.mark.parametrize(
+    "how", ["body", "feature", "face in the part", "link", "face of a link", "the part", "twice nested"]
+)
+def test_a_part_of_revolution_however_it_is_selected(person, how):
+    doc = App.newDocument("Cups")
+    outer, body = cup(doc)
+    link = doc.addObject("App::Link", "Link")
+    link.LinkedObject = body
+    link.Placement = App.Placement(V(0, 100, 0), App.Rotation(V(0, 1, 0), 20))
+    doc.recompute()
+    side = next(f"Face{k}" for k, face in enumerate(body.Shape.Faces, 1) if face.Surface.TypeId == "Part::GeomCone")
+    select = {
+        "body": (body, ""), "feature": (doc.Cone, ""), "face in the part": (outer, f"Body.Cone.{side}"),
+        "link": (link, ""), "face of a link": (link, f"Cone.{side}"), "the part": (outer, "Body."),
+        "twice nested": (outer, f"Body.{side}"),
+    }[how]
+    person.gui.Selection.clearSelection()
+    person.gui.Selection.addSelection(doc.Name, select[0].Name, select[1])
+    told = new_job(person)
+    assert told["Kind"] == "Part of revolution" and told["error"] == ""
+    assert [obj.Status for obj in api.stages_of(doc)][:3] == ["up to date"] * 3
+    wall = api.result(doc.Feature)
+    shown = body.Placement if "link" not in how else link.Placement
+    frame = (outer.Placement if "link" not in how else App.Placement()).multiply(shown)
+    axis = frame.Rotation.multVec(V(0, 0, 1))
+    assert (V(*wall.frame[:3, 2]) - axis).Length < 1e-7
+    away = (V(*wall.frame[:3, 3]) - frame.Base).cross(axis)
+    assert away.Length < 1e-6  # the axis passes through the body as it is shown
+
+
+def load(doc, *names):
+    return [api.open_part(doc, str(EXAMPLES / name)) for name in names]
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_a_wall_on_a_part_is_told_from_its_faces(person, order):
+    doc = App.newDocument("Wall")
+    parts = load(doc, "tube-on-pipe.step", "pipe.step")
+    person.gui.Selection.clearSelection()
+    for k in order:
+        person.gui.Selection.addSelection(doc.Name, parts[k].Name, "Face1" if k == 0 else "")
+    told = new_job(person, Machine="kuka-kr16-2")
+    assert told["Kind"] == "Wall on a part" and parts[1].Label in told["Ground"] and parts[0].Label in told["reason"]
+    assert kinds(doc)[:3] == ["cell", "feature", "toolpath"] and doc.Feature.Substrate == parts[1]
+    assert doc.Cell.Machine == "kuka-kr16-2"
+
+
+def test_solids_on_a_hub_are_told_from_what_stands_on_what(person):
+    doc = App.newDocument("Hub")
+    hub = doc.addObject("Part::Feature", "Hub")
+    hub.Shape = Part.makeCylinder(30, 60)
+    blade = doc.addObject("Part::Feature", "Blade")
+    blade.Shape = Part.makeBox(14, 10, 20, V(28, -5, 15)).cut(hub.Shape)
+    person.gui.Selection.clearSelection()
+    person.gui.Selection.addSelection(doc.Name, blade.Name, "")
+    person.gui.Selection.addSelection(doc.Name, hub.Name, "Face1")
+    told = new_job(person, Machine="table-xyzac")
+    assert told["Kind"] == "Solids on a hub" and "Blade stands on" in told["reason"]
+    assert doc.Feature.Substrate == hub and list(doc.Feature.BaseFaces[1]) == ["Face1"]
+    assert doc.Cell.Setup == "rotary-table"
+    program = api.stages_of(doc, "program")
+    assert [obj.Post for obj in program] == ["siemens"] if doc.JointPath.Status == "up to date" else not program
+
+
+def test_what_is_not_of_revolution_asks_for_what_it_grows_on(person):
+    doc = App.newDocument("Bend")
+    (bend,) = load(doc, "walls/elbow.step")
+    block = doc.addObject("Part::Box", "Block")
+    doc.recompute()
+    person.select(bend)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    reason = person.field(panel, "reason")
+    person.until(lambda: "not of revolution" in reason.text() and "grows on" in reason.text(), "the question", 30)
+    person.press("Ok")
+    assert "grows on" in person.panel_error(panel) and api.stages_of(doc) == []
+    person.gui.Selection.addSelection(doc.Name, block.Name)  # with Ctrl, while the panel is open
+    person.until(lambda: "Block" in person.field(panel, "Ground").text(), "the block to be taken", 5)
+    assert person.panel_error(panel) == ""
+    person.press("Cancel")
+    person.panel_closed()
+    assert doc.UndoCount == 0 or api.stages_of(doc) == []
+
+
+def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere):
+    doc = hemisphere.Document
+    cell = api.make_cell(doc)
+    sheet = doc.addObject("Spreadsheet::Sheet", "Table")
+    folder = doc.addObject("App::DocumentObjectGroup", "Folder")
+    folder.addObject(hemisphere)
+    broken = doc.addObject("App::Link", "Nowhere")
+    doc.recompute()
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    assert "Click what is to be deposited" in person.field(panel, "reason").text()
+    for obj, words in (
+        (cell, "Cell belongs to a job"), (sheet, "Table has no shape"), (broken, "Nowhere links to nothing"),
+    ):
+        person.select(obj)
+        person.idle(0.3)
+        assert words in person.panel_error(panel), (obj.Label, person.panel_error(panel))
+        person.press("Ok")
+        assert person.gui.Control.activeDialog()
+    person.select(folder)  # which holds one thing alone
+    person.until(lambda: person.field(panel, "Source").text() == hemisphere.Label, "the part", 5)
+    assert person.panel_error(panel) == ""
+    person.press("Ok")
+    person.panel_closed()
+    assert kinds(doc) == ["cell", "cell", "feature", "toolpath", "joint path", "program"]
+
+
+def test_the_result_is_seen_whole_and_the_next_step_is_told(person, hemisphere):
+    view = person.gui.activeDocument().activeView()
+    view.viewTop()
+    person.idle(0.2)
+    person.select(hemisphere)
+    new_job(person)
+    assert not view.getCameraOrientation().isIdentity()  # heights are seen
+    assert "The job is ready. Simulate" in person.window.statusBar().currentMessage()
+    view.viewFront()
+    person.idle(0.2)
+    front = view.getCameraOrientation()
+    person.select(hemisphere)
+    new_job(person)
+    assert view.getCameraOrientation().isSame(front, 1e-6)  # a direction that was chosen stays
+    assert len(jobs(hemisphere.Document)) == 2
+
+
+def test_a_job_is_a_group_that_can_be_left_and_deleted_whole(person, hemisphere):
+    doc = hemisphere.Document
+    person.select(hemisphere)
+    new_job(person)
+    (job,) = jobs(doc)
+    assert job.Group == api.stages_of(doc) or {obj.Name for obj in job.Group} == {obj.Name for obj in api.stages_of(doc)}
+    assert hemisphere.Label in job.Label
+    keys = [obj.Key for obj in api.stages_of(doc)]
+    doc.openTransaction("Drag")
+    job.removeObject(doc.Toolpath)  # as dragging it to the document does
+    doc.commitTransaction()
+    doc.recompute()
+    assert doc.JointPath.Toolpath == doc.Toolpath and [obj.Key for obj in api.stages_of(doc)] == keys
+    job.addObject(doc.Toolpath)
+    doc.recompute()
+    assert {obj.Status for obj in api.stages_of(doc)} == {"up to date"}
+    assert not job.ViewObject.Proxy.canDropObject(hemisphere) and job.ViewObject.Proxy.canDropObject(doc.Cell)
+    person.select(job)
+    person.gui.runCommand("Std_Delete")  # asks nothing: else the watch would see it
+    person.idle(0.5)
+    assert [obj.Name for obj in doc.Objects] == [hemisphere.Name]
+    person.gui.runCommand("Std_Undo")
+    person.idle()
+    doc.recompute()
+    assert [obj.Key for obj in api.stages_of(doc)] == keys and len(jobs(doc)[0].Group) == 5
+    assert {obj.Status for obj in api.stages_of(doc)} == {"up to date"}
+
+
+def entries(person, obj):
+    menu = person.widgets.QMenu()
+    obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
+    return {action.objectName().removeprefix("RoboticAM_Menu"): action for action in menu.actions()}, menu
+
+
+def test_context_menus_do_what_they_say(person, hemisphere):
+    doc = hemisphere.Document
+    person.select(hemisphere)
+    new_job(person)
+    found, _menu = entries(person, doc.JointPath)
+    assert {"Edit", "Renew", "Simulate", "WriteProgram", "Input_Toolpath", "Input_Cell"} <= set(found)
+    found["Input_Toolpath"].trigger()
+    assert [obj.Name for obj in person.gui.Selection.getSelection()] == ["Toolpath"]
+    doc.Feature.LayerHeight = 3
+    found, _menu = entries(person, doc.Program)
+    assert doc.Program.Status == "stale"
+    found["Renew"].trigger()
+    person.idle()
+    assert {obj.Status for obj in api.stages_of(doc)} == {"up to date"}
+    found, _menu = entries(person, doc.Toolpath)
+    found["Edit"].trigger()
+    person.panel("RoboticAM_Toolpath")
+    person.press("Cancel")
+    person.panel_closed()
+    found, _menu = entries(person, jobs(doc)[0])
+    found["Shown"].trigger()
+    assert doc.JointPath.ViewObject.Visibility and not doc.Toolpath.ViewObject.Visibility
+    person.select(hemisphere)
+    from freecad_am.gui import menus
+
+    assert menus.for_selection() == ["RoboticAM_NewJob"]
+    person.select(doc.Cell)
+    assert menus.for_selection() == []

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Inspect: object and file are chosen, the panel tells figures, the points are seen in the colours of their deviations."""
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.inspection.bands import bands
+from freecad_am.gui.path import legend
+
+PANEL = "RoboticAM_Inspection"
+
+
+@pytest.fixture
+def part(person, root):
+    document = App.newDocument("Measured")
+    made = api.open_part(document, str(root / "resources" / "examples" / "hemisphere.step"))
+    api.make_feature(document, made, layer_height=3)
+    made.ViewObject.Visibility = False
+    return made
+
+
+@pytest.fixture
+def points(root):
+    return str(root / "resources" / "examples" / "inspection" / "hemisphere-synthetic.csv")
+
+
+def figures(panel, person):
+    table = person.field(panel, "Figures")
+    return {table.item(row, 0).text(): table.item(row, 1).text() for row in range(table.rowCount())}
+
+
+def green_and_red(person):
+    """How many pixels have the colours of what is within tolerance, and of what is most outside."""
+    colours = {band.text: 255.0 * np.array(band.colour) for band in bands(0.05)}
+    pixels = person.picture()
+    return [int((np.abs(pixels - colours[name]).max(axis=1) < 12).sum()) for name in ("within ±0.05", "0.05 … 0.1")]
+
+
+def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, points, tmp_path):
+    document, steps = part.Document, part.Document.UndoCount
+    hand.click(person.button("RoboticAM_Inspect"))
+    panel = person.panel(PANEL)
+    assert person.field(panel, "Planned").currentText() == "Feature"
+    person.type(panel, "File", points)
+    hand.enter(panel, "Tolerance", "0.05 mm")
+    hand.enter(panel, "ProbeRadius", "1.5 mm")
+    person.type(panel, "Heights", "15 25 35")
+    person.press("Apply")
+    made = document.getObject("Inspection")
+    assert made is not None, person.panel_error(panel)
+    assert (made.Status, document.UndoCount) == ("up to date", steps + 1)
+    told = figures(panel, person)
+    assert float(told["Sphericity"]) == pytest.approx(0.275, abs=0.01)
+    assert float(told["Circularity at 35"]) > float(told["Circularity at 15"])
+    assert person.field(panel, "DeviationHistogram").isVisible()
+    green, yellow = green_and_red(person)
+    assert green > 500 and yellow > 100
+    assert [scale.title for scale in legend.shown(document)] == ["deviation"]
+    person.screenshot("inspection")
+    person.press("Ok")
+    person.panel_closed()
+    person.gui.runCommand("Std_Undo")
+    person.idle(0.3)
+    assert document.getObject("Inspection") is None and legend.shown(document) == []
+    person.gui.runCommand("Std_Redo")
+    person.idle(0.3)
+    assert min(green_and_red(person)) > 100
+
+    path = str(tmp_path / "measured.FCStd")
+    document.saveAs(path)
+    App.closeDocument(document.Name)
+    opened = App.openDocument(path)
+    person.idle(0.5)
+    again = opened.Inspection
+    assert again.Status == "up to date" and min(green_and_red(person)) > 100
+    person.double_click(again)
+    assert figures(person.panel(PANEL), person) == told
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part, points, tmp_path):
+    document = part.Document
+    person.select(part)
+    person.click("RoboticAM_Inspect")
+    panel = person.panel(PANEL)
+    assert person.field(panel, "Planned").currentText() == part.Label
+    person.press("Ok")
+    assert "choose one" in person.panel_error(panel)
+    (tmp_path / "empty.csv").write_text("")
+    (tmp_path / "scan.docx").write_text("1 2 3")
+    (tmp_path / "words.csv").write_text("a;b;c\n")
+    note = person.field(panel, "FileNote")
+    for name, told in (("nowhere.csv", "cannot be read"), ("empty.csv", "empty"), ("scan.docx", "not read as points"),
+                       ("words.csv", "three numbers")):
+        person.type(panel, "File", str(tmp_path / name))
+        person.press("Ok")
+        assert note.isVisible() and told in note.text(), (name, note.text(), person.panel_error(panel))
+        assert document.getObject("Inspection") is None
+    person.type(panel, "File", points)
+    person.type(panel, "Heights", "high")
+    person.press("Ok")
+    note = person.field(panel, "HeightsNote")
+    assert note.isVisible() and "no height" in note.text()
+    person.press("Cancel")
+    person.panel_closed()
+    assert document.getObject("Inspection") is None
+
+
+def test_what_was_to_be_compared_is_deleted_while_the_panel_is_open(person, part, points):
+    document = part.Document
+    person.click("RoboticAM_Inspect")
+    panel = person.panel(PANEL)
+    person.type(panel, "File", points)
+    document.removeObject("Feature")
+    person.press("Ok")
+    assert "deleted" in person.panel_error(panel) and document.getObject("Inspection") is None
+    person.choose(panel, "Planned", part.Label)
+    person.type(panel, "ProbeRadius", "1.5 mm")
+    person.press("Ok")
+    person.panel_closed()
+    made = document.Inspection
+    assert made.Status == "up to date" and abs(made.Mean.Value) < 0.01
+    document.removeObject(part.Name)
+    document.recompute()
+    person.idle(0.3)
+    assert made.Status == "failed" and "missing" in made.Message
+    person.double_click(made)
+    assert person.field(person.panel(PANEL), "Figures").rowCount() > 5
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_panel_survives_its_document(person, part, points):
+    person.click("RoboticAM_Inspect")
+    panel = person.panel(PANEL)
+    person.type(panel, "File", points)
+    App.closeDocument(part.Document.Name)
+    App.newDocument("Other")
+    person.press("Ok")
+    if person.gui.Control.activeDialog():
+        person.press("Cancel")
+    person.panel_closed()

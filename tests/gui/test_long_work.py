@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Long work beside a window that stays alive: progress, Cancel by the mouse and by Esc, and the document as before."""
+
+import re
+import subprocess
+import threading
+import time
+from types import SimpleNamespace
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+from freecad_am.gui import busy
+from freecad_am.gui.worker import Worker
+from freecad_am.objects import hooks, progress
+from freecad_am.objects.feature import RevolutionFeature
+from freecad_am.objects.progress import Cancelled
+from freecad_am.objects.toolpath import Toolpath
+
+HANGING = 5.0  # s; what takes longer than that does not react
+LONG = 60.0  # s that none of the works below may be seen to the end in
+
+
+def sphere(document, angle=90):
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1, part.Angle2 = 45, 0, angle
+    document.recompute()
+    return part
+
+
+def revolution(root):
+    """A toolpath of a hemisphere with very thin layers."""
+    document = App.newDocument("Long")
+    feature = api.make_feature(document, sphere(document), layer_height=0.02, chord_error=0.0005)
+    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
+
+
+def wall(root):
+    """A toolpath of a bend on a pipe with very thin layers."""
+    document = App.newDocument("Long")
+    pipe = document.addObject("Part::Cylinder", "Pipe")
+    pipe.Radius, pipe.Height = 32, 160
+    pipe.Placement = App.Placement(App.Vector(0, -80, 0), App.Rotation(App.Vector(1, 0, 0), -90))
+    document.recompute()
+    bend = api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step"))
+    feature = api.make_surface_feature(document, bend, ["Face1"], pipe, layer_height=0.25)
+    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
+
+
+def hub(root):
+    """A toolpath of blades on a cone with very thin layers."""
+    document = App.newDocument("Long")
+    cone = document.addObject("Part::Cone", "Hub")
+    cone.Radius1, cone.Radius2, cone.Height = 40, 25, 60
+    blade = document.addObject("Part::Box", "Blade")
+    blade.Length, blade.Width, blade.Height = 30, 12, 24
+    blade.Placement.Base = App.Vector(25, -6, 14)
+    document.recompute()
+    feature = api.make_developable_feature(document, blade, cone, layer_height=0.1, bead_spacing=0.5)
+    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
+
+
+def joints(root):
+    """A joint path of a hemisphere with thin layers."""
+    document = App.newDocument("Long")
+    cell = api.make_cell(document, limits="paper")
+    feature = api.make_feature(document, sphere(document), layer_height=0.8, chord_error=0.002)
+    toolpath = api.make_toolpath(document, feature, cell)
+    return SimpleNamespace(document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell})
+
+
+@pytest.fixture(params=[revolution, wall, hub, joints], ids=lambda family: family.__name__)
+def long_job(person, request, root):
+    return request.param(root)
+
+
+def dialogs(person):
+    found = person.window.findChildren(person.widgets.QDialog, busy.NAME)
+    return [dialog for dialog in found if dialog.isVisible()]
+
+
+class Watcher:
+    """Ticks beside the work, as everything in the window does, and acts once the dialog is there."""
+
+    def __init__(self, person, act):
+        self.person, self.act = person, act
+        self.ticks, self.acted, self.gaps = [], None, []
+        self.timer = person.core.QTimer()
+        self.timer.setInterval(20)
+        self.timer.timeout.connect(self.tick)
+        self.timer.start()
+
+    def tick(self):
+        self.ticks.append(time.monotonic())
+        shown = dialogs(self.person)
+        if shown and self.acted is None:
+            self.acted = time.monotonic()
+            self.act(shown[0])
+
+    def stop(self):
+        self.timer.stop()
+        self.gaps = [later - earlier for earlier, later in zip(self.ticks, self.ticks[1:])]
+
+
+def state(document):
+    """All that is saved of the objects; what FreeCAD 1.0 shows as an address has none."""
+    left_out = ("Visibility", "Proxy", "Shape")
+    return {
+        obj.Name: [
+            re.sub(" at 0x[0-9a-f]+", "", str(getattr(obj, name)))
+            for name in sorted(obj.PropertiesList) if name not in left_out
+        ]
+        for obj in document.Objects
+    }
+
+
+def wind_down(person):
+    """Until no work goes on that was cancelled."""
+    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the work to end", LONG)
+
+
+def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job):
+    document = long_job.document
+    before, steps = state(document), (document.UndoCount, document.RedoCount)
+    texts = []
+
+    def cancel(dialog):
+        texts.append([label.text() for label in dialog.findChildren(person.widgets.QLabel)])
+        person.core.QTimer.singleShot(300, press)
+
+    def press():
+        stamps.append(time.monotonic())
+        person.field(dialogs(person)[0], "cancel").click()
+
+    stamps = []
+    watcher = Watcher(person, cancel)
+    with pytest.raises(Cancelled):
+        getattr(api, long_job.function)(document, **long_job.inputs)
+    latency = time.monotonic() - stamps[0]
+    watcher.stop()
+    print(f"{long_job.function}: cancelled in {latency:.3f} s, longest pause {max(watcher.gaps):.3f} s")
+    assert latency < HANGING and max(watcher.gaps) < HANGING
+    assert texts[0][0].startswith(("Toolpath", "Joint path"))
+    assert len(watcher.ticks) > 10 and dialogs(person) == []
+    assert (state(document), (document.UndoCount, document.RedoCount)) == (before, steps)
+    assert not hooks.carrying()
+    wind_down(person)
+
+
+def endless(monkeypatch, stage, entered=None):
+    """Let the work of a stage go on until it is cancelled, telling its progress."""
+    def prepare(self, obj):
+        def work():
+            if entered is not None:
+                entered.append(threading.current_thread())
+            for number in range(int(LONG / 0.01)):
+                time.sleep(0.01)
+                progress.report(min(1.0, number / 100), "counting")
+            raise AssertionError("seen to the end")
+
+        return work
+
+    monkeypatch.setattr(stage, "prepare", prepare)
+
+
+@pytest.fixture
+def feature(person, hemisphere):
+    return api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
+
+
+def by_esc(person):
+    """Press Esc, as the keyboard would."""
+    process = []
+
+    def press():
+        process.append(subprocess.Popen(["xdotool", "key", "Escape"]))
+
+    return lambda dialog: person.core.QTimer.singleShot(200, press)
+
+
+def by_mouse(person):
+    """Click on Cancel, as the mouse would."""
+    def press(dialog):
+        button = person.field(dialog, "cancel")
+        place = button.mapToGlobal(button.rect().center())
+        subprocess.Popen(["xdotool", "mousemove", str(place.x()), str(place.y()), "click", "1"])
+
+    return lambda dialog: person.core.QTimer.singleShot(200, lambda: press(dialog))
+
+
+@pytest.mark.parametrize("way", [by_esc, by_mouse])
+def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(person, feature, monkeypatch, way):
+    document, steps = feature.Document, feature.Document.UndoCount
+    before = state(document)
+    endless(monkeypatch, Toolpath)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    person.type(panel, "TravelSpeed", "7 mm/s")
+    watcher = Watcher(person, way(person))
+    person.press("Ok")
+    watcher.stop()
+    assert watcher.acted and state(document) == before and document.UndoCount == steps
+    assert "Cancelled" in person.panel_error(panel) and person.field(panel, "TravelSpeed").isVisible()
+    monkeypatch.undo()
+    person.press("Ok")
+    person.panel_closed()
+    assert (document.Toolpath.TravelSpeed.Value, document.UndoCount) == (7.0, steps + 1)
+
+
+@pytest.mark.parametrize("way", [by_esc, by_mouse])
+def test_a_recompute_of_freecad_is_cancelled_and_what_follows_waits(person, feature, monkeypatch, way):
+    document = feature.Document
+    toolpath = api.make_toolpath(document, feature)
+    layers, key = toolpath.Layers, toolpath.Key
+    feature.LayerHeight = 5
+    entered = []
+    endless(monkeypatch, RevolutionFeature, entered)
+    watcher = Watcher(person, way(person))
+    person.gui.runCommand("Std_Refresh")
+    watcher.stop()
+    assert watcher.acted and len(entered) == 1 and entered[0] is not threading.main_thread()
+    assert (toolpath.Layers, toolpath.Key) == (layers, key) and feature.Proxy.value(feature) is not None
+    assert (feature.Status, toolpath.Status) == ("stale", "stale")
+    assert "cancelled" in person.console() and "error[" not in person.console().rpartition("watching")[2]
+    monkeypatch.undo()
+    person.gui.runCommand("Std_Refresh")
+    assert (feature.Status, toolpath.Status) == ("up to date", "up to date") and toolpath.Layers > layers
+
+
+def test_a_document_closed_while_computing_drops_the_work(person, feature, monkeypatch):
+    document = feature.Document
+    endless(monkeypatch, Toolpath)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+
+    def close(dialog):
+        App.closeDocument(document.Name)
+        person.core.QTimer.singleShot(100, person.field(dialog, "cancel").click)
+
+    watcher = Watcher(person, close)
+    person.press("Ok")
+    watcher.stop()
+    assert watcher.acted and not hooks.carrying()
+    if person.gui.Control.activeDialog():
+        assert "gone" in person.panel_error(panel) or "Cancelled" in person.panel_error(panel)
+        person.press("Cancel")
+
+
+def test_what_events_bring_about_meanwhile_is_refused_and_fails_nothing(person, feature, monkeypatch):
+    toolpath = api.make_toolpath(feature.Document, feature)
+    endless(monkeypatch, RevolutionFeature)
+    refused = []
+
+    def again(dialog):
+        try:
+            api.recompute(toolpath, force=True)
+        except InputError as error:
+            refused.append(error.code)
+        person.core.QTimer.singleShot(0, person.field(dialog, "cancel").click)
+
+    watcher = Watcher(person, again)
+    with pytest.raises(Cancelled):
+        api.change(feature, layer_height=5)
+    watcher.stop()
+    assert refused == ["BUSY"] and (feature.LayerHeight.Value, feature.Status) == (10.0, "up to date")
+    assert toolpath.Status == "up to date"
+
+
+def test_progress_is_shown_with_words(person, feature, monkeypatch):
+    endless(monkeypatch, Toolpath)
+    seen = []
+
+    def look(dialog):
+        def read():
+            seen.append((person.field(dialog, "text").text(), person.field(dialog, "bar").value()))
+            person.screenshot("progress")
+            person.field(dialog, "cancel").click()
+
+        person.core.QTimer.singleShot(400, read)
+
+    watcher = Watcher(person, look)
+    with pytest.raises(Cancelled):
+        api.make_toolpath(feature.Document, feature)
+    watcher.stop()
+    assert seen[0][0] == "Toolpath: counting" and seen[0][1] > 0
+
+
+def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):
+    """Python runs no exception into compiled code: it is asked again, and nobody waits for it."""
+    goes_on, seen = threading.Event(), []
+
+    def work():
+        for _ in range(2):
+            try:
+                while not goes_on.is_set():
+                    time.sleep(0.01)
+            except Cancelled:
+                seen.append("swallowed")
+
+    worker = Worker(work)
+    person.idle(0.1)
+    worker.cancel()
+    with pytest.raises(Cancelled):
+        worker.result()
+    person.until(lambda: worker.ended.is_set(), "the second order to end", 10)
+    assert seen == ["swallowed", "swallowed"]

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The wizard of a new machine, by mouse and keys: every source, poses from a pendant, what is wrong with them, the file."""
+
+import json
+import os
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics import machine, pendant, pose_figures, urdf_text
+from freecad_am.objects import user_machines
+
+NAME = "RoboticAM_NewMachine"
+
+
+@pytest.fixture
+def wizard(person):
+    from freecad_am.gui.machine_wizard import wizard as module
+
+    person.click("RoboticAM_NewMachine")
+    shown = person.panel(NAME)
+    yield shown
+    for path in (os.path.join(folder, name) for folder in user_machines.folders() for name in os.listdir(folder)):
+        os.remove(path)
+    for left in list(module._open):
+        left.close()
+    person.idle()
+
+
+def page(wizard):
+    return wizard.currentPage().objectName()
+
+
+def go_on(person, hand, wizard, expected):
+    hand.click(wizard.button(person.widgets.QWizard.NextButton))
+    error = person.field(wizard.currentPage(), "error")
+    assert page(wizard) == expected, error.text()
+
+
+def refused(person, hand, wizard, button="NextButton"):
+    before = page(wizard)
+    hand.click(wizard.button(getattr(person.widgets.QWizard, button)))
+    assert page(wizard) == before
+    error = person.field(wizard.currentPage(), "error")
+    assert error.isVisible()
+    return error.text()
+
+
+def type_row(person, hand, table, row, values, column=0):
+    """Click the first cell, type, go on by Tab."""
+    table.scrollTo(table.model().index(row, column))
+    place = table.visualRect(table.model().index(row, column)).center()
+    where = table.viewport().mapToGlobal(place)
+    hand.at((where.x(), where.y()))
+    for value in values:
+        hand.do("type", "--delay", "8", "--", f"{value:.10g}")
+        hand.do("key", "Tab")
+
+
+def fill(table, values, column=0, row=0):
+    """Paste figures, as from a spreadsheet."""
+    from PySide import QtGui
+
+    QtGui.QApplication.clipboard().setText("\n".join("\t".join(f"{value:.10g}" for value in line) for line in values))
+    table.setCurrentCell(row, column)
+    table.paste()
+
+
+def pendant_poses(name="fanuc-arcmate120ic", count=4, convention=pose_figures.FANUC):
+    """Joints and poses as the pendant shows them, rounded as on its display."""
+    arm = machine.load(name)
+    shown = np.random.default_rng(5).uniform(-70, 70, (count, 6)).round(2)
+    shown[0] = np.degrees(arm.controller_offset)
+    poses = np.linalg.inv(arm.base) @ arm.chain.forward(arm.from_controller(np.radians(shown)))
+    return np.column_stack((shown, pose_figures.figures_of(convention, poses).round(3)))
+
+
+def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_path):
+    arm = machine.load("fanuc-arcmate120ic")
+    path = tmp_path / "arm.urdf"
+    path.write_text(urdf_text.text(arm), encoding="utf-8")
+    assert page(wizard) == "SourcePage"
+    assert "choose a URDF file" in refused(person, hand, wizard)
+    hand.enter(wizard, "file", str(path))
+    assert person.field(wizard, "tipLink").currentText() == "tool0"
+    person.screenshot("machine_1_source")
+    go_on(person, hand, wizard, "LimitsPage")
+    table = person.field(wizard, "limits")
+    assert [table.item(0, column).text() for column in range(4)] == ["-170", "170", "195", ""]
+    type_row(person, hand, table, 1, [-95.0])
+    person.screenshot("machine_2_limits")
+    go_on(person, hand, wizard, "FramesPage")
+    assert person.field(wizard, "frames").item(0, 2).text() == "525"
+    person.screenshot("machine_3_frames")
+    go_on(person, hand, wizard, "PosesPage")
+    assert "at least 3 are needed" in refused(person, hand, wizard)
+    poses = person.field(wizard, "poses")
+    figures = pendant_poses()
+    type_row(person, hand, poses, 0, figures[0])
+    for row in (1, 2, 3):
+        fill(poses, figures[row:row + 1], row=row)
+    verdict = person.field(wizard, "verdict")
+    person.until(lambda: "It would if" in verdict.text(), "the verdict")
+    assert "does not give them" in refused(person, hand, wizard)
+    offer = person.field(wizard, "suspect0")
+    assert offer.text() == "Axis 3 is shown against the horizontal"
+    person.screenshot("machine_4_poses_wrong")
+    hand.click(offer)
+    person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
+    person.screenshot("machine_5_poses_right")
+    go_on(person, hand, wizard, "NamePage")
+    hand.enter(wizard, "machineTitle", "FANUC of hall 3")
+    assert person.field(wizard, "machineName").text() == "fanuc-of-hall-3"
+    assert "only as good" in refused(person, hand, wizard, "FinishButton")
+    hand.enter(wizard, "poseSource", "pendant")
+    hand.click(person.field(wizard, "post_fanuc"))
+    person.screenshot("machine_6_name")
+    hand.click(wizard.button(person.widgets.QWizard.FinishButton))
+    person.until(lambda: user_machines.folders() and os.listdir(user_machines.folders()[0]), "the file")
+    made = machine.load("fanuc-of-hall-3", user_machines.folders())
+    q = np.random.default_rng(1).uniform(-2, 2, (20, 6))
+    np.testing.assert_allclose(made.chain.forward(q), arm.chain.forward(q), atol=1e-9)
+    np.testing.assert_allclose(made.to_controller(q), arm.to_controller(q), atol=1e-12)
+    np.testing.assert_allclose(made.base, arm.base)
+    assert made.posts == ("fanuc",) and np.degrees(made.limits("maker").lower[1]) == pytest.approx(-95.0)
+    # it can be chosen at once
+    App.newDocument("Cell")
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    person.choose(panel, "Machine", "fanuc-of-hall-3")
+    person.press("Ok")
+    person.panel_closed()
+    assert App.ActiveDocument.Cell.MachineTitle == "FANUC of hall 3"
+
+
+def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand, wizard):
+    person.choose(wizard, "source", "A copy of another machine")
+    box = person.field(wizard, "original")
+    box.setCurrentIndex(box.findData("kuka-kr16-2"))
+    for expected in ("LimitsPage", "FramesPage", "PosesPage"):
+        go_on(person, hand, wizard, expected)
+    assert "gives all" in person.field(wizard, "verdict").text()
+    go_on(person, hand, wizard, "NamePage")
+    hand.enter(wizard, "machineName", "kuka-kr16-2")
+    assert "there is a machine 'kuka-kr16-2' already" in refused(person, hand, wizard, "FinishButton")
+    hand.enter(wizard, "machineName", "Große Kuka")
+    assert "cannot be the name" in refused(person, hand, wizard, "FinishButton")
+    hand.enter(wizard, "machineName", "big-kuka")
+    hand.click(wizard.button(person.widgets.QWizard.FinishButton))
+    made = machine.load("big-kuka", user_machines.folders())
+    assert made.opw == machine.load("kuka-kr16-2").opw or made.opw.c2 == machine.load("kuka-kr16-2").opw.c2
+    file = os.path.join(user_machines.folders()[0], "big-kuka.json")
+    with open(file, encoding="utf-8") as text:
+        assert json.load(text)["sources"][0] == "copy of kuka-kr16-2"
+
+
+def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
+    arm = machine.load("staubli-tx60")
+    person.choose(wizard, "source", "Figures of an arm with a spherical wrist (OPW)")
+    lengths = [getattr(arm.opw, name) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")]
+    type_row(person, hand, person.field(wizard, "opwLengths"), 0, lengths)
+    signs = np.array(arm.opw.signs) * [1, 1, 1, 1, -1, 1]
+    fill(person.field(wizard, "opwTurns"), [np.degrees(arm.opw.offsets), signs])
+    for expected in ("LimitsPage", "FramesPage", "PosesPage"):
+        go_on(person, hand, wizard, expected)
+    person.choose(wizard, "convention", next(
+        f"{figures}   {who}" for figures, who in [pose_figures.CONVENTIONS[pose_figures.STAUBLI]]))
+    figures = pendant_poses("staubli-tx60", convention=pose_figures.STAUBLI)
+    fill(person.field(wizard, "poses"), figures)
+    verdict = person.field(wizard, "verdict")
+    person.until(lambda: "It would if" in verdict.text(), "the verdict")
+    offer = "J5 counts the other way (sign), and the base frame is moved by 0, 0, 375 mm and turned by 0 deg"
+    assert person.field(wizard, "suspect0").text() == offer
+    hand.click(person.field(wizard, "suspect0"))
+    person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
+    hand.click(wizard.button(person.widgets.QWizard.BackButton))
+    assert page(wizard) == "FramesPage" and person.field(wizard, "axes").item(0, 4).text() == "-1"
+    hand.click(wizard.button(person.widgets.QWizard.NextButton))
+    assert "gives all 4 poses" in verdict.text()  # they stay
+
+
+def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, hand, wizard):
+    from freecad_am.core.kinematics import denavit_hartenberg as dh
+
+    person.choose(wizard, "source", "A table of Denavit and Hartenberg")
+    table = dh.table_of(machine.load("kuka-kr6-r900-2").chain)
+    rows = np.array([[np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), 1] for row in table.rows])
+    offset = rows.copy()
+    offset[4, 1] += 30.0
+    fill(person.field(wizard, "dhTable"), offset)
+    ends = person.field(wizard, "dhEnds")
+    from freecad_am.core.geometry import frames
+
+    fill(ends, [[*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))] for pose in (table.before, table.after)])
+    assert "he wrist is not spherical" in refused(person, hand, wizard)
+    type_row(person, hand, person.field(wizard, "dhTable"), 4, [rows[4, 1]], column=1)
+    person.screenshot("machine_1_table")
+    go_on(person, hand, wizard, "LimitsPage")
+    type_row(person, hand, person.field(wizard, "limits"), 0, [10.0, -10.0])
+    assert "10 is not below -10" in refused(person, hand, wizard)
+    # Escape closes it, and nothing is left
+    hand.do("key", "Escape")
+    hand.do("key", "Escape")
+    from freecad_am.gui.machine_wizard import wizard as module
+
+    person.until(lambda: not module._open, "the wizard to close")
+    assert not user_machines.folders() or not os.listdir(user_machines.folders()[0])
+
+def test_a_machine_tool_from_its_table(person, hand, wizard):
+    from freecad_am.core.geometry import frames
+    from freecad_am.core.kinematics import denavit_hartenberg as dh
+
+    person.choose(wizard, "source", "A table of Denavit and Hartenberg")
+    tool = machine.load("table-xyzac")
+    table = dh.table_of(tool.chain)
+    rows = [[np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), row.sign, row.sliding] for row in table.rows]
+    shown = person.field(wizard, "dhTable")
+    fill(shown, rows)
+    for column in range(6):  # a machine tool has five axes
+        shown.item(5, column).setText("")
+    ends = [[*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))] for pose in (table.before, table.after)]
+    fill(person.field(wizard, "dhEnds"), ends)
+    go_on(person, hand, wizard, "LimitsPage")
+    limits = person.field(wizard, "limits")
+    assert limits.rowCount() == 5 and limits.verticalHeaderItem(0).text() == "joint_1 (mm)"
+    assert "an axis that slides has two ends" in refused(person, hand, wizard)
+    fill(limits, [[-500, 500, 200], [-500, 500, 200], [-300, 700, 200], [-120, 120, 90]])
+    go_on(person, hand, wizard, "FramesPage")
+    go_on(person, hand, wizard, "PosesPage")
+    values = np.array([[0, 0, 0, 0, 0], [10, 20, 30, 40, 50], [-15, 25, -35, 45, -55], [100, -90, 80, -70, 60]], float)
+    poses = tool.chain.forward(values * tool.unit_values)
+    fill(person.field(wizard, "poses"), np.column_stack((values, pose_figures.figures_of(pose_figures.FANUC, poses))))
+    verdict = person.field(wizard, "verdict")
+    person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
+    go_on(person, hand, wizard, "NamePage")
+    hand.enter(wizard, "machineTitle", "Trunnion")
+    hand.enter(wizard, "poseSource", "controller")
+    hand.click(wizard.button(person.widgets.QWizard.FinishButton))
+    made = machine.load("trunnion", user_machines.folders())
+    assert made.is_table and made.opw is None and np.isinf(made.limits("maker").upper[4])
+    np.testing.assert_allclose(made.chain.forward(values), tool.chain.forward(values), atol=1e-6)
+
+
+def test_what_a_pendant_shows_is_what_the_wizard_reads():
+    arm = machine.load("fanuc-arcmate120ic")
+    shown = pendant.Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
+    figures = pendant_poses(count=6)
+    poses = pose_figures.flange_poses(pose_figures.FANUC, figures[:, 6:], arm.base, np.eye(4))
+    assert pendant.fits(pendant.deviations(arm.chain, shown, figures[:, :6], poses))

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Panels: Apply keeps them open, expressions are typed, every field has help, previews go on beside the window."""
+
+import threading
+import time
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.objects.surface_feature import SurfaceFeature
+
+PANEL = "RoboticAM_RevolutionFeature"
+
+
+def test_apply_makes_then_changes_in_a_step_each_and_cancel_leaves_it(person, hemisphere):
+    document, steps = hemisphere.Document, hemisphere.Document.UndoCount
+    person.select(hemisphere)
+    person.click("RoboticAM_Feature")
+    panel = person.panel(PANEL)
+    person.type(panel, "LayerHeight", "9 mm")
+    person.press("Apply")
+    feature = document.getObject("Feature")
+    assert panel.isVisible() and (feature.LayerHeight.Value, document.UndoCount) == (9.0, steps + 1)
+    assert "up to date" in person.field(panel, "findings").text()
+    person.press("Apply")  # nothing was changed since
+    assert document.UndoCount == steps + 1
+    person.type(panel, "LayerHeight", "-1 mm")
+    person.press("Apply")
+    note = person.field(panel, "LayerHeightNote")
+    assert note.isVisible() and "more than 0 mm" in note.text() and document.UndoCount == steps + 1
+    person.type(panel, "LayerHeight", "6 mm")
+    person.press("Apply")
+    assert (feature.LayerHeight.Value, document.UndoCount, note.isVisible()) == (6.0, steps + 2, False)
+    person.type(panel, "LayerHeight", "3 mm")
+    person.screenshot("panel_apply")
+    person.press("Cancel")
+    person.panel_closed()
+    assert (feature.LayerHeight.Value, document.UndoCount) == (6.0, steps + 2)
+    assert len(api.stages_of(document)) == 1
+    person.gui.runCommand("Std_Undo")
+    assert feature.LayerHeight.Value == 9.0
+
+
+def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, hemisphere):
+    document = hemisphere.Document
+    sheet = document.addObject("App::FeaturePython", "Sheet")
+    sheet.addProperty("App::PropertyLength", "height")
+    sheet.height = 16
+    person.select(hemisphere)
+    person.click("RoboticAM_Feature")
+    panel = person.panel(PANEL)
+    hand.enter(panel, "LayerHeight", "=Sheet.height/2")
+    note = person.field(panel, "LayerHeightNote")
+    person.until(lambda: note.isVisible() and note.text() == "= 8.00 mm", "what the expression gives", 5)
+    hand.enter(panel, "ChordError", "=Sheet.hieght")
+    wrong = person.field(panel, "ChordErrorNote")
+    person.until(lambda: wrong.isVisible() and "not understood" in wrong.text(), "what is wrong", 5)
+    person.screenshot("panel_expression")
+    person.press("Ok")
+    assert document.getObject("Feature") is None and wrong.isVisible()
+    hand.enter(panel, "ChordError", "0.02 mm")
+    person.until(lambda: not wrong.isVisible(), "the note to go", 5)
+    person.press("Ok")
+    person.panel_closed()
+    feature = document.Feature
+    assert (feature.LayerHeight.Value, dict(feature.ExpressionEngine)) == (8.0, {"LayerHeight": "Sheet.height / 2"})
+    sheet.height = 20
+    person.gui.runCommand("Std_Refresh")
+    assert (feature.LayerHeight.Value, feature.Status) == (10.0, "up to date")
+    person.double_click(feature)
+    panel = person.panel(PANEL)
+    assert person.field(panel, "LayerHeight").findChild(person.widgets.QLineEdit).text() == "=Sheet.height / 2"
+    person.press("Ok")
+    person.panel_closed()
+    assert dict(feature.ExpressionEngine) == {"LayerHeight": "Sheet.height / 2"}
+    person.double_click(feature)
+    hand.enter(person.panel(PANEL), "LayerHeight", "5 mm")
+    person.press("Ok")
+    person.panel_closed()
+    assert (feature.LayerHeight.Value, feature.ExpressionEngine) == (5.0, [])
+
+
+@pytest.mark.parametrize(
+    "command", ["Cell", "Feature", "WallOnPart", "SolidsOnHub", "Toolpath", "JointPath", "Program", "Inspect"]
+)
+def test_every_field_has_help_and_numbers_have_units(person, hemisphere, command):
+    if command in ("Toolpath", "JointPath", "Program"):  # tools that act on earlier stages
+        feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=15)
+        cell = api.make_cell(hemisphere.Document)
+        api.make_joint_path(hemisphere.Document, api.make_toolpath(hemisphere.Document, feature, cell), cell)
+    person.click(f"RoboticAM_{command}")
+    panel = next(
+        one for one in person.window.findChildren(person.widgets.QWidget)
+        if one.objectName().startswith("RoboticAM_") and one.isVisible()
+    )
+    kinds = (person.widgets.QLineEdit, person.widgets.QComboBox, person.widgets.QCheckBox, person.widgets.QAbstractSpinBox)
+    fields = [one for kind in kinds for one in panel.findChildren(kind)]
+    bare = [
+        one.objectName() for one in fields
+        if not one.objectName().startswith("qt_") and not (one.toolTip() or one.parent().toolTip())
+    ]
+    mute = [
+        one.objectName() for one in fields
+        if not one.objectName().startswith("qt_") and not (one.whatsThis() or one.parent().whatsThis())
+    ]
+    assert len(fields) > 3
+    assert (bare, mute) == ([], [])
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(person, root, monkeypatch):
+    document = App.newDocument("Bend")
+    pipe = document.addObject("Part::Cylinder", "Pipe")
+    pipe.Radius, pipe.Height = 32, 160
+    pipe.Placement = App.Placement(App.Vector(0, -80, 0), App.Rotation(App.Vector(1, 0, 0), -90))
+    document.recompute()
+    part = api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step"))
+    begun, ended = [], []
+    prepare = SurfaceFeature.prepare
+
+    def slow(self, obj):
+        height, work = float(obj.LayerHeight), prepare(self, obj)
+
+        def slowly():
+            begun.append(height)
+            try:
+                while height == 2.0:  # for ever
+                    time.sleep(0.01)
+                return work()
+            finally:
+                ended.append(height)
+
+        return slowly
+
+    monkeypatch.setattr(SurfaceFeature, "prepare", slow)
+    person.select(part, "Face1")
+    person.gui.Selection.addSelection(pipe)
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel("RoboticAM_SurfaceFeature")
+    state = person.field(panel, "preview")
+    person.until(lambda: state.text().startswith("First layer"), "the preview", 60)
+    person.type(panel, "LayerHeight", "2 mm")
+    person.until(lambda: "being computed" in state.text() and 2.0 in begun, "the preview that goes on", 10)
+    gaps, last = [], time.monotonic()
+    for _ in range(40):
+        person.idle(0.02)
+        gaps, last = [*gaps, time.monotonic() - last], time.monotonic()
+    print(f"longest pause of the window: {max(gaps):.3f} s")
+    person.type(panel, "LayerHeight", "3 mm")
+    person.until(lambda: state.text().startswith("First layer"), "the newer preview", 60)
+    assert ended[-2:] == [2.0, 3.0]
+    person.type(panel, "LayerHeight", "2 mm")
+    person.until(lambda: begun[-1] == 2.0, "another that goes on", 10)
+    person.press("Cancel")  # while it is computed
+    person.panel_closed()
+    person.until(lambda: ended[-1] == 2.0, "its end", 10)
+    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)

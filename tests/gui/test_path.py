@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Paths layer by layer and point by point, as lines and as tubes, coloured by what the machine has left."""
+
+import dataclasses
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.simulation.margins import margins, speed_ratios
+from freecad_am.core.toolpath import Layer
+from freecad_am.gui.colours import ramp
+from freecad_am.gui.path import colouring, dock, legend
+from freecad_am.gui.path.facts import facts
+from freecad_am.gui.path.rows import PIECE, Rows
+
+RED = tuple(round(255 * part) for part in colouring.UNREACHABLE)
+
+
+@pytest.fixture
+def joint_path(person, hemisphere):
+    document = hemisphere.Document
+    cell = api.make_cell(document)
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    made = api.make_joint_path(document, toolpath, cell)
+    cell.ViewObject.Visibility = document.Feature.ViewObject.Visibility = False
+    person.idle()
+    return made
+
+
+def drawn(person):
+    """Which pixels (450, 600) of a picture show something, the legend left out."""
+    view = person.gui.activeDocument().activeView()
+    path = str(person.folder / "path.png")
+    view.saveImage(path, 600, 450, "White")
+    image = person.widgets.QImage(path).convertToFormat(person.widgets.QImage.Format_RGB32)
+    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(450, -1, 4)[:, :600, :3]
+    seen = (rows < 250).any(axis=2)
+    seen[:, :140] = False  # the legend
+    return seen
+
+
+def front(person):
+    view = person.gui.activeDocument().activeView()
+    view.viewFront()
+    person.gui.SendMsgToActiveView("ViewFit")
+    person.idle(0.3)
+
+
+def test_layers_and_points_by_sliders_and_numbers(person, hand, joint_path):
+    rows = joint_path.ViewObject.Proxy.rows
+    person.click("RoboticAM_Path")
+    panel = person.panel(dock.NAME)
+    front(person)
+    whole = drawn(person)
+    to, point = person.field(panel, "to_slider"), person.field(panel, "point_slider")
+    assert (to.minimum(), to.maximum(), to.value()) == (0, rows.layer_count - 1, rows.layer_count - 1)
+    hand.click(person.field(panel, "to_back"))
+    assert to.value() == rows.layer_count - 2
+    hand.click(person.field(panel, "to_spin"))
+    hand.do("key", "ctrl+a")
+    hand.do("type", "3")
+    hand.do("key", "Tab")
+    lower = drawn(person)
+    tops = [int(np.flatnonzero(one.any(axis=1))[0]) for one in (whole, lower)]
+    assert tops[1] > tops[0] + 40  # the upper layers are gone
+    assert 0 < lower.sum() < whole.sum()
+    person.field(panel, "from_spin").setValue(3)
+    alone = drawn(person)
+    assert 0 < alone.sum() < 0.5 * lower.sum()
+    assert joint_path.ViewObject.Proxy.shown == (3, 3, None)
+    low, high = rows.of_layers(3, 3)
+    assert (point.minimum(), point.maximum()) == (1, high - low)
+    point.setValue((high - low) // 2)
+    person.idle()
+    assert 0 < drawn(person).sum() < alone.sum()
+    text = person.field(panel, "facts").text()
+    row = low + (high - low) // 2 - 1
+    told = joint_path.ViewObject.Proxy.scale.told(row)
+    assert told.startswith("joint margin ") and told.endswith(" %")
+    assert text == f"{told} · {facts(rows, row)}" and "Layer 3 (0 to" in text and "mm/s" in text
+    person.screenshot("path_dock")
+    hand.click(person.field(panel, "all"))
+    assert joint_path.ViewObject.Proxy.shown is None and drawn(person).sum() == whole.sum()
+    hand.click(person.field(panel, "single"))
+    assert joint_path.ViewObject.Proxy.shown == (rows.layer_count - 1, rows.layer_count - 1, None)
+    hand.click(person.field(panel, "from_back"))
+    assert joint_path.ViewObject.Proxy.shown == (rows.layer_count - 2, rows.layer_count - 2, None)
+    hand.click(person.field(panel, "from_slider"))
+    there = joint_path.ViewObject.Proxy.shown[0]
+    hand.do("key", "Right")
+    assert joint_path.ViewObject.Proxy.shown == (there + 1, there + 1, None)
+    hand.do("key", "Left", "Left")
+    assert joint_path.ViewObject.Proxy.shown == (there - 1, there - 1, None)
+    panel.close()
+
+
+def test_the_dock_follows_what_there_is(person, joint_path):
+    document = joint_path.Document
+    toolpath = document.Toolpath
+    dock.show()
+    panel = person.panel(dock.NAME)
+    choice = person.field(panel, "path")
+    assert choice.currentText() == joint_path.Label and choice.count() == 2
+    choice.setCurrentIndex(choice.findText(toolpath.Label))
+    choice.activated.emit(choice.currentIndex())
+    person.idle()
+    assert toolpath.ViewObject.Visibility and not joint_path.ViewObject.Visibility
+    person.gui.runCommand("Std_Undo")  # of the joint path
+    person.idle()
+    assert choice.count() == 1 and choice.currentText() == toolpath.Label
+    person.field(panel, "colouring").activated.emit(0)
+    document.removeObject(toolpath.Name)
+    person.idle()
+    assert choice.count() == 0 and "no path" in person.field(panel, "facts").text()
+    other = App.newDocument("Other")
+    person.idle()
+    App.closeDocument(document.Name)
+    person.idle()
+    App.closeDocument(other.Name)
+    person.idle()
+    assert not person.field(panel, "to_slider").isEnabled()
+    panel.close()
+
+
+def test_tubes_are_as_wide_and_as_high_as_they_are(person, joint_path):
+    vobj = joint_path.ViewObject
+    vobj.Colouring, vobj.ShowRapids, vobj.ShowLegend = "kind of bead", False, False
+    front(person)
+    lines = drawn(person)
+    scale = (np.ptp(np.flatnonzero(lines.any(axis=0))) - 1) / 90.0  # lines are 2 px wide
+    vobj.Look = "tubes"
+    vobj.Proxy.show((0, 0, None))
+    person.idle()
+    first = drawn(person)
+    person.screenshot("tubes")
+    across, down = np.flatnonzero(first.any(axis=0)), np.flatnonzero(first.any(axis=1))
+    assert np.ptp(across) + 1 == pytest.approx(scale * (90.0 + 8.0), abs=3)  # the part, and half a width on both sides
+    assert np.ptp(down) + 1 == pytest.approx(scale * 5.0, abs=3)
+    vobj.Proxy.show(None)
+    assert drawn(person).sum() > 3 * lines.sum()
+
+
+def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_path):
+    document, vobj = joint_path.Document, joint_path.ViewObject
+    assert vobj.getEnumerationsOfProperty("Colouring") == list(colouring.JOINT_KINDS)
+    assert not document.Toolpath.ViewObject.Visibility  # it lies at the same place
+    planned = api.result(joint_path)
+    motion, machine = planned.motion, machines.load(document.Cell.Machine)
+    limits = machine.limits(planned.joint_path.limits)
+    share = np.nanmin(np.concatenate([
+        margins(motion.joints, limits.lower, limits.upper),
+        margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)], axis=1), axis=1)
+    scale = vobj.Proxy.scale
+    assert (scale.title, scale.unit) == ("joint margin", "%")
+    assert scale.least == pytest.approx(100 * share[motion.deposit].min())
+    assert scale.most == pytest.approx(100 * share[motion.deposit].max())
+    assert scale.told(7) == f"joint margin {100 * share[motion.deposit][7]:.3g} %"
+    vobj.Colouring = "joint speed"
+    ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
+    assert vobj.Proxy.scale.most == pytest.approx(100 * ratio[motion.deposit].max())
+    vobj.Colouring = "condition"
+    assert vobj.Proxy.scale.least == pytest.approx(joint_path.SmallestCondition)
+    for kind in colouring.JOINT_KINDS:
+        vobj.Colouring = kind
+        person.idle()
+        assert [one.title for one in legend.shown(document)] == [kind]
+        person.screenshot(f"joint_path_{kind.replace(' ', '_')}")
+
+
+def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
+    values = np.array([np.nan, -0.1, 0.0, 0.5, 1.0, 1.4])
+    colours, scale = colouring.by_machine(values, colouring.MARGIN)
+    assert (colours[0] == colouring.UNREACHABLE).all() and (colours[1] == colouring.TOO_NEAR).all()
+    assert scale.told(0) == "joint margin unreachable" and scale.told(3) == "joint margin 50 %"
+    assert scale.without == "unreachable" and scale.below == "beyond a limit" and not scale.above
+    colours, scale = colouring.by_machine(values, colouring.RATIO)
+    assert (colours[5] == colouring.TOO_FAR).all() and scale.above == "faster than it can" and not scale.below
+    assert np.array_equal(colours[[2, 3, 4]], ramp(np.array([0.1, 0.6, 1.1]) / 1.1))
+    assert colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1].without == "unreachable"
+
+
+def test_each_kind_of_bead_is_told(person, joint_path):
+    bead = joint_path.ViewObject.Proxy.rows.beads[0]
+    kinds = ("", "contour", "zigzag", "line", "spiral", "centre", "closing")
+    found = [colouring.class_of(dataclasses.replace(bead, kind=kind)) for kind in kinds]
+    assert found == [colouring.CLOSED, colouring.CLOSED, *3 * [colouring.OPEN], colouring.CENTRE, colouring.CLOSING]
+    told = [facts(Rows.of([dataclasses.replace(bead, kind=kind)], [0], 8.0, lambda: 1.0), 3) for kind in kinds]
+    assert len(set(told)) == len(kinds) and "in the middle" in told[5]
+
+
+def test_unreachable_points_are_red(person, hemisphere):
+    document = hemisphere.Document
+    cell = api.make_cell(document, limits="paper")
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    joint_path = api.make_joint_path(document, toolpath, cell, method="constant")
+    assert joint_path.Status == "infeasible"
+    person.look()
+    assert person.screen_pixels(RED, 12) > 20
+    joint_path.ViewObject.Proxy.show((0, 0, None))
+    person.idle()
+
+
+def test_directions_and_rapids_are_of_what_is_shown(person, joint_path):
+    vobj = joint_path.ViewObject
+    vobj.ShowDirections, vobj.DirectionStep = True, 1
+    person.look()
+
+    def pink():
+        return person.screen_pixels((219, 51, 140), 30)
+
+    whole = pink()
+    assert whole > 200
+    vobj.Proxy.show((2, 2, None))
+    assert 0 < pink() < 0.6 * whole
+    counted = vobj.Proxy.rapids.lines.numVertices.getNum()
+    vobj.Proxy.show(None)
+    assert 0 < counted < vobj.Proxy.rapids.lines.numVertices.getNum()
+    vobj.ShowDirections = False
+    assert pink() == 0
+
+
+def test_a_stretch_of_a_large_path_changes_little(person, joint_path):
+    """Whole pieces are kept; only the two at the ends are made anew."""
+    document = joint_path.Document
+    path = api.result(document.Toolpath)
+    layers = tuple(Layer(layer.beads) for _ in range(-(-30_000 // path.point_count)) for layer in path.layers)
+    many = dataclasses.replace(path, layers=layers)
+    toolpath = document.Toolpath
+    toolpath.ViewObject.Visibility = True
+    view = toolpath.ViewObject.Proxy
+    view.draw(toolpath, many)
+    view.path.paint(np.full((len(view.rows), 3), 0.5))
+    cuts = view.rows.cuts
+    assert len(cuts) > 6 and np.diff(cuts).max() < 2 * PIECE and (cuts[0], cuts[-1]) == (0, len(view.rows))
+    pieces = [view.path.lines.pieces.getChild(k).getChild(0) for k in range(len(cuts) - 1)]
+    for look, first in ((view.path.lines, 1), (view.path.tubes, 0)):
+        view.path.look(look is view.path.tubes)
+        made = []
+        make = look.make
+        look.make = lambda first, end, made=made, make=make: made.append((first, end)) or make(first, end)
+        for last in range(view.rows.layer_count - 1, 0, -3):
+            view.show((first, last, 5))
+        # but for what lies before the first piece, no more than the last segment is made anew
+        before = view.rows.of_layers(first, first)[0]
+        assert max(end - start for start, end in made) < 2 * PIECE
+        assert max((end - start for start, end in made if start not in (before, *cuts)), default=0) < 9
+        view.show(None)
+        made.clear()
+        for end in range(len(view.rows) - 300, len(view.rows)):  # as a simulation grows
+            view.path.show(0, end)
+        assert len(made) < 302 and sum(end - start for start, end in made) < 4 * 302
+        look.make = make
+    view.path.look(False)
+    assert [view.path.lines.pieces.getChild(k).getChild(0) for k in range(len(cuts) - 1)] == pieces
+    view.show(None)
+
+
+@pytest.mark.parametrize("first", [0, 1, 57, 4096, 5000])
+def test_every_row_of_a_stretch_is_drawn_once(person, joint_path, first):
+    """Line sets of pieces and of ends, put together, are the polylines of the rows."""
+    path = api.result(joint_path.Document.Toolpath)
+    bead = path.layers[0].beads[0]
+    long = dataclasses.replace(bead, **{
+        name: np.tile(getattr(bead, name), (150, 1))[:14000] for name in ("points", "build", "tool")},
+        parameter=np.arange(14000.0), speed=np.full(14000, 8.0), closed=False, width=None, tangents=None)
+    rows = Rows.of([bead, long, bead], [0, 1, 2], 8.0, lambda: 1.0)
+    view = joint_path.Document.Toolpath.ViewObject.Proxy
+    view.rows = rows
+    view.path.set(rows)
+    view.path.paint(np.full((len(rows), 3), 0.5))
+    for end in (first + 2, 5001, 9000, len(rows)):
+        view.path.show(first, end)
+        drawn_edges = sorted(edge for node in shown_nodes(view.path.lines) for edge in edges(node, rows))
+        bead_of = np.searchsorted(rows.starts, np.arange(len(rows)), side="right")
+        wanted = [row for row in range(first, end - 1) if bead_of[row] == bead_of[row + 1]]
+        assert len(drawn_edges) == len(wanted)
+    lengths = np.linalg.norm(np.diff(rows.points, axis=0), axis=1)[wanted]
+    assert sum(drawn_edges) == pytest.approx(lengths.sum(), rel=1e-4)
+
+
+def shown_nodes(look):
+    for k in range(look.pieces.getNumChildren()):
+        switch = look.pieces.getChild(k)
+        if switch.whichChild.getValue() != -1:
+            yield switch.getChild(0).getChild(0)
+    for k in range(look.ends.getNumChildren()):
+        yield look.ends.getChild(k).getChild(0)
+
+
+def edges(line_set, rows):
+    """Lengths of the edges of a line set."""
+    values = line_set.vertexProperty.getValue()
+    points = np.array([point.getValue() for point in values.vertex.getValues()])
+    at = 0
+    for count in line_set.numVertices.getValues():
+        yield from np.linalg.norm(np.diff(points[at : at + count], axis=0), axis=1)
+        at += count
+    assert at <= len(points)

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plots by mouse and keys: every picture is seen, zoomed, read, saved; changes, deletions, closed documents are followed."""
+
+import csv
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.gui.plots import dock as docks
+from freecad_am.plots import catalogue
+from freecad_am.plots.rows import rows
+
+
+@pytest.fixture
+def planned(hemisphere):
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=15)
+    cell = api.make_cell(doc, limits="paper")
+    toolpath = api.make_toolpath(doc, feature, cell, between_layers_wait=2.0)
+    return api.make_joint_path(doc, toolpath, cell)
+
+
+@pytest.fixture
+def panel(person, planned):
+    person.look()
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_Plots")
+    panel = person.panel(docks.NAME)
+    person.field(panel, "over").setCurrentIndex(0)
+    seen(person)
+    yield panel
+    panel.close()
+
+
+def seen(person):
+    dock = docks._dock
+    timers = (dock.soon.timer, dock.changed.timer)
+    person.until(lambda: dock.building.worker is None and dock.canvas.ready and not any(one.isActive() for one in timers),
+                 "the picture", 20)
+    person.idle(0.05)
+    return dock
+
+
+def shown(person, as_wanted):
+    """The range of the first chart, once it is as wanted."""
+    person.until(lambda: as_wanted(*docks._dock.canvas.drawn.places[0].across), "the range that is shown", 5)
+    return seen(person).canvas.drawn.places[0].across
+
+
+def take(person, panel, name):
+    box = person.field(panel, "picture")
+    box.setCurrentIndex(box.findData(name))
+    return seen(person)
+
+
+def colours(person, widget):
+    """How many pixels of a widget have the colour of a curve, of a limit or of bars."""
+    image = widget.grab().toImage().convertToFormat(person.widgets.QImage.Format_RGB32)
+    seen = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)[:, : image.width(), :3]
+    return int((np.ptp(seen.astype(int), axis=2) > 80).sum())
+
+
+def test_every_picture_is_seen(person, planned, panel):
+    dock = docks._dock
+    assert person.field(panel, "plotted").currentText() == planned.Label
+    for name, entry in catalogue.PICTURES.items():
+        take(person, panel, name)
+        if name in ("angles", "deposit", "spacing", "fit"):
+            person.screenshot(f"plots_{name}")
+        if name in ("heights", "spread", "fit"):
+            assert dock.picture is None and "bead model" in dock.canvas.text and not person.field(panel, "save").isEnabled()
+        else:
+            assert dock.picture.title == entry.title and colours(person, dock.canvas) > 200, name
+            assert len(dock.canvas.drawn.places) == len(dock.picture.charts)
+    source = dock.source[1]
+    motion = api.result(planned).motion
+    take(person, panel, "angles")
+    for axis, chart in enumerate(dock.picture.charts):
+        drawn = np.radians(chart.curves[0].y[~rows(source).standing])
+        np.testing.assert_allclose(drawn, motion.joints[:, axis], atol=1e-12)
+
+
+def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
+    dock = take(person, panel, "angles")
+    canvas = dock.canvas
+    whole = canvas.drawn.places[0].across
+    place = canvas.drawn.places[0]
+
+    def at(share, up=0.5):
+        where = canvas.mapToGlobal(person.core.QPoint(int(place.left + share * place.width),
+                                                      int(place.top + (1 - up) * place.height)))
+        return where.x(), where.y()
+
+    hand.do("mousemove", *at(0.25))
+    person.until(lambda: person.field(panel, "reading").text(), "what is pointed at", 5)
+    chart, x = dock.picture.charts[0], whole[0] + 0.25 * (whole[1] - whole[0])
+    curve = chart.curves[0]
+    nearest = int(np.abs(curve.x - x).argmin())
+    text = person.field(panel, "reading").text()
+    value = float(text.split(curve.name + " ")[1].split()[0])
+    assert abs(value - curve.y[max(nearest - 2, 0) : nearest + 3]).min() < 1e-3 and text.startswith("layer ")
+    hand.do("mousemove", *at(0.5), "click", 4, "click", 4)
+    low, high = shown(person, lambda low, high: high - low == pytest.approx((whole[1] - whole[0]) / 1.25**2, rel=1e-6))
+    assert canvas.drawn.places[1].across == (low, high)  # all charts together
+    hand.do("mousemove", *at(0.5), "mousedown", 1, "mousemove", *at(0.4), "mouseup", 1)
+    shown(person, lambda start, end: start > low and end - start == pytest.approx(high - low))
+    hand.click(person.field(panel, "whole"))
+    shown(person, lambda *ends: ends == whole)
+    hand.click(person.field(panel, "rectangle"))
+    hand.do("mousemove", *at(0.3, 0.9), "mousedown", 1, "mousemove", *at(0.5, 0.5), "mousemove", *at(0.6, 0.2), "mouseup", 1)
+    width = whole[1] - whole[0]
+    shown(person, lambda *ends: ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01))
+    assert 0 in canvas.up
+    person.screenshot("plots_zoomed")
+    hand.click(person.field(panel, "rectangle"))
+    hand.click(person.field(panel, "whole"))
+    hand.click(person.field(panel, "in"))
+    shown(person, lambda low, high: high - low == pytest.approx(width / 1.25**2))
+
+
+def test_layers_path_and_files(person, panel, planned, tmp_path, monkeypatch):
+    take(person, panel, "deposit")
+    person.field(panel, "from").setValue(1)
+    person.field(panel, "to").setValue(2)
+    dock = seen(person)
+    assert set(dock.picture.charts[0].curves[0].layer.tolist()) == {1, 2}
+    person.choose(panel, "over", "path")
+    dock = seen(person)
+    assert dock.picture.charts[0].x.name == "path"
+    person.screenshot("plots_two_layers")
+    for ending, begins in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF"), ("csv", b"path_mm,layer,")):
+        path = tmp_path / f"plot.{ending}"
+        monkeypatch.setattr(person.widgets.QFileDialog, "getSaveFileName",
+                            staticmethod(lambda *_, path=path: (str(path), "")))
+        person.field(panel, "save").click()
+        person.until(path.exists, f"the {ending}", 10)
+        person.idle(0.1)
+        assert path.read_bytes().startswith(begins)
+    table = list(csv.reader((tmp_path / "plot.csv").read_text(encoding="utf-8").splitlines()))
+    curve = dock.picture.charts[1].curves[0]
+    column = [row[3] for row in table[1:]]
+    np.testing.assert_allclose([float(value) for value in column], curve.y, rtol=1e-9)
+    monkeypatch.setattr(person.widgets.QFileDialog, "getSaveFileName",
+                        staticmethod(lambda *_: (str(tmp_path / "none" / "plot.png"), "")))
+    person.field(panel, "save").click()
+    person.until(lambda: "cannot be written" in person.window.statusBar().currentMessage(), "the message", 10)
+
+
+def test_changes_are_followed(person, planned, panel):
+    dock = take(person, panel, "angles")
+    toolpath, doc = planned.Toolpath, planned.Document
+    before = dock.source[1].times.total
+    toolpath.TravelSpeed = "3 mm/s"
+    person.idle(0.1)
+    seen(person)
+    assert "recompute" in person.field(panel, "note").text()
+    doc.recompute()
+    person.idle(0.5)
+    seen(person)
+    assert person.field(panel, "note").text() == "" and dock.source[1].times.total > 1.5 * before
+    person.select(toolpath)
+    person.idle(0.3)
+    seen(person)
+    assert person.field(panel, "plotted").currentText() == toolpath.Label
+    assert dock.picture is None and "no joints" in dock.canvas.text
+    take(person, panel, "spacing")
+    assert dock.picture.charts[0].bars is not None
+    doc.removeObject(planned.Name)
+    doc.removeObject(toolpath.Name)
+    person.idle(0.4)
+    assert dock.picture is None and "nothing to plot" in dock.canvas.text
+    doc.undo()
+
+
+def test_closed_documents_and_long_beads(person, planned, panel):
+    dock = take(person, panel, "jerks")
+    other = App.newDocument("Other")
+    person.idle(0.4)
+    assert dock.picture is None
+    App.closeDocument(other.Name)
+    App.setActiveDocument(planned.Document.Name)
+    person.idle(0.4)
+    seen(person)
+    assert dock.picture is not None
+    box = person.field(panel, "picture")
+    for index in list(range(box.count())) * 2:  # quicker than pictures are drawn
+        box.setCurrentIndex(index)
+        person.idle(0.02)
+    App.closeDocument(planned.Document.Name)
+    person.idle(0.5)
+    assert dock.picture is None
+    assert "Traceback" not in person.console()

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Preferences: what the page keeps is what panels propose and show; documents, jobs and macros do not depend on it."""
+
+import subprocess
+import sys
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.objects import preferences, user_machines
+
+GROUP = "User parameter:BaseApp/Preferences"
+
+
+@pytest.fixture
+def clean():
+    yield
+    App.ParamGet(GROUP + "/Mod").RemGroup("RoboticAM")
+
+
+@pytest.fixture
+def page(person, clean):
+    from freecad_am.gui.preferences_page import PreferencesPage
+
+    shown = PreferencesPage()
+    shown.loadSettings()
+    shown.form.show()
+    person.idle()
+    yield shown
+    shown.form.close()
+
+
+def entries():
+    return sorted(entry[1] for entry in App.ParamGet(preferences.GROUP).GetContents() or ())
+
+
+def test_without_entries_all_is_as_built_in_and_saving_the_page_adds_none(person, page):
+    assert preferences.machine() == "fanuc-arcmate120ic" and preferences.process() == {} and preferences.post() == ""
+    assert preferences.speed_unit() == "mm/s" and preferences.ramp() == "blue to yellow"
+    before = entries()  # folders that other tools remember
+    page.saveSettings()
+    assert entries() == before and not {"Machine", "Post", "SpeedUnit", "Ramp"} & set(before)
+
+
+def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(person, hand, clean, hemisphere, tmp_path):
+    """The dialog is modal: what is done in it is done by timers."""
+    done = []
+
+    def act():
+        dialog = person.widgets.QApplication.activeModalWidget()
+        if dialog is None:
+            person.core.QTimer.singleShot(200, act)
+            return
+        try:
+            form = dialog.findChild(person.widgets.QWidget, "RoboticAM_Preferences")
+            done.append(form is not None)
+            form.findChild(person.widgets.QComboBox, "machine").setEditText("kuka-kr16-2")
+            unit = form.findChild(person.widgets.QComboBox, "speedUnit")
+            unit.setCurrentIndex(unit.findText("m/min"))
+            field = form.findChild(person.widgets.QWidget, "TravelSpeed")
+            field.findChild(person.widgets.QLineEdit).setText("12 mm/s")
+            form.findChild(person.widgets.QLineEdit, "programsFolder").setText(str(tmp_path))
+            person.screenshot("preferences")
+        finally:
+            dialog.findChild(person.widgets.QDialogButtonBox).button(person.widgets.QDialogButtonBox.Ok).click()
+
+    person.core.QTimer.singleShot(300, act)
+    person.gui.showPreferences("Robotic AM", 0)
+    person.idle(0.3)
+    assert done == [True]
+    assert preferences.machine() == "kuka-kr16-2" and preferences.process() == {"travel_speed": 12.0}
+    assert preferences.programs_folder() == str(tmp_path)
+    # a cell, and a toolpath with its speed in m/min
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    assert person.field(panel, "Machine").currentText() == "kuka-kr16-2"
+    person.press("Ok")
+    person.panel_closed()
+    cell = api.stages_of(hemisphere.Document, "cell")[0]
+    assert cell.Machine == "kuka-kr16-2"
+    api.make_feature(hemisphere.Document, hemisphere, layer_height=9)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    assert person.field(panel, "TravelSpeed").text() == "0.72 m/min"
+    assert person.field(panel, "RapidSpeed").text() == "6 m/min"
+    person.screenshot("preferences_toolpath")
+    person.type(panel, "RapidSpeed", "9")  # m/min, as the field shows
+    person.press("Ok")
+    person.panel_closed()
+    toolpath = api.stages_of(hemisphere.Document, "toolpath")[0]
+    assert toolpath.TravelSpeed.getValueAs("mm/s").Value == pytest.approx(12.0)
+    assert toolpath.RapidSpeed.getValueAs("mm/s").Value == pytest.approx(150.0)
+    # macros do not know of any of it
+    plain = api.make_toolpath(hemisphere.Document, hemisphere.Document.Feature)
+    assert plain.TravelSpeed.getValueAs("mm/s").Value == pytest.approx(6.0)
+    assert api.make_cell(hemisphere.Document).Machine == "fanuc-arcmate120ic"
+
+
+def test_a_new_job_takes_machine_process_and_post(person, clean, hemisphere):
+    preferences.keep("Machine", "fanuc-arcmate120ic-10l")
+    preferences.keep_process({"travel_speed": 9.0, "wire_diameter": 1.0})
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    assert person.field(panel, "Machine").currentText() == "fanuc-arcmate120ic-10l"
+    person.until(lambda: person.field(panel, "Name").text() if panel.findChild(
+        person.widgets.QLineEdit, "Name") else True, "a name")
+    person.press("Ok")
+    person.until(lambda: api.stages_of(hemisphere.Document, "joint path"), "the job", 60)
+    person.panel_closed()
+    toolpath = api.stages_of(hemisphere.Document, "toolpath")[0]
+    assert toolpath.TravelSpeed.getValueAs("mm/s").Value == pytest.approx(9.0)
+    assert toolpath.WireDiameter.getValueAs("mm").Value == pytest.approx(1.0)
+
+
+def test_units_of_read_outs_and_colours(person, page, tmp_path):
+    from freecad_am.gui.colours import ramp
+
+    usual = ramp(np.array([0.0, 1.0]))
+    page.unit.setCurrentIndex(page.unit.findText("mm/min"))
+    page.ramp.setCurrentIndex(page.ramp.findData("grey"))
+    page.colour.setProperty("color", person.widgets.QColor("#3366cc"))
+    page.machines.setText(str(tmp_path))
+    page.saveSettings()
+    assert preferences.speed(6.0) == pytest.approx(360.0) and preferences.speed_unit() == "mm/min"
+    grey = ramp(np.array([0.0, 1.0]))
+    np.testing.assert_allclose(grey, grey[:, :1].repeat(3, axis=1), atol=0.01)
+    assert np.abs(grey - usual).max() > 0.2 and grey[1, 0] > grey[0, 0] + 0.3
+    np.testing.assert_allclose(preferences.machine_colour(), (0.2, 0.4, 0.8), atol=1e-9)
+    assert str(tmp_path) in user_machines.folders()
+
+
+def test_what_cannot_be_is_told_and_not_kept(person, page):
+    page.machines.setText("/nowhere/at all")
+    line = page.process["travel_speed"].widget.findChild(person.widgets.QLineEdit)
+    line.setText("-3 mm/s")
+    page.saveSettings()
+    assert preferences.machine_folder() == "" and preferences.process() == {}
+    person.until(lambda: "there is no folder /nowhere/at all" in person.console(), "the warning")
+    assert "Travel speed: -3 mm/s is out of range" in person.console()
+
+
+def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp_path):
+    """A Python of its own reads the same parameters, once FreeCAD has written them."""
+    preferences.keep("Machine", "kuka-kr16-2")
+    App.saveParameter()
+    code = (
+        "import sys; sys.path.insert(0, sys.argv[1]); from freecad_am.batch import host; host.find_freecad();"
+        "import FreeCAD; from freecad_am.objects import preferences as p;"
+        "print(FreeCAD.ParamGet(p.GROUP).GetString('Machine', ''), p.machine(), p.process())"
+    )
+    python = "/usr/bin/python3" if "freecad" in sys.executable.lower() else sys.executable
+    done = subprocess.run([python, "-c", code, str(root)], capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["kuka-kr16-2", "fanuc-arcmate120ic", "{}"], done.stderr

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What may go wrong around a job: it is told in words, without a traceback and without a dialog nobody asked for."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.core.kinematics import machine as machines
+from freecad_am.objects.job_group import is_group
+
+TOOLS = ("NewJob", "Cell", "Feature", "WallOnPart", "SolidsOnHub", "Toolpath", "JointPath", "Program")
+EARLIER = Path(__file__).parent / "data" / "earlier.FCStd"
+
+
+@pytest.fixture
+def job(hemisphere):
+    """The document of a job of few layers."""
+    doc = hemisphere.Document
+    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature, cell)
+    api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
+    return doc
+
+
+def statuses(doc):
+    return [obj.Status for obj in api.stages_of(doc)]
+
+
+def use_everything(person, doc, renew=True):
+    """Open the panel of every stage and close it again, all context menus, the path dock and the simulation."""
+    for obj in api.stages_of(doc):
+        person.double_click(obj)
+        person.gui.Control.closeDialog()
+        person.panel_closed()
+        menu = person.widgets.QMenu()
+        obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
+        for action in menu.actions():
+            wanted = ["RoboticAM_MenuSimulate", *["RoboticAM_MenuRenew"] * renew]  # which is a step of undo
+            if action.objectName() in wanted and action.isEnabled():
+                action.trigger()
+                person.idle(0.1)
+        for name in ("Colouring", "ShowMachine"):
+            if hasattr(obj.ViewObject, name):
+                value = getattr(obj.ViewObject, name)
+                values = obj.ViewObject.getEnumerationsOfProperty(name) if isinstance(value, str) else [True, False]
+                for one in [*values, value]:
+                    setattr(obj.ViewObject, name, one)
+    person.gui.runCommand("RoboticAM_Path")
+    person.idle()
+    for name in ("RoboticAM_PathDock", "RoboticAM_ProgramText", "RoboticAM_Simulation"):
+        for widget in person.window.findChildren(person.widgets.QWidget, name):
+            widget.close()
+    person.idle()
+
+
+def test_a_deleted_part_is_missing_everywhere_and_comes_back(person, job):
+    person.select(job.Sphere)
+    asked = person.will_answer("Yes")
+    person.gui.runCommand("Std_Delete")
+    person.idle(0.3)
+    assert len(asked) == 1 and "Feature" in asked[0]  # FreeCAD's own question, which names what needs it
+    assert job.Feature.Status == "failed" and "Source is missing" in job.Feature.Message
+    job.recompute()
+    assert statuses(job) == ["up to date", *["failed"] * 4]
+    assert all("waits for" in obj.Message for obj in (job.Toolpath, job.JointPath, job.Program))
+    use_everything(person, job, renew=False)
+    person.gui.runCommand("Std_Undo")
+    person.idle()
+    job.recompute()
+    assert statuses(job) == ["up to date"] * 5
+
+
+@pytest.mark.parametrize("name", ["Cell", "Feature", "Toolpath", "JointPath"])
+def test_a_deleted_stage_is_missing_and_comes_back(person, job, name):
+    job.openTransaction("Delete")
+    job.removeObject(name)
+    job.commitTransaction()
+    job.recompute()
+    left = [obj for obj in api.stages_of(job) if obj.Status != "up to date"]
+    assert left if name != "Cell" else [obj.Name for obj in left] == ["JointPath", "Program"]
+    assert any("is missing" in obj.Message for obj in left)
+    use_everything(person, job, renew=False)
+    job.undo()
+    job.recompute()
+    person.idle()
+    assert statuses(job) == ["up to date"] * 5
+
+
+def test_a_link_whose_object_goes_is_told(person, hemisphere):
+    doc = hemisphere.Document
+    link = doc.addObject("App::Link", "Link")
+    link.LinkedObject = hemisphere
+    doc.recompute()
+    feature = api.make_feature(doc, link, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature)
+    doc.removeObject(hemisphere.Name)
+    doc.recompute()
+    assert feature.Status == "failed" and "Link" in feature.Message
+    assert toolpath.Status != "up to date"
+    use_everything(person, doc)
+    doc.addObject("Part::Box", "Box")
+    doc.recompute()
+    person.select(link)
+    person.click("RoboticAM_NewJob")
+    assert "links to nothing" in person.panel_error(person.panel("RoboticAM_NewJob"))
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_a_link_into_a_closed_document_keeps_the_result(person, hemisphere, tmp_path):
+    other = hemisphere.Document
+    other.saveAs(str(tmp_path / "pièce à côté.FCStd"))
+    doc = App.newDocument("Job")
+    doc.saveAs(str(tmp_path / "job.FCStd"))
+    link = doc.addObject("App::Link", "Link")
+    link.LinkedObject = hemisphere
+    doc.recompute()
+    feature = api.make_feature(doc, link, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature)
+    doc.save()
+    App.closeDocument(other.Name)
+    person.idle(0.2)
+    use_everything(person, doc)
+    App.closeDocument(doc.Name)
+    os.remove(tmp_path / "pièce à côté.FCStd")
+    again = App.openDocument(str(tmp_path / "job.FCStd"))
+    person.idle(0.3)
+    feature, toolpath = again.Feature, again.Toolpath
+    assert len(api.result(toolpath).layers) == toolpath.Layers
+    assert feature.Status in ("up to date", "stale", "failed")
+    again.recompute()
+    use_everything(person, again)
+
+
+def test_files_and_folders_that_cannot_be_written(person, job, tmp_path, monkeypatch):
+    path = tmp_path / "job.FCStd"
+    job.saveAs(str(path))
+    App.closeDocument(job.Name)
+    path.chmod(0o444)
+    tmp_path.chmod(0o555)
+    try:
+        doc = App.openDocument(str(path))
+        person.idle(0.3)
+        assert statuses(doc) == ["up to date"] * 5
+        person.double_click(doc.Feature)
+        person.type(person.panel("RoboticAM_RevolutionFeature"), "LayerHeight", "20 mm")
+        person.press("Ok")
+        person.panel_closed()
+        assert statuses(doc) == ["up to date"] * 5
+        (Path(App.getTempPath()) / "no folder").write_text("a file", encoding="utf-8")
+        unwritable = str(Path(App.getTempPath()) / "no folder")  # to root, too
+        monkeypatch.setattr(
+            person.widgets.QFileDialog, "getExistingDirectory", staticmethod(lambda *_: os.path.join(unwritable, "out"))
+        )
+        person.double_click(doc.Program)
+        panel = person.panel("RoboticAM_ProgramText")
+        person.field(panel, "export").click()
+        assert "choose a folder you can write to" in person.field(panel, "state").text()
+        person.field(panel, "close").click()
+    finally:
+        tmp_path.chmod(0o755)
+
+
+@pytest.mark.parametrize("command", TOOLS)
+def test_a_document_closed_while_a_panel_is_open(person, job, command):
+    person.select(job.Sphere)
+    person.click(f"RoboticAM_{command}")
+    assert person.gui.Control.activeDialog()
+    App.newDocument("Other")
+    App.closeDocument(job.Name)
+    person.idle(0.6)
+    if person.gui.Control.activeDialog():
+        person.press("Ok")
+        person.idle()
+        if person.gui.Control.activeDialog():
+            person.press("Cancel")
+    person.panel_closed()
+    assert api.stages_of(App.getDocument("Other")) == []
+
+
+def test_a_machine_file_that_is_gone(person, hemisphere, tmp_path, monkeypatch):
+    content = json.loads((machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
+    content["id"] = "mine"
+    from freecad_am.objects import user_machines
+
+    monkeypatch.setattr(user_machines, "folders", lambda: (Path(tmp_path),))
+    file = tmp_path / "mine.json"
+    file.write_text(json.dumps(content), encoding="utf-8")
+    doc = hemisphere.Document
+    api.make_all(doc, hemisphere, machine="mine")
+    assert set(statuses(doc)) == {"up to date"}
+    file.unlink()
+    doc.Cell.PlatformDiameter = 150
+    doc.recompute()
+    assert doc.Cell.Status == "failed" and "mine" in doc.Cell.Message
+    use_everything(person, doc)
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    person.idle(0.5)
+    assert person.field(person.panel("RoboticAM_NewJob"), "Machine").currentText() == "mine"  # as the cell before
+    person.press("Ok")
+    assert "mine" in person.panel_error(person.panel("RoboticAM_NewJob"))
+    person.press("Cancel")
+    person.panel_closed()
+    assert len(api.stages_of(doc)) == 5
+
+
+def test_two_documents_at_once(person, hemisphere):
+    one, other = hemisphere.Document, App.newDocument("Other")
+    ball = other.addObject("Part::Sphere", "Ball")
+    ball.Angle1 = 0
+    other.recompute()
+    App.setActiveDocument(one.Name)
+    person.gui.ActiveDocument = person.gui.getDocument(one.Name)
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    App.setActiveDocument(other.Name)
+    person.gui.ActiveDocument = person.gui.getDocument(other.Name)
+    person.select(ball)
+    person.idle(0.3)
+    assert person.field(panel, "Source").text() == hemisphere.Label
+    person.press("Ok")
+    person.panel_closed()
+    assert statuses(one) == ["up to date"] * 5 and statuses(other) == []
+    person.select(ball)
+    person.click("RoboticAM_NewJob")
+    person.idle(0.5)
+    person.press("Ok")
+    person.panel_closed()
+    assert len(statuses(other)) >= 4
+    other.undo()
+    assert statuses(other) == [] and statuses(one) == ["up to date"] * 5
+    use_everything(person, one)
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_a_job_copied_into_another_document(person, hemisphere, whole):
+    doc = hemisphere.Document
+    api.make_all(doc, hemisphere)
+    group = next(obj for obj in doc.Objects if is_group(obj))
+    other = App.newDocument("Copy")
+    if whole:
+        other.copyObject([group], True)  # with what it depends on
+        person.idle()
+        other.recompute()
+        assert statuses(other) == ["up to date"] * 5 and len(api.stages_of(other)) == 5
+        copied = next(obj for obj in other.Objects if is_group(obj))
+        assert {obj.Name for obj in copied.Group} == {obj.Name for obj in api.stages_of(other)}
+        assert all(link.Document == other for obj in api.stages_of(other) for link in obj.OutList)
+    else:
+        other.copyObject([doc.JointPath], False)
+        person.idle()
+        other.recompute()
+        assert [obj.Proxy.kind for obj in api.stages_of(other)] == ["joint path"]
+        assert other.JointPath.Status == "failed" and "is missing" in other.JointPath.Message
+    use_everything(person, other)
+    assert statuses(doc) == ["up to date"] * 5
+    App.closeDocument(doc.Name)
+    person.idle()
+    use_everything(person, other)
+
+
+def test_undo_and_redo_across_recomputes(person, job):
+    keys = [[obj.Key for obj in api.stages_of(job)]]
+    for height in (20, 30):
+        job.openTransaction("Height")
+        job.Feature.LayerHeight = height
+        job.recompute()
+        job.commitTransaction()
+        keys.append([obj.Key for obj in api.stages_of(job)])
+    job.openTransaction("Radius")
+    job.Sphere.Radius = 40
+    job.commitTransaction()
+    job.recompute()
+    assert statuses(job) == ["up to date"] * 5
+    job.undo()
+    job.recompute()
+    assert [obj.Key for obj in api.stages_of(job)] == keys[2]
+    job.undo()
+    job.undo()
+    person.idle()
+    job.recompute()
+    assert [obj.Key for obj in api.stages_of(job)] == keys[0] and statuses(job) == ["up to date"] * 5
+    for k in (1, 2):
+        job.redo()
+        person.idle()
+        job.recompute()
+        assert [obj.Key for obj in api.stages_of(job)] == keys[k] and statuses(job) == ["up to date"] * 5
+    assert len(api.result(job.Toolpath).layers) == job.Toolpath.Layers
+    use_everything(person, job)
+
+
+def test_a_document_of_an_earlier_version(person, tmp_path):
+    """Saved by the window of an earlier commit: it opens with its results, can be used at once, and is renewed."""
+    path = str(tmp_path / "earlier.FCStd")
+    shutil.copy(EARLIER, path)
+    doc = App.openDocument(path)
+    person.idle(0.5)
+    assert [obj.Proxy.kind for obj in api.stages_of(doc)] == ["cell", "feature", "toolpath", "joint path", "program"]
+    assert len(api.result(doc.Toolpath).layers) == doc.Toolpath.Layers > 0
+    use_everything(person, doc)
+    doc.recompute()
+    person.idle()
+    api.recompute(doc, force=True)
+    assert statuses(doc) == ["up to date"] * 5
+    assert "EARLIER.LS" in doc.Program.Files
+    person.double_click(doc.Cell)
+    person.press("Ok")
+    person.panel_closed()
+    use_everything(person, doc)
+
+
+@pytest.mark.parametrize("text", ["2,5 mm", "2,5", "0,25 cm"])
+def test_decimals_with_a_comma(person, hemisphere, text):
+    before = person.core.QLocale()
+    french = person.core.QLocale(person.core.QLocale.French, person.core.QLocale.France)
+    person.core.QLocale.setDefault(french)  # both as FreeCAD does where its language is French
+    person.window.setLocale(french)
+    try:
+        person.select(hemisphere)
+        person.click("RoboticAM_Feature")
+        panel = person.panel("RoboticAM_RevolutionFeature")
+        person.type(panel, "LayerHeight", text)
+        person.press("Ok")
+        person.panel_closed()
+        doc = hemisphere.Document
+        assert abs(doc.Feature.LayerHeight.Value - 2.5) < 1e-12
+        undo = doc.UndoCount
+        person.double_click(doc.Feature)
+        person.press("Ok")  # what is shown is read as what it was
+        person.panel_closed()
+        assert abs(doc.Feature.LayerHeight.Value - 2.5) < 1e-12 and doc.UndoCount == undo
+    finally:
+        person.core.QLocale.setDefault(before)
+        person.window.setLocale(before)

@@ -1,0 +1,331 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The simulation by clicks: it plays and steps, tells what core tells, marks what is wrong, leaves the view as it was."""
+
+import dataclasses
+import json
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.geometry import frames
+from freecad_am.core.issues import WARNING, Issue
+from freecad_am.core.planning import moving_tool
+from freecad_am.core.simulation.pace import pace
+from freecad_am.core.simulation.watch import ISSUE, LIMIT, SLOWED
+from freecad_am.gui.simulation import dock as docks
+from freecad_am.gui.simulation import tool
+from freecad_am.gui.simulation.run import run_of
+from freecad_am.kdl.chain import KdlArm
+from freecad_am.objects.joint_path import Planned
+
+CELLS = {
+    "part-on-robot": {"limits": "paper"},
+    "tool-on-robot": {"setup": "tool-on-robot", "deposition_point": (900, 0, -100, 0, 0, 0)},
+    "rotary-table": {"machine": "table-xyzac", "setup": "rotary-table"},
+}
+
+
+def job(hemisphere, **cell):
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=15)
+    made = api.make_cell(doc, **(cell or CELLS["part-on-robot"]))
+    toolpath = api.make_toolpath(doc, feature, made, between_layers_wait=2.0, lead_on=0.5)
+    return api.make_joint_path(doc, toolpath, made)
+
+
+def matrix(transform):
+    return np.array(transform.matrix.getValue().getValue()).T
+
+
+def opened(person, path):
+    person.look()
+    person.select(path)
+    person.click("RoboticAM_Simulate")
+    panel = person.panel(docks.NAME)
+    person.idle(0.2)  # the camera is turned to all of it
+    return panel, docks._open[0]
+
+
+def where(view):
+    """The camera but for its clipping planes, which follow what is to be seen."""
+    return [line for line in view.getCamera().splitlines() if "Distance" not in line or "focal" in line]
+
+
+def names_of(graph):
+    return [graph.getChild(index).getTypeId().getName().getString() for index in range(graph.getNumChildren())]
+
+
+@pytest.mark.parametrize("setup", CELLS)
+def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setup):
+    path = job(hemisphere, **CELLS[setup])
+    panel, simulation = opened(person, path)
+    cell, motion, times = simulation.run.cell, simulation.run.motion, simulation.run.times
+    arm = KdlArm(cell.machine)
+    person.screenshot(f"simulation_{setup}_start")
+    person.choose(panel, "factor", "100 ×")
+    person.field(panel, "play").click()
+    person.until(lambda: simulation.player.time > 0.1 * times.total, "the job to play", 30)
+    person.field(panel, "play").click()
+    moved = simulation.player.time
+    assert moved < times.total
+    person.screenshot(f"simulation_{setup}_playing")
+    person.idle(0.1)
+    assert simulation.player.time == moved  # it pauses
+    scene = simulation.scene
+    seen = []
+    for share in (0.05, 0.2, 0.37, 0.71, 0.93):
+        person.field(panel, "time").setValue(round(share * docks.STEPS))
+        person.idle(0.05)
+        state = times.at(simulation.player.time)
+        assert simulation.player.time == pytest.approx(share * times.total, rel=1e-3)
+        flange = arm.forward([state.joints])[0]
+        tip, axis = cell.tip_in_part(flange[None])
+        part, nozzle = matrix(scene.part), matrix(scene.nozzle)
+        in_part = frames.inverse(part) @ nozzle
+        assert np.abs(in_part[:3, 3] - tip[0]).max() < 2e-3 and np.abs(in_part[:3, 2] - axis[0]).max() < 1e-5
+        if motion.deposit[int(state.row)]:  # in rapid moves the tip goes where the joints take it
+            assert np.linalg.norm(tip[0] - state.position) < 0.2
+        base, last = matrix(scene.machine.transforms[0]), matrix(scene.machine.transforms[-1])
+        drawn = frames.inverse(base) @ last @ cell.machine.chain.flange
+        assert np.abs(drawn - flange).max() < 5e-3
+        row = int(state.row)
+        deposited = int(motion.deposit[: row if not state.standing else row + 1].sum())
+        assert scene.deposit.end == deposited
+        bars = person.field(panel, "joints")
+        assert np.abs(bars.values * cell.machine.unit_values - state.joints).max() < 1e-12
+        assert np.allclose(bars.margins * cell.machine.unit_values, cell.limits.margin(state.joints)[: len(bars.margins)])
+        seen.append((part, nozzle))
+    parts, nozzles = (np.array(column) for column in zip(*seen))
+    still = {"part-on-robot": nozzles, "tool-on-robot": parts}.get(setup)
+    if still is not None:
+        assert np.ptp(still, axis=0).max() < 1e-6
+    assert max(np.ptp(parts, axis=0).max(), np.ptp(nozzles, axis=0).max()) > 1.0
+
+
+def test_it_leaves_the_view_and_the_document_as_they_were(person, hemisphere):
+    path = job(hemisphere)
+    doc = hemisphere.Document
+    person.look()
+    view = person.gui.activeDocument().activeView()
+    graph = view.getSceneGraph()
+    undo, camera, nodes = doc.UndoCount, where(view), names_of(graph)
+    visible = {obj.Name: obj.ViewObject.Visibility for obj in doc.Objects}
+    switches = {obj.Name: obj.ViewObject.SwitchNode.whichChild.getValue() for obj in doc.Objects}
+    doc.saveAs(str(person.folder / "job.FCStd"))
+    modified = person.gui.activeDocument().Modified
+    before = person.folder / "before.png"
+    view.saveImage(str(before), 500, 400, "White")
+    panel, _ = opened(person, path)
+    assert names_of(graph) != nodes
+    person.field(panel, "layer_on").click()
+    person.field(panel, "point_on").click()
+    person.idle(0.3)
+    docks._open[0].dock.close()
+    person.idle(0.3)
+    assert docks._open == [] and names_of(graph) == nodes
+    assert where(view) == camera
+    assert {obj.Name: obj.ViewObject.Visibility for obj in doc.Objects} == visible
+    assert {obj.Name: obj.ViewObject.SwitchNode.whichChild.getValue() for obj in doc.Objects} == switches
+    assert doc.UndoCount == undo and person.gui.activeDocument().Modified == modified
+    after = person.folder / "after.png"
+    view.saveImage(str(after), 500, 400, "White")
+    assert person.widgets.QImage(str(before)) == person.widgets.QImage(str(after))
+    assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 4
+
+
+def test_steps_go_by_points_and_layers(person, hemisphere):
+    path = job(hemisphere)
+    panel, simulation = opened(person, path)
+    times, motion = simulation.run.times, simulation.run.motion
+
+    def press(name):
+        person.field(panel, name).click()
+        person.idle(0.02)
+
+    told = []
+    for _ in range(len(times.layer_rows)):
+        told.append(simulation.player.time)
+        press("layer_on")
+    assert np.allclose(told, times.arrive[times.layer_rows])
+    assert simulation.player.time == times.total
+    press("layer_back")
+    assert simulation.player.time == pytest.approx(times.arrive[times.layer_rows[-1]])
+    for _ in range(4):
+        press("point_on")
+    row = simulation.player.row
+    assert row - times.layer_rows[-1] >= 4 and simulation.player.time == times.arrive[row]
+    press("point_back")
+    assert simulation.player.time < times.arrive[row]
+    place = person.field(panel, "place").text()
+    assert place.startswith(f"Layer {motion.layer[simulation.player.row]} of")
+    texts = [label.text() for label in person.field(panel, "totals").findChildren(person.widgets.QLabel)]
+    sums = simulation.run.totals
+    assert f"{sums.mass:.1f} g" in texts and f"{sums.length / 1000:.3f} m" in texts
+    assert sums.time == pytest.approx(times.total) and sums.wait_time > 4.0
+
+
+def violated(path):
+    """The joint path with a joint past its limit in one stretch and far too fast elsewhere, as no planner leaves it."""
+    value = api.result(path)
+    motion = value.motion
+    joints = motion.joints.copy()
+    rows = np.flatnonzero(motion.deposit)
+    far = rows[60:80]
+    joints[far, 4] = np.radians(136.0)
+    joints[rows[200:], 5] += 40.0
+    path.Proxy._kept = (path.Key, Planned(value.joint_path, dataclasses.replace(motion, joints=joints)))
+    return far, rows[200]
+
+
+def red_pixels(person):
+    path = str(person.folder / "red.png")
+    person.gui.activeDocument().activeView().saveImage(path, 700, 500, "White")
+    image = person.widgets.QImage(path).convertToFormat(person.widgets.QImage.Format_RGB32)
+    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+    red, green, blue = rows[:, : image.width(), 2::-1].reshape(-1, 3).astype(int).T
+    return int(((red > 90) & (red > 3 * green) & (red > 3 * blue)).sum())
+
+
+def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
+    path = job(hemisphere)
+    far, fast = violated(path)
+    panel, simulation = opened(person, path)
+    calm = red_pixels(person)
+    simulation.player.go_to_row(int(far[5]))
+    simulation.show()
+    person.idle(0.3)
+    person.screenshot("simulation_past_limit")
+    assert simulation.scene.machine.bad.tolist() == [False] * 5 + [True, False]
+    assert person.field(panel, "joints").bad.tolist() == [False] * 4 + [True, False]
+    assert person.field(panel, "joints").margins[4] == pytest.approx(-1.0)
+    assert red_pixels(person) > calm + 60
+    findings = simulation.run.watch.findings
+    assert {LIMIT, SLOWED} <= {finding.kind for finding in findings}
+    simulation.player.go(0.0)
+    seen = []
+    for finding in findings:
+        person.field(panel, "next_finding").click()
+        person.idle(0.02)
+        seen.append(person.field(panel, "finding").text())
+        assert simulation.player.row == finding.row
+    assert len(seen) == len(set(seen)) > 3
+    assert any("q5 is 1.00° past its limit" in text for text in seen)
+    # at the feed asked for the axis cannot keep up: how much is what it becomes
+    simulation.player.go_to_row(int(fast))
+    simulation.show()
+    person.screenshot("simulation_too_fast")
+    kept = pace(simulation.run.motion, simulation.run.cell.machine.max_speed)
+    assert kept.slowed[fast] and kept.axis[fast] == 5
+    assert person.field(panel, "speed").text() == f"{kept.achieved[fast]:.3g} mm/s instead of {kept.asked[fast]:.3g} mm/s"
+    assert simulation.scene.machine.bad[6]
+    person.field(panel, "next_finding").click()
+    simulation.player.go_to_row(len(simulation.run.motion) // 2)
+    simulation.show()
+    assert not simulation.scene.machine.bad.all()
+
+
+def test_a_program_that_resumes_plays_only_what_it_runs(person, hemisphere):
+    path = job(hemisphere)
+    program = api.make_program(hemisphere.Document, path, "CUP", start_at_layer=2)
+    run = run_of(program)
+    assert run.motion.layer.min() == 2 and run.times.layers[0] == 2
+    whole = run_of(path)
+    assert run.totals.length == pytest.approx(
+        sum(bead.length for layer, _, bead in api.result(path.Toolpath) if layer >= 2))
+    assert run.totals.length < whole.totals.length
+    program.ViewObject.Proxy.doubleClicked(program.ViewObject)  # the text, and under it what this part of the job takes
+    window = person.panel("RoboticAM_ProgramText")
+    sums = person.field(window, "sums").text()
+    assert f"Deposit: {run.totals.length / 1000:.3f} m" in sums and f"Mass: {run.totals.mass:.1f} g" in sums
+    person.screenshot("program_sums")
+    person.field(window, "close").click()
+    panel, simulation = opened(person, program)
+    assert simulation.run.title == program.Label
+    person.field(panel, "layer_on").click()
+    person.screenshot("simulation_program")
+
+
+def test_a_program_of_linear_moves_plays_the_points_they_get(hemisphere):
+    doc = hemisphere.Document
+    path = job(hemisphere, machine="staubli-rx60bl", deposition_point=(300, 0, 300, 180, 0, 0), platform_diameter=60,
+               nozzle_length=60)
+    run = run_of(api.make_program(doc, path, "LINES", motion="cartesian", post="staubli"))
+    planned, toolpath = api.result(path), api.result(path.Toolpath)
+    beads = [one.bead for one in planned.joint_path.beads]
+    motion = moving_tool.kept_straight(planned.motion, run.cell, toolpath.chord_error, beads)
+    assert len(run.motion) == len(motion) > len(planned.motion)
+    assert np.array_equal(run.motion.joints, motion.joints) and np.array_equal(run.motion.point, motion.point)
+    whole = run_of(path)
+    assert run.totals.length > whole.totals.length  # of the arcs instead of their chords
+    same = [np.flatnonzero((run.motion.position == place).all(axis=1))[-1] for place in whole.motion.position[200:240]]
+    assert np.array_equal(run.watch.condition[same], whole.watch.condition[200:240])
+    issue = Issue(WARNING, "X", "seen", 1, 0, 7)
+    path.Issues = json.dumps([issue.as_dict()])
+    found, told = (
+        next(one for one in made.watch.findings if one.kind == ISSUE) for made in (run_of(path), run_of(doc.Program))
+    )
+    assert told.row > found.row
+    assert np.array_equal(run.motion.position[told.row], whole.motion.position[found.row])
+
+
+@pytest.mark.parametrize("what", ["document", "object", "toolpath", "recompute", "undo", "view"])
+def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere, what):
+    doc = hemisphere.Document
+    path = job(hemisphere)
+    panel, simulation = opened(person, path)
+    person.field(panel, "play").click()
+    person.until(lambda: simulation.player.time > 0.0, "the job to play")
+    if what == "document":
+        App.closeDocument(doc.Name)
+    elif what == "object":
+        doc.removeObject(path.Name)
+    elif what == "toolpath":
+        doc.removeObject(path.Toolpath.Name)
+    elif what == "recompute":
+        path.Toolpath.TravelSpeed = "7 mm/s"
+        doc.recompute()
+    elif what == "undo":
+        doc.undo()
+    else:
+        person.gui.runCommand("Std_ViewCreate")
+        person.idle(0.3)
+        windows = person.window.findChildren(person.widgets.QMdiSubWindow)
+        window = next(window for window in windows if doc.Label in window.windowTitle())
+        window.close()
+        person.idle(0.3)
+    if what != "view":
+        person.until(lambda: not docks._open, "the simulation to end", 5)
+        person.idle(0.05)
+    if what == "view" and docks._open:
+        docks._open[0].show()
+        person.idle(0.2)
+    if what != "view":
+        assert docks._open == []
+        docs = [dock for dock in person.window.findChildren(person.widgets.QDockWidget, docks.NAME) if dock.isVisible()]
+        assert docs == []
+    for one in docks._open:
+        one.close()
+
+
+def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(person, hemisphere):
+    path = job(hemisphere)
+    _, first = opened(person, path)
+    tool.show(path)
+    person.idle(0.2)
+    assert len(docks._open) == 1 and docks._open[0] is not first and first.scene is None
+    assert docks._open[0].dock.findChildren(person.widgets.QLabel, "stale") == []
+    path.Degree = 2  # not recomputed: what is played is the plan before, and that is said
+    tool.show(path)
+    person.idle(0.2)
+    assert "earlier plan" in person.field(docks._open[0].dock, "stale").text()
+    docks._open[0].close()
+    App.newDocument("Empty")
+    person.idle()
+    person.gui.Selection.clearSelection()
+    person.until(lambda: not person.button("RoboticAM_Simulate").isEnabled(), "the tool to be greyed", 5)
+    assert "make a joint path" in person.button("RoboticAM_Simulate").toolTip()
+    tool.simulate()  # as a macro may
+    assert docks._open == []
+    assert "make one first" in person.window.statusBar().currentMessage()

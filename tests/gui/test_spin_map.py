@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The map of the free rotation by mouse: it shows what core computes, its curve is dragged, and becomes the plan."""
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.parameters.joints import given_polynomials
+from freecad_am.core.planning import spin_curve, spin_map
+from freecad_am.gui.path.colouring import NONE, TOO_NEAR
+from freecad_am.gui.spin_map import dock as docks
+from freecad_am.gui.spin_map.canvas import TURN
+
+ROBOT = {"limits": "paper"}
+LONG = 30  # s
+
+
+def job(hemisphere, layer_height=9, joints=None, **cell):
+    doc = hemisphere.Document
+    feature = api.make_feature(doc, hemisphere, layer_height=layer_height)
+    made = api.make_cell(doc, **(cell or ROBOT))
+    toolpath = api.make_toolpath(doc, feature, made)
+    return api.make_joint_path(doc, toolpath, made, **(joints or {}))
+
+
+def opened(person, path):
+    person.select(path)
+    person.click("RoboticAM_SpinMap")
+    panel = person.panel(docks.NAME)
+    one = docks._open[0]
+    person.until(lambda: one.canvas.painted is not None, "the cells", LONG)
+    person.idle(0.2)
+    return panel, one
+
+
+def on_screen(canvas, column, value):
+    """Where a column and a value are on the screen."""
+    from PySide import QtCore
+
+    place = canvas.mapToGlobal(QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value)))))
+    return place.x(), place.y()
+
+
+def drag(hand, canvas, column, value, to):
+    """Press on a place, move in steps as a hand does, and let go."""
+    start, end = on_screen(canvas, column, value), on_screen(canvas, column, to)
+    hand.do("mousemove", *start)
+    hand.do("mousedown", "1")
+    for share in (0.15, 0.4, 0.7, 1.0):
+        hand.do("mousemove", start[0], round(start[1] + share * (end[1] - start[1])))
+    hand.do("mouseup", "1")
+    hand.person.idle(0.2)
+
+
+def values_of(one):
+    return one.board.draft_values(one.draft)
+
+
+def grabbed(canvas):
+    """The picture on the canvas, (height, width, 3) 0..255."""
+    from PySide import QtGui
+
+    image = canvas.grab().toImage().convertToFormat(QtGui.QImage.Format_RGB32)
+    rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+    return rows[:, : image.width(), 2::-1].astype(int)
+
+
+def test_the_picture_is_what_core_computes(person, hemisphere):
+    path = job(hemisphere)
+    panel, one = opened(person, path)
+    person.screenshot("spin_map")
+    picture, canvas = one.board.pictures[one.draft.branch], one.canvas
+    one.figures.item(0, 0).setCheckState(person.core.Qt.Unchecked)
+    one.figures.item(1, 0).setCheckState(person.core.Qt.Unchecked)
+    person.idle()
+    assert canvas.curves == []
+    seen = grabbed(canvas)
+    random = np.random.default_rng(4)
+    for column, row in zip(random.integers(2, len(one.board.columns) - 2, 80), random.integers(3, 177, 80)):
+        if np.abs(canvas.seams - column).min() <= 2:
+            continue  # lines are drawn there
+        x, y = round(float(canvas.x_of(column))), round(float(canvas.y_of(one.board.map.values[row])))
+        wanted = canvas.painted.colours[row - 3:row + 4, column - 1:column + 2].astype(int)
+        assert np.abs(seen[y, x] - wanted).max(axis=2).min() <= 3, (row, column)
+    for cells, colour in ((picture.beyond, TOO_NEAR), (~picture.reachable, NONE)):
+        if cells.any():
+            assert (canvas.painted.colours[cells] == np.round(255 * np.array(colour))).all()
+    assert picture.beyond.any()
+    person.choose(panel, "colours", "condition")
+    panel.findChild(person.widgets.QComboBox, "colours").activated.emit(1)
+    person.idle()
+    assert canvas.painted.scale.title == "condition"
+    one.dock.close()
+    assert docks._open == []
+
+
+def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):
+    path = job(hemisphere)
+    panel, one = opened(person, path)
+    label = person.field(panel, "readout")
+    for column, value in ((20, 0.4), (90, -1.5), (150, 2.2)):
+        hand.do("mousemove", *on_screen(one.canvas, column, value))
+        person.idle(0.1)
+        told = label.text()
+        near = [k for k in (column - 1, column, column + 1)  # a column may be narrower than a pixel
+                if told.startswith("Layer {} bead {} point {} ".format(*one.board.place(k)))]
+        assert len(near) == 1
+        rz = float(told.split("RZ ")[1].split("°")[0])
+        pixel = np.degrees(one.canvas.high - one.canvas.low) / one.canvas.area().height()
+        assert rz == pytest.approx(np.degrees(value), abs=1.5 * pixel)
+        shown = [float(text.split()[-1].rstrip("°")) for text in told.splitlines()[1].split("   ")]
+        tool = one.board.columns.points.tool[near]
+        phi = float(spin_map.rotation_of(one.source.cell, tool, np.array([np.radians(rz)]), "rz")[0])
+        q = spin_map.joints_at(one.source.task(one.draft.branch), one.board.columns, near[0], phi)[one.draft.branch]
+        assert shown == pytest.approx(np.degrees(q), abs=0.6)
+
+
+def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
+    path = job(hemisphere)
+    doc = path.Document
+    panel, one = opened(person, path)
+    use = person.field(panel, "use")
+    assert not use.isEnabled()
+    planned = [bead.coefficients.copy() for bead in path.Proxy.value(path).joint_path.beads]
+    column = len(one.board.columns) // 2
+    value = float(values_of(one)[column])
+    drag(hand, one.canvas, column, value, value + 0.5)
+    moved = float(values_of(one)[column])
+    assert moved == pytest.approx(value + 0.5, abs=0.06)  # a pixel or two
+    assert use.isEnabled() and len(one.draft.changed) == len(planned)
+    person.screenshot("spin_map_dragged")
+    sums = spin_curve.sums(one.draft.followed(False))
+    assert one.figures.item(0, 1).text().split()[0] == str(sums.lost)
+    wanted = one.draft.coefficients.copy()
+    steps = doc.UndoCount
+    hand.click(use)
+    person.until(lambda: path.Given, "the curve to be planned", LONG)
+    person.until(lambda: docks._open and not one.draft.changed, "the map to follow", LONG)
+    person.idle(0.3)
+    assert doc.UndoCount == steps + 1
+    joints = path.Proxy.value(path).joint_path
+    assert (path.Status == "up to date") == (sums.lost == 0) == joints.feasible
+    assert np.allclose([bead.coefficients for bead in joints.beads], wanted, atol=1e-9)
+    assert not use.isEnabled()
+    person.screenshot("spin_map_used")
+    doc.saveAs(str(person.folder / "given.FCStd"))
+    doc.undo()
+    person.idle(0.5)
+    assert path.Given == []
+    assert np.allclose([bead.coefficients for bead in path.Proxy.value(path).joint_path.beads], planned)
+    person.until(lambda: np.allclose(one.draft.coefficients, planned), "the map to follow the undo", LONG)
+    doc.redo()
+    person.until(lambda: np.allclose(one.draft.coefficients, wanted, atol=1e-9), "the map to follow the redo", LONG)
+    name = doc.FileName
+    App.closeDocument(doc.Name)
+    person.idle(0.2)
+    assert docks._open == []
+    again = App.openDocument(name)
+    person.idle(0.3)
+    read = given_polynomials(tuple(again.getObject("JointPath").Given))
+    assert read and np.allclose([read.get((layer, index), read.get(None)) for layer, index in one.source.places], wanted,
+                                atol=1e-8)
+
+
+def test_handles_bend_the_polynomial_of_one_bead(person, hemisphere, hand):
+    path = job(hemisphere)
+    panel, one = opened(person, path)
+    person.field(panel, "layer").setValue(2)
+    person.until(lambda: one.canvas.painted is not None and one.board.layer == 2, "the layer", LONG)
+    person.field(panel, "degree").setValue(2)
+    person.field(panel, "together").setChecked(False)
+    person.idle(0.3)
+    assert len(one.canvas.handles) == 3
+    person.screenshot("spin_map_layer")
+    before, handle = one.draft.coefficients.copy(), one.canvas.handles[1]
+    drag(hand, one.canvas, handle.column, handle.value, handle.value + 0.6)
+    after = one.draft.coefficients
+    bead = one.bead
+    others = [k for k in range(len(after)) if k != bead]
+    assert np.array_equal(after[others], before[others])
+    at = one.draft.handles(bead)
+    change = np.polynomial.polynomial.polyval(at, after[bead] - before[bead])
+    assert change[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-9) and change[1] == pytest.approx(0.6, abs=0.08)
+    # the numbers say the same, and can be typed
+    shown = [person.field(panel, f"c{k}").value() for k in range(3)]
+    assert shown == pytest.approx(np.degrees(after[bead] * TURN ** np.arange(3)), abs=1e-3)
+    hand.enter(panel, "c0", "12.5")
+    assert np.degrees(one.draft.coefficients[bead, 0]) == pytest.approx(12.5)
+    assert np.array_equal(one.draft.coefficients[others], before[others])
+    person.screenshot("spin_map_handles")
+
+
+def test_one_rz_for_all_is_dragged_and_used(person, hemisphere, hand):
+    path = job(hemisphere, joints={"method": "constant", "rz": 20})
+    panel, one = opened(person, path)
+    values = values_of(one)
+    assert np.abs(values - np.radians(20)).max() < 1e-6
+    column = len(values) // 3
+    drag(hand, one.canvas, column, float(values[column]), float(values[column]) - 0.7)
+    assert one.draft.rz == pytest.approx(np.radians(20) - 0.7, abs=0.06)
+    assert np.abs(values_of(one) - one.draft.rz).max() < 1e-6
+    wanted = one.draft.rz
+    sums = spin_curve.sums(one.draft.followed(False))
+    hand.click(person.field(panel, "use"))
+    person.until(lambda: path.Rz != "20.0 deg", "the plan", LONG)
+    person.idle(0.3)
+    assert path.Method == "constant" and float(path.Rz.split()[0]) == pytest.approx(np.degrees(wanted), abs=1e-6)
+    assert (path.Status == "up to date") == (sums.lost == 0)
+    person.screenshot("spin_map_constant")
+    hand.click(person.field(panel, "free"))
+    person.until(lambda: path.Method == "layer-by-layer", "the planner's own", LONG)
+    assert path.Status == "up to date"
+
+
+def test_another_branch_is_shown_and_used(person, hemisphere, hand):
+    path = job(hemisphere)
+    panel, one = opened(person, path)
+    combo = person.field(panel, "branch")
+    assert "(planned)" in combo.itemText(one.source.branch)
+    combo.setCurrentIndex(0)
+    combo.activated.emit(0)
+    person.until(lambda: 0 in one.board.pictures, "the other branch", LONG)
+    person.idle(0.2)
+    person.screenshot("spin_map_branch")
+    hand.click(person.field(panel, "use"))
+    person.until(lambda: path.OwnBranch == "front-up-noflip", "the plan", LONG)
+    assert path.Proxy.value(path).joint_path.branch == ("front", "up", "noflip")
+
+
+def test_methods_side_by_side(person, hemisphere, hand):
+    path = job(hemisphere)
+    panel, one = opened(person, path)
+    hand.click(person.field(panel, "compare"))
+    person.until(lambda: len(one.compared) == 3, "the methods", 60)
+    person.idle(0.3)
+    person.screenshot("spin_map_compared")
+    table = person.field(panel, "figures")
+    assert [table.item(row, 0).text() for row in range(5)] == [
+        "This curve", "As planned", "layer-by-layer", "point-by-point", "constant"]
+    assert len(one.canvas.curves) == 5
+    own, by_layer = (table.item(row, 5).text().split()[0] for row in (1, 2))
+    assert float(own) == pytest.approx(float(by_layer), rel=1e-2)
+    table.item(3, 0).setCheckState(person.core.Qt.Unchecked)
+    person.idle(0.1)
+    assert len(one.canvas.curves) == 4
+
+
+def test_a_click_takes_the_simulation_and_the_path_there(person, hemisphere, hand):
+    from freecad_am.gui.path import dock as paths
+    from freecad_am.gui.simulation import dock as simulations
+
+    path = job(hemisphere)
+    person.select(path)
+    person.click("RoboticAM_Simulate")
+    person.click("RoboticAM_Path")
+    _, one = opened(person, path)
+    column = (2 * len(one.board.columns)) // 3
+    free = float(values_of(one)[column]) + 0.9  # beside the curve
+    hand.at(on_screen(one.canvas, column, free if free < one.canvas.high else free - 1.8))
+    person.idle(0.3)
+    layer, _, _ = one.board.place(column)
+    moment = simulations._open[0].player.moment()
+    motion = simulations._open[0].run.motion
+    assert motion.layer[moment.row] == layer
+    assert np.linalg.norm(motion.position[moment.row] - one.board.columns.points.position[column]) < 1e-6
+    assert path.ViewObject.Proxy.shown[1] == layer
+    assert paths._dock.view() is path.ViewObject.Proxy
+    assert one.bead == int(one.board.columns.bead[column])
+    paths._dock.dock.close()
+    simulations._open[0].close()
+
+
+def test_it_goes_when_its_joint_path_goes(person, hemisphere):
+    path = job(hemisphere)
+    opened(person, path)
+    path.Document.removeObject(path.Name)
+    person.until(lambda: docks._open == [], "the map to close", 5)
+    assert "deleted" in person.window.statusBar().currentMessage()
+
+
+def test_a_path_from_point_to_point_is_smoothed(person, hemisphere, hand):
+    """Its curve has no polynomial: the nearest one may be used as it is."""
+    path = job(hemisphere, layer_height=15, joints={"method": "point-by-point"})
+    panel, one = opened(person, path)
+    gap = np.abs(values_of(one) - one.board.path_values(one.draft, one.source.planned.beads))
+    assert person.field(panel, "use").isEnabled() and gap.max() < 0.1
+    low, high = (np.degrees(end(one.followed.joints[:, 1])) for end in (np.min, np.max))
+    assert f"q2&nbsp;{low:.1f}…{high:.1f}°" in person.field(panel, "joints").text()
+    hand.click(person.field(panel, "use"))
+    person.until(lambda: path.Method == "layer-by-layer", "the plan", LONG)
+    assert len(path.Given) in (1, len(one.source.places)) and path.Status == "up to date"
+
+
+def test_a_table_has_no_map(person, hemisphere):
+    path = job(hemisphere, machine="table-xyzac", setup="rotary-table")
+    person.select(path)
+    person.click("RoboticAM_SpinMap")
+    assert docks._open == [] and "rotary axes" in person.window.statusBar().currentMessage()

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Paths for other programs: read back by FreeCAD and by readers of our own making, and compared with the beads."""
+
+import math
+import os
+
+import FreeCAD as App
+import numpy as np
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.core.geometry.frames import rotation_about
+from freecad_am.core.issues import InputError
+from freecad_am.interop.lines import Line, attitudes, of_motion, of_toolpath, thinned
+
+LABEL = "Hémisphère n° 1"
+
+
+@pytest.fixture(scope="module")
+def job():
+    doc = App.newDocument("Interop")
+    part = doc.addObject("Part::Sphere", "Sphere")
+    part.Label, part.Radius, part.Angle1, part.Angle2 = LABEL, 45.0, 0, 90
+    part.Placement = App.Placement(App.Vector(100, -50, 20), App.Rotation(App.Vector(1, 2, 3), 20))
+    doc.recompute()
+    joint_path = api.make_all(doc, part)[3]
+    feature = next(obj for obj in api.stages_of(doc, "feature"))
+    api.change(feature, layer_height=15)
+    yield joint_path
+    App.closeDocument(doc.Name)
+
+
+def beads(job):
+    return [bead.points for _, _, bead in api.result(job.Toolpath)]
+
+
+def polylines(path):
+    """POLYLINE entities of a DXF file: layer, flag and points; group codes read as the format says."""
+    with open(path, encoding="ascii", newline="") as stream:
+        words = stream.read().split("\r\n")
+    pairs = list(zip([int(word) for word in words[:-1:2]], words[1::2], strict=True))
+    assert pairs[-1] == (0, "EOF")
+    found, now = [], None
+    for code, value in pairs:
+        if code == 0:
+            now = value
+            if value == "POLYLINE":
+                found.append({"layer": "", "flag": 0, "points": []})
+            elif value == "VERTEX":
+                found[-1]["points"].append([0.0, 0.0, 0.0])
+        elif now == "POLYLINE" and code in (8, 70):
+            found[-1]["layer" if code == 8 else "flag"] = value if code == 8 else int(value)
+        elif now == "VERTEX" and code in (10, 20, 30):
+            found[-1]["points"][-1][code // 10 - 1] = float(value)
+        elif now == "VERTEX" and code == 70:
+            assert int(value) == 32
+    return found
+
+
+def test_motion_and_toolpath_give_the_same_beads(job):
+    planned = api.result(job)
+    ours, theirs = of_toolpath(api.result(job.Toolpath)), [line for line in of_motion(planned.motion) if line.deposit]
+    names, others = ([(line.layer, line.bead, line.closed) for line in lines] for lines in (ours, theirs))
+    assert names == others
+    for one, other in zip(ours, theirs, strict=True):
+        gaps = np.linalg.norm(one.points[:, None] - other.points[None], axis=2).min(axis=1)
+        assert gaps.max() < 1e-9  # planning adds points, and leaves none out
+    travelled = np.concatenate([line.points for line in of_motion(planned.motion)])
+    assert np.isfinite(travelled).all()
+    joined = of_motion(planned.motion)
+    for before, after in zip(joined, joined[1:], strict=False):
+        assert np.array_equal(before.points[-1], after.points[0])
+
+
+def test_step_read_back_has_every_point_of_every_bead(job, tmp_path):
+    path = str(tmp_path / "hémisphère wires.step")
+    active = App.ActiveDocument.Name
+    count = len(App.listDocuments())
+    assert api.export_wires(job.Toolpath, path) == path
+    assert (App.ActiveDocument.Name, len(App.listDocuments())) == (active, count)
+    assert os.listdir(tmp_path) == ["hémisphère wires.step"]
+    edges = Part.read(path).Edges
+    wanted = beads(job)
+    assert len(edges) == len(wanted)
+    for edge, points in zip(edges, wanted, strict=True):
+        for point in points[:: max(1, len(points) // 40)]:
+            assert edge.distToShape(Part.Vertex(App.Vector(*point)))[0] < 1e-6
+        assert edge.Length == pytest.approx(np.linalg.norm(np.diff(points, axis=0), axis=1).sum(), abs=1e-4)
+    with open(path, encoding="utf-8") as stream:
+        assert "'Layer 001" in stream.read()
+
+
+def test_dxf_is_the_beads_to_the_last_written_digit(job, tmp_path):
+    path = str(tmp_path / "wires.dxf")
+    api.export_wires(job.Toolpath, path)
+    found = polylines(path)
+    assert len(found) == len(beads(job))
+    for index, (polyline, points) in enumerate(zip(found, beads(job), strict=True)):
+        assert polyline["flag"] == 8
+        assert np.abs(np.array(polyline["points"]) - points).max() <= 0.5000001e-6
+        assert polyline["layer"].startswith("LAYER_") and (index or polyline["layer"] == "LAYER_001")
+    api.export_wires(job, path, rapids=True)
+    assert {"RAPID"} < {polyline["layer"] for polyline in polylines(path)}
+
+
+def test_dxf_is_read_by_freecad(job, tmp_path):
+    import Import
+
+    path = str(tmp_path / "wires.dxf")
+    api.export_wires(job.Toolpath, path)
+    document = App.newDocument("Read")
+    try:
+        Import.readDXF(path)
+        shapes = [obj.Shape for obj in document.Objects if hasattr(obj, "Shape") and obj.Shape.Edges]
+        length = sum(shape.Length for shape in shapes)
+    finally:
+        App.closeDocument(document.Name)
+    wanted = sum(np.linalg.norm(np.diff(points, axis=0), axis=1).sum() for points in beads(job))
+    assert length == pytest.approx(wanted, rel=1e-5)
+
+
+def test_cam_path_runs_through_every_bead_and_survives_saving(job, tmp_path):
+    doc = job.Document
+    made = api.make_cam_path(job)
+    commands = [(command.Name, command.Parameters) for command in made.Path.Commands]
+    place, on, runs = None, False, []
+    for name, words in commands:
+        if name == "(deposit on)":
+            on = True
+            runs.append([place])
+        elif name == "(deposit off)":
+            on = False
+        elif name in ("G0", "G1"):
+            assert on == (name == "G1")
+            place = (words["X"], words["Y"], words["Z"])
+            if on:
+                runs[-1].append(place)
+                assert words["F"] > 0.0
+    wanted = [line.points for line in of_motion(api.result(job).motion) if line.deposit]
+    assert len(runs) == len(wanted)
+    for run, points in zip(runs, wanted, strict=True):
+        assert np.abs(np.array(run) - points).max() < 1e-9
+    path = str(tmp_path / "job.FCStd")
+    length = made.Path.Length
+    doc.saveCopy(path)
+    copy = App.openDocument(path, True)
+    try:
+        assert copy.getObject(made.Name).Path.Length == pytest.approx(length, rel=1e-6)
+    finally:
+        App.closeDocument(copy.Name)
+        App.setActiveDocument(doc.Name)
+
+
+def test_trajectory_keeps_within_what_was_asked_and_survives_saving(job, tmp_path):
+    doc = job.Document
+    made = api.make_trajectory(job, tolerance=0.05, turn=1.0)
+    waypoints = made.Trajectory.Waypoints
+    lines = of_motion(api.result(job).motion)
+    assert 2 < len(waypoints) < 0.8 * sum(len(line.points) for line in lines)
+    at = np.array([list(waypoint.Pos.Base) for waypoint in waypoints])
+    nozzle = np.array([list(waypoint.Pos.Rotation.multVec(App.Vector(0, 0, 1))) for waypoint in waypoints])
+    starts, along = at[:-1], np.diff(at, axis=0)
+    for line in lines:
+        for point, tool in zip(line.points[::5], line.tool[::5], strict=True):
+            share = np.clip(((point - starts) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-30), 0.0, 1.0)
+            off = np.linalg.norm(starts + share[:, None] * along - point, axis=1)
+            near = off < 0.05 + 1e-6
+            assert near.any()
+            turned = np.degrees(np.arccos(np.clip(-(nozzle[:-1][near] @ tool), -1.0, 1.0)))
+            other = np.degrees(np.arccos(np.clip(-(nozzle[1:][near] @ tool), -1.0, 1.0)))
+            assert min(turned.min(), other.min()) < 1.0 + 1e-6
+    assert min(waypoint.Velocity for waypoint in waypoints) > 0.0
+    path = str(tmp_path / "job.FCStd")
+    doc.saveCopy(path)
+    copy = App.openDocument(path, True)
+    try:
+        again = copy.getObject(made.Name).Trajectory
+        assert len(again.Waypoints) == len(waypoints) and again.Length == pytest.approx(made.Trajectory.Length, rel=1e-6)
+    finally:
+        App.closeDocument(copy.Name)
+        App.setActiveDocument(doc.Name)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_thinning_keeps_every_point_within_the_tolerance(seed):
+    rng = np.random.default_rng(seed)
+    points = np.cumsum(rng.normal(0.0, 0.3, (400, 3)) + [0.5, 0.0, 0.0], axis=0)
+    tilt = np.cumsum(rng.normal(0.0, 0.01, 400))
+    tool = rotation_about(np.tile([0.0, 1.0, 0.0], (400, 1)), tilt)[:, :, 2]
+    line = Line(0, 0, True, points, tool, np.full(400, 6.0))
+    few = thinned(line, 0.5, math.radians(3.0))
+    assert np.array_equal(few.points[[0, -1]], points[[0, -1]]) and len(few.points) < 350
+    kept = np.flatnonzero((points[:, None] == few.points[None]).all(axis=2).any(axis=1))
+    for first, last in zip(kept, kept[1:], strict=False):
+        chord = points[last] - points[first]
+        for k in range(first, last + 1):
+            share = np.clip((points[k] - points[first]) @ chord / (chord @ chord), 0.0, 1.0)
+            assert np.linalg.norm(points[first] + share * chord - points[k]) <= 0.5
+            assert min(abs(tilt[k] - tilt[first]), abs(tilt[k] - tilt[last])) <= math.radians(3.0) + 1e-9
+
+
+def test_the_nozzle_points_against_the_tool_axis_and_hardly_turns_about_it():
+    rng = np.random.default_rng(1)
+    tool = rng.normal(size=(500, 3)) + [0.0, 0.0, 2.0]
+    tool /= np.linalg.norm(tool, axis=1, keepdims=True)
+    turned = attitudes(tool)
+    assert np.abs(turned[:, :, 2] + tool).max() < 1e-12
+    assert np.abs(np.linalg.det(turned) - 1.0).max() < 1e-12
+    assert np.abs(attitudes(np.array([[0.0, 0.0, 1.0]]))[0] - np.diag([1.0, -1.0, -1.0])).max() < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("path", "code"), [("wires.iges", "UNSUPPORTED_FILE"), ("wires", "UNSUPPORTED_FILE"), ("file/wires.dxf", "NOT_WRITABLE")]
+)
+def test_what_cannot_be_written_is_refused_and_leaves_nothing(job, tmp_path, path, code):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError) as caught:
+        api.export_wires(job, str(tmp_path / path))
+    assert caught.value.code == code
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_only_paths_are_exported(job, tmp_path):
+    for call in (lambda: api.export_wires(job.Cell, str(tmp_path / "a.dxf")), lambda: api.make_cam_path(job.Cell)):
+        with pytest.raises(InputError, match="no path"):
+            call()
+    with pytest.raises(InputError, match="not above 0"):
+        api.make_trajectory(job, tolerance=0.0)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What pictures hold is what core computes, in the units they name."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.process import bead_model, bead_table, predicted, spacing
+from freecad_am.core.simulation.totals import totals
+from freecad_am.plots import catalogue, joints, process
+from freecad_am.plots.chart import together
+from freecad_am.plots.rows import PATH, TIME, rows
+
+
+def curve(charts, number=0, of=0):
+    return charts[number].curves[of]
+
+
+def test_angles_are_those_of_the_motion_at_their_times(dome):
+    source, _ = dome
+    along = rows(source)
+    charts, motion, times = joints.angles(source, along), source.motion, source.times
+    assert len(charts) == 6 and charts[0].x == ("time", "min" if times.total > 180.0 else "s")
+    unit = 60.0 if charts[0].x.unit == "min" else 1.0
+    moving = ~along.standing
+    for axis, chart in enumerate(charts):
+        found = chart.curves[0]
+        np.testing.assert_allclose(np.radians(found.y[moving]), motion.joints[:, axis], atol=1e-13)
+        np.testing.assert_allclose(found.x[moving] * unit, times.arrive, atol=1e-9)
+        assert (np.diff(found.x) >= 0.0).all()
+        limits = source.cell.limits
+        np.testing.assert_allclose(np.radians(chart.limits), [limits.lower[axis], limits.upper[axis]])
+    # while it stands the axes are where they were, until it leaves
+    stays = np.flatnonzero(along.standing)
+    assert len(stays) > 4
+    np.testing.assert_allclose(along.x[stays] * unit, times.leave[along.index[stays]], atol=1e-9)
+    assert np.array_equal(curve(charts).y[stays], curve(charts).y[stays - 1])
+    assert np.array_equal(along.layers, np.unique(motion.layer))
+
+
+def test_rates_reach_what_the_report_tells(dome):
+    source, told = dome
+    along = rows(source)
+    for build, key in ((joints.speeds, "speed_max_deg_s"), (joints.accelerations, "acceleration_max_deg_s2"),
+                       (joints.jerks, "jerk_max_deg_s3")):
+        charts = build(source, along)
+        found = [np.nanmax(np.abs(chart.curves[0].y)) for chart in charts]
+        np.testing.assert_allclose(found, told[key], rtol=1e-6, atol=1e-7)
+        one = together("all", charts)
+        assert [each.name for each in one.curves] == list(source.cell.machine.axes) and one.wrong_count == 0
+    shares = joints.shares(source, along)[0]
+    most = [np.nanmax(each.y) / 100.0 for each in shares.curves]
+    np.testing.assert_allclose(most, told["speed_ratio_max"], rtol=1e-6, atol=1e-7)
+    (condition,) = joints.condition(source, along)
+    assert np.nanmin(condition.curves[1].y) == pytest.approx(told["condition_min"], rel=1e-9)
+
+
+def test_what_breaks_a_limit_is_counted(dome):
+    source, _ = dome
+    machine = source.cell.machine
+    slow = dataclasses.replace(machine, max_speed=np.full(6, np.radians(1.0)))
+    charts = joints.speeds(dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=slow)), rows(source))
+    with np.errstate(invalid="ignore"):
+        over = (np.abs(np.degrees(source.rates.speed)) > 1.0).sum(axis=0)
+    assert [chart.wrong_count for chart in charts] == over.tolist() and over.max() > 3
+    low, high = charts[int(over.argmax())].up()
+    assert low < -1.0 and high > 1.0  # both limits are in sight
+    assert charts[int(over.argmin())].wrong_count == 0
+
+
+def test_path_counts_every_move(dome):
+    source, _ = dome
+    along = rows(source, PATH)
+    way = np.linalg.norm(np.diff(source.motion.position, axis=0), axis=1).sum()
+    unit = 1000.0 if along.quantity.unit == "m" else 1.0
+    assert along.x[-1] * unit == pytest.approx(way, rel=1e-12) and along.x[0] == 0.0
+
+
+def test_layers_are_chosen(dome):
+    source, _ = dome
+    whole, some = rows(source, TIME), rows(source, TIME, (1, 2))
+    taken = (whole.layer >= 1) & (whole.layer <= 2)
+    for name in ("index", "x", "standing", "layer"):
+        assert np.array_equal(getattr(some, name), getattr(whole, name)[taken]), name
+    assert some.layers.tolist() == [1, 2] and 0.0 < some.borders[0] < some.borders[1]
+
+
+def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
+    source, _ = dome
+    along = rows(source)
+    rate, mass = process.deposit(source, along)
+    sums = totals(source.motion, source.times, source.process, source.toolpath.layer_height)
+    assert mass.curves[0].y[-1] == pytest.approx(sums.mass, rel=1e-12)
+    unit = {"min": 60.0, "s": 1.0}[rate.x.unit]
+    hours = np.diff(rate.curves[0].x, prepend=0.0) * unit / 3600.0
+    assert 1000.0 * (rate.curves[0].y * hours).sum() == pytest.approx(sums.mass, rel=1e-9)
+    np.testing.assert_allclose(np.diff(mass.curves[0].y), (1000.0 * rate.curves[0].y * hours)[1:], rtol=1e-6, atol=1e-9)
+
+
+def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
+    source, _ = dome
+    (chart,) = process.travel(source, rows(source))
+    by_name = {one.name: one.y for one in chart.curves}
+    assert np.nanmin(by_name["deposit"]) == np.nanmax(by_name["deposit"]) == 8.0
+    assert (np.isfinite(by_name["rapid"]) & np.isfinite(by_name["deposit"])).sum() == 0 and "as the axes can" not in by_name
+    machine = dataclasses.replace(source.cell.machine, max_speed=np.full(6, np.radians(2.0)))
+    slow = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
+    (chart,) = process.travel(slow, rows(slow))
+    kept = {one.name: one.y for one in chart.curves}["as the axes can"]
+    assert 0.0 < np.nanmin(kept) < np.nanmax(kept) < 8.0
+
+
+def test_spacing_is_that_of_the_layers(dome):
+    source, _ = dome
+    values = np.concatenate(spacing.between_layers(source.toolpath))
+    (chart,) = process.spacing(source, (0, len(source.toolpath.layers) - 1))
+    bars = chart.bars
+    np.testing.assert_allclose(bars.heights, 100.0 * np.histogram(values, bars.edges)[0] / len(values), rtol=1e-9)
+    assert bars.heights.sum() == pytest.approx(100.0) and bars.edges[0] < 9.0 < bars.edges[-1]
+    assert chart.band == pytest.approx((8.1, 9.9)) and chart.upright[0][0] == 9.0
+    assert process.spacing(source, (0, 0)) == ()
+    (some,) = process.spacing(source, (1, 1))
+    one = spacing.between_layers(source.toolpath)[0]
+    np.testing.assert_allclose(some.bars.heights, 100.0 * np.histogram(one, some.bars.edges)[0] / len(one), rtol=1e-9)
+
+
+def test_what_a_bead_model_predicts(modelled):
+    told = predicted.beads(modelled.toolpath)
+    height, drift = process.heights(modelled, (1, 3))
+    for number, kind in enumerate(("min", "mean", "max")):
+        assert curve([height], 0, number).y.tolist() == [row["height_mm"][kind] for row in told["layers"][1:]]
+    assert drift.curves[0].y.tolist() == [row["drift_mm"] for row in told["layers"][1:]]
+    assert height.curves[0].x.tolist() == [1.0, 2.0, 3.0] and height.marks[0][0] == 2.0
+    speed, width, _ = process.spread(modelled, (0, 3))
+    assert speed.bars.heights.sum() == pytest.approx(100.0) and width.across()[0] < 4.8 and width.across()[1] > 5.2
+    measured = bead_table.measured("csw")
+    model = bead_model.fit(*measured)
+    (fit,) = catalogue.picture("fit", modelled).charts
+    for radius, line, dots in zip(np.unique(measured.radius), fit.curves[::2], fit.curves[1::2]):
+        expected = model.width.m * line.x ** (-1.0 / 3.0) + model.width.p / radius + model.width.t
+        np.testing.assert_allclose(line.y, expected, rtol=1e-12)
+        assert sorted(dots.y.tolist()) == sorted(measured.width[measured.radius == radius].tolist())
+
+
+def test_every_picture_is_there_or_says_why(dome, modelled):
+    source, _ = dome
+    for name, entry in catalogue.PICTURES.items():
+        of_dome, of_path = catalogue.picture(name, source), catalogue.picture(name, modelled)
+        assert bool(of_dome.charts) != bool(of_dome.lacking) and bool(of_path.charts) != bool(of_path.lacking)
+        assert bool(of_dome.charts) == (name not in ("heights", "spread", "fit")), name
+        assert bool(of_path.charts) == (not entry.machine), name

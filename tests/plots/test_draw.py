@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Drawn pictures show the values of their charts: lines, limits, bars; bytes depend on them alone; tables give them back."""
+
+import csv
+import io
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from freecad_am.plots import catalogue, draw, files
+from freecad_am.plots.chart import Chart, Curve, Picture, Quantity
+from freecad_am.plots.envelope import envelope
+from freecad_am.plots.look import DARK, LIGHT, PAGE, VARIABLES
+from freecad_am.plots.rows import PATH
+
+TIME, ANGLE = Quantity("time", "s"), Quantity("angle", "deg")
+
+
+def lines(axes):
+    """The lines in a frame that are no marks: drawn in the units of the data."""
+    return [line for line in axes.get_lines() if line.get_transform() == axes.transData]
+
+
+def test_lines_are_the_values(dome):
+    source, _ = dome
+    for name in ("angles", "speeds", "deposit", "condition"):
+        charts = catalogue.picture(name, source).charts
+        figure, places = draw.figure(charts, LIGHT, 4000, 900)  # so wide that nothing is left out
+        assert len(figure.axes) == len(places) == len(charts)
+        for axes, chart, place in zip(figure.axes, charts, places, strict=True):
+            for line, curve in zip(lines(axes), chart.curves, strict=True):
+                assert np.array_equal(line.get_xdata(), curve.x)
+                assert np.array_equal(line.get_ydata(), curve.y, equal_nan=True)
+            assert axes.get_xlim() == place.across and axes.get_ylim() == place.up
+
+
+def test_a_wide_curve_looks_the_same_with_few_points():
+    random = np.random.default_rng(8)
+    x = np.sort(random.uniform(0.0, 100.0, 300_000))
+    y = np.cumsum(random.normal(size=len(x)))
+    y[120_000:150_000] = np.nan
+    y[77_777] = 5000.0
+    for low, high in ((0.0, 100.0), (20.0, 61.0)):
+        kept = envelope(x, y, 500, low, high)
+        assert len(kept) <= 4 * 502 and (np.diff(kept) > 0).all()
+        edges = np.linspace(low, high, 501)
+        for values, reduce in ((y, np.fmax), (y, np.fmin)):
+            column = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, 499)
+            seen = (x >= low) & (x < high)
+            whole, few = np.full(500, np.nan), np.full(500, np.nan)
+            reduce.at(whole, column[seen], values[seen])
+            chosen = kept[seen[kept]]
+            reduce.at(few, column[chosen], values[chosen])
+            assert np.array_equal(whole, few, equal_nan=True)
+        assert 77_777 in kept
+    gap = envelope(x, y, 500, 0.0, 100.0)
+    assert np.isnan(y[gap]).sum() >= 90  # the gap, a tenth of the columns, is one
+    assert np.array_equal(envelope(x[:50], y[:50], 500, x[0], x[49]), np.arange(50))
+    assert envelope(x, np.full(len(x), np.nan), 100, 0.0, 100.0).size <= 204
+
+
+def test_limits_are_bands_and_what_breaks_them_is_marked():
+    x = np.linspace(0.0, 10.0, 101)
+    chart = Chart("A", TIME, ANGLE, (Curve("A", x, 100.0 * np.sin(x)),), limits=(-120.0, 90.0))
+    figure, places = draw.figure((chart,), LIGHT, 600, 300)
+    (axes,) = figure.axes
+    over = 100.0 * np.sin(x) > 90.0
+    assert chart.wrong_count == over.sum()
+    _, wrong = lines(axes)
+    assert np.array_equal(np.isfinite(wrong.get_ydata()), over) and wrong.get_color() == LIGHT.bad
+    bands = [(patch.get_y(), patch.get_y() + patch.get_height()) for patch in axes.patches]
+    low, high = places[0].up
+    assert sorted(bands) == pytest.approx([(low, -120.0), (90.0, high)]) and low < -120.0
+    texts = [text.get_text() for text in figure.texts]
+    assert any(text == f"A: {over.sum()} points beyond the limit" for text in texts)
+    assert {"90", "-120"} <= set(texts) and "time, s" in texts
+    far = Chart("A", TIME, ANGLE, (Curve("A", x, np.sin(x)),), limits=(-120.0, 90.0))
+    figure, places = draw.figure((far,), DARK, 600, 300)
+    assert places[0].up[1] < 2.0 and not figure.axes[0].patches  # out of sight, but told
+    assert "limits -120 to 90 deg" in [text.get_text() for text in figure.texts]
+
+
+def test_a_window_shows_a_part(dome):
+    source, _ = dome
+    charts = catalogue.picture("angles", source).charts
+    low, high = charts[0].across()
+    part = (low + 0.2 * (high - low), low + 0.4 * (high - low))
+    figure, places = draw.figure(charts, LIGHT, 500, 600, draw.Window({0: part}, {2: (-1.0, 1.0)}))
+    assert {place.across for place in places} == {part} and places[2].up == (-1.0, 1.0)
+    assert figure.axes[2].get_ylim() == (-1.0, 1.0)
+    x = lines(figure.axes[0])[0].get_xdata()
+    assert (x > part[0]).any() and x[0] <= part[0] and x[-1] >= part[1] and len(x) < len(charts[0].curves[0].x)
+
+
+@pytest.mark.parametrize("kind", files.KINDS)
+def test_the_same_values_are_the_same_bytes(dome, kind):
+    source, _ = dome
+    charts = catalogue.picture("deposit", source).charts
+    made = [files.image(draw.figure(charts, LIGHT, 500, 300)[0], kind) for _ in range(2)]
+    assert made[0] == made[1] and len(made[0]) > 2000
+    other = files.image(draw.figure(catalogue.picture("deposit", source, PATH).charts, LIGHT, 500, 300)[0], kind)
+    assert other != made[0]
+    assert not re.search(rb"20\d\d-\d\d-\d\d|Matplotlib v|D:20", made[0])
+
+
+def test_pictures_in_a_page_take_its_colours(dome):
+    source, _ = dome
+    chart = catalogue.picture("angles", source).charts[0]
+    text = files.inline(draw.figure((chart,), PAGE, 460, 230)[0], 'a "name" & more')
+    tree = ElementTree.fromstring(text)
+    assert tree.get("aria-label") == 'a "name" & more' and tree.get("viewBox") == "0 0 331.2 165.6"
+    assert "width" not in tree.attrib
+    assert not any(colour in text for colour in VARIABLES) and "var(--ink)" in text and "var(--line)" in text
+    assert "<style" not in text and "<metadata" not in text and "date" not in text
+    used = set(re.findall(r"url\(#(\w+)\)", text))
+    assert used and used <= set(re.findall(r'id="(\w+)"', text))
+    assert [node for node in tree.iter() if node.tag.endswith("text") and node.text == "q1"]
+
+
+@pytest.mark.parametrize("name", ["angles", "jerks", "deposit", "condition"])
+def test_tables_give_the_values_back(dome, name):
+    source, _ = dome
+    picture = catalogue.picture(name, source)
+    table = list(csv.reader(io.StringIO("".join(files.values(picture)))))
+    curves = [curve for chart in picture.charts for curve in chart.curves]
+    assert len(table[0]) == 2 + len(curves) and len(set(table[0])) == len(table[0])
+    unit = picture.charts[0].x.unit
+    assert table[0][:2] == [f"time_{unit}", "layer"] and all(re.fullmatch(r"\w+", cell) for cell in table[0])
+    columns = list(zip(*table[1:], strict=True))
+    np.testing.assert_allclose(np.array(columns[0], float), curves[0].x, rtol=1e-9, atol=1e-12)
+    assert [int(cell) for cell in columns[1]] == curves[0].layer.tolist()
+    for cells, curve in zip(columns[2:], curves, strict=True):
+        np.testing.assert_allclose([float(cell) if cell else np.nan for cell in cells], curve.y, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["spread", "fit", "heights"])
+def test_tables_of_what_is_no_course(modelled, name):
+    picture = catalogue.picture(name, modelled)
+    table = list(csv.reader(io.StringIO("".join(files.values(picture)))))
+    if name == "heights":
+        assert table[0][:2] == ["layer", "lowest_mm"]
+        return
+    assert table[0] == ["chart", "curve", "from", "to", "value"]
+    wanted = [(chart.title, low, high, value) for chart in picture.charts if chart.bars is not None for low, high, value in
+              zip(chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights, strict=True)]
+    wanted += [(chart.title, x, x, y) for chart in picture.charts for curve in chart.curves
+               for x, y in zip(curve.x, curve.y, strict=True)]
+    assert len(table) == 1 + len(wanted)
+    for row, (title, *numbers) in zip(table[1:], wanted, strict=True):
+        assert row[0] == title and [float(cell) for cell in row[2:]] == pytest.approx(numbers, rel=1e-9, abs=1e-12)
+
+
+def test_a_comma_in_a_name_does_not_make_a_column():
+    chart = Chart('so, "said"', TIME, ANGLE, (Curve("one, two", np.arange(2.0), np.arange(2.0)),
+                                               Curve("b", np.arange(3.0), np.arange(3.0))))
+    table = list(csv.reader(io.StringIO("".join(files.values(Picture("a", "A", (chart,)))))))
+    assert all(len(row) == 5 for row in table) and table[1][:2] == ['so, "said"', "one, two"]
