@@ -12,6 +12,7 @@ from ..objects import user_machines
 from ..objects.cell import Cell
 from .later import Later
 from .stage_panel import StagePanel
+from .texts import tr, translated
 
 _OF_ROBOTS = ("cell_setup", "cell_deposition_point", "cell_branch", "cell_nozzle_tool")
 
@@ -22,7 +23,7 @@ class CellPanel(StagePanel):
     stage = Cell
 
     def __init__(self, obj: Any = None) -> None:
-        super().__init__(Cell, "Cell" if obj is None else obj.Label, [], obj)
+        super().__init__(Cell, tr("Cell") if obj is None else obj.Label, [], obj)
         self.tips = {place: self.places[place][0].widget.toolTip() for place in _OF_ROBOTS}
         self.enabled = {place: self.places[place][0].widget.isEnabled() for place in _OF_ROBOTS}
         self.later = Later(self.form, self._follow)
@@ -38,7 +39,7 @@ class CellPanel(StagePanel):
         try:
             machine = machines.load(self.places["cell_machine"][0].value, user_machines.folders())
         except InputError as error:
-            note.setText(error.message)
+            note.setText(translated(error.message))
             note.show()
             return
         note.hide()
@@ -47,15 +48,15 @@ class CellPanel(StagePanel):
             field, _, fold = self.places[place]
             widget = field.widget
             fold.enable(widget, self.enabled[place] and not machine.is_table)
-            told = f"No choice for {machine.title}: the part lies on its table" if machine.is_table else self.tips[place]
-            widget.setToolTip(told)
+            fixed = tr("No choice for {}: the part lies on its table").format(machine.title)
+            widget.setToolTip(fixed if machine.is_table else self.tips[place])
         self._offer_limits(list(machine.limit_sets))
 
     def _set_setup(self, is_table: bool) -> None:
         setup = self._widget("cell_setup")
-        if not self.enabled["cell_setup"] or is_table == (setup.currentText() == ROTARY_TABLE):
+        if not self.enabled["cell_setup"] or is_table == (setup.currentData() == ROTARY_TABLE):
             return
-        setup.setCurrentIndex(setup.findText(ROTARY_TABLE if is_table else PART_ON_ROBOT))
+        setup.setCurrentIndex(setup.findData(ROTARY_TABLE if is_table else PART_ON_ROBOT))
 
     def _offer_limits(self, names: list[str]) -> None:
         """Let those limits be chosen that the machine has; what is entered stays."""

@@ -10,7 +10,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from . import icons, needs
-from .texts import tr
+from .texts import marked, tr
 
 _PREFIX = "RoboticAM_"
 
@@ -20,12 +20,13 @@ class Tool:
     lacks for it; `beside`: whether it acts beside a task panel that is open."""
 
     name = ""  # without prefix
-    lacking = ""
+    told = ""
 
     def __init__(
         self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
         beside: bool = False,
     ) -> None:
+        # as written: FreeCAD translates them by the name of the command, and again when the language changes
         self.icon, self.text, self.help, self.action, self.need, self.beside = icon, text, help, action, need, beside
 
     def GetResources(self) -> dict[str, str]:
@@ -41,8 +42,10 @@ class Tool:
     def IsActive(self) -> bool:
         """Whether it can act; the tooltip says what is missing when it cannot."""
         lacking = self.missing()
-        if lacking != self.lacking and self._explain(f"{self.help}. {lacking}" if lacking else self.help):
-            self.lacking = lacking
+        help = tr(self.help)
+        told = tr("{}. {}").format(help, lacking) if lacking else help
+        if told != self.told and self._explain(told):
+            self.told = told
         return not lacking
 
     def missing(self) -> str:
@@ -67,7 +70,7 @@ class Tool:
         """The tool was clicked, or called by a macro or a shortcut at a moment when it cannot act."""
         lacking = self.missing()
         if lacking:
-            App.Console.PrintWarning(f"{self.text}: {lacking}\n")
+            App.Console.PrintWarning(tr("{}: {}").format(tr(self.text), lacking) + "\n")
         else:
             self.action()
 
@@ -87,53 +90,64 @@ def register() -> list[str]:
     """Add all commands to FreeCAD; their names in the order of the toolbar, with separators."""
     tools = {
         "NewJob": Tool(
-            "new_job", tr("New Job…"), tr("Makes all stages for the selected shape, from cell to program"), _new_job,
+            "new_job", marked("New Job…"), marked("Makes all stages for the selected shape, from cell to program"), _new_job,
             needs.part,
         ),
-        "Cell": Tool("cell", "Cell…", "Adds a cell: machine, set-up, platform and nozzle", _cell),
+        "Cell": Tool("cell", marked("Cell…"), marked("Adds a cell: machine, set-up, platform and nozzle"), _cell),
         "Feature": Tool(
-            "feature", "Feature…", "Takes the selected shape of revolution to be deposited", _feature, needs.faces
+            "feature", marked("Feature…"), marked("Takes the selected shape of revolution to be deposited"), _feature,
+            needs.faces,
         ),
         "WallOnPart": Tool(
-            "wall_on_part", "Wall on Part…",
-            "Takes the selected faces as a wall to be deposited on the other object that is selected", _wall, needs.faces,
+            "wall_on_part", marked("Wall on Part…"),
+            marked("Takes the selected faces as a wall to be deposited on the other object that is selected"), _wall,
+            needs.faces,
         ),
         "SolidsOnHub": Tool(
-            "solids_on_hub", "Solids on Hub…",
-            "Takes the selected solids to be deposited on the cylinder or cone that is selected last", _hub, needs.part,
+            "solids_on_hub", marked("Solids on Hub…"),
+            marked("Takes the selected solids to be deposited on the cylinder or cone that is selected last"), _hub,
+            needs.part,
         ),
-        "Toolpath": Tool("toolpath", "Toolpath…", "Cuts a feature into layers and beads", _toolpath, needs.feature),
+        "Toolpath": Tool(
+            "toolpath", marked("Toolpath…"), marked("Cuts a feature into layers and beads"), _toolpath, needs.feature
+        ),
         "JointPath": Tool(
-            "joint_path", "Joint Path…", "Plans the joint values of a toolpath in a cell", _joint_path,
+            "joint_path", marked("Joint Path…"), marked("Plans the joint values of a toolpath in a cell"), _joint_path,
             needs.toolpath_and_cell,
         ),
         "SpinMap": Tool(
-            "spin_map", tr("Free Rotation Map…"), tr("Shows the path against the rotation about the tool; the curve can be "
-                                                     "drawn by hand"), _spin_map, needs.joint_path, True,
+            "spin_map", marked("Free Rotation Map…"),
+            marked("Shows the path against the rotation about the tool; the curve can be drawn by hand"), _spin_map,
+            needs.joint_path, True,
         ),
         "Path": Tool(
-            "path", "Path", "Shows a toolpath or joint path layer by layer and point by point", _path, needs.path, True
+            "path", marked("Path"), marked("Shows a toolpath or joint path layer by layer and point by point"), _path,
+            needs.path, True,
         ),
         "Simulate": Tool(
-            "simulate", "Simulate…", "Plays a joint path or program with its machine", _simulate, needs.joint_path, True
+            "simulate", marked("Simulate…"), marked("Plays a joint path or program with its machine"), _simulate,
+            needs.joint_path, True,
         ),
         "ExportPath": Tool(
-            "export_path", tr("Export Path…"),
-            tr("Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it"), _export_path,
+            "export_path", marked("Export Path…"),
+            marked("Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it"), _export_path,
             needs.path,
         ),
-        "Program": Tool("program", "Program…", "Writes the controller's program of a joint path", _program, needs.feasible),
+        "Program": Tool(
+            "program", marked("Program…"), marked("Writes the controller's program of a joint path"), _program,
+            needs.feasible,
+        ),
         "NewMachine": Tool(
-            "new_machine", tr("New Machine…"),
-            tr("Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses"),
+            "new_machine", marked("New Machine…"),
+            marked("Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses"),
             _new_machine, needs.nothing, True,
         ),
         "Inspect": Tool(
-            "inspect", tr("Inspect…"), tr("Compares measured points with what was planned"), _inspect, needs.part
+            "inspect", marked("Inspect…"), marked("Compares measured points with what was planned"), _inspect, needs.part
         ),
         "Plots": Tool(
-            "plots", tr("Plots…"), tr("Plots joints against limits, distances between layers and deposit rates"), _plots,
-            needs.path, True,
+            "plots", marked("Plots…"), marked("Plots joints against limits, distances between layers and deposit rates"),
+            _plots, needs.path, True,
         ),
     }
     for name, tool in tools.items():
@@ -179,7 +193,7 @@ def _cell() -> None:
 def _feature() -> None:
     from ..objects.feature import RevolutionFeature
 
-    _open(RevolutionFeature, "Feature")
+    _open(RevolutionFeature, tr("Feature"))
 
 
 def _wall() -> None:
@@ -203,7 +217,7 @@ def _toolpath() -> None:
 def _joint_path() -> None:
     from ..objects.joint_path import JointPath
 
-    _open(JointPath, "Joint path")
+    _open(JointPath, tr("Joint path"))
 
 
 def _spin_map() -> None:
@@ -229,7 +243,7 @@ def _program() -> None:
     from . import inputs, stage_panel, suggestions
 
     choices = [*inputs.of(Program), inputs.NameChoice(_part_name())]
-    panel = stage_panel.StagePanel(Program, "Program", choices)
+    panel = stage_panel.StagePanel(Program, tr("Program"), choices)
     post = suggestions.post_for(App.ActiveDocument)
     if post:
         panel.places["program_post"][0].widget.setEditText(post)

@@ -15,7 +15,7 @@ from ..objects import preferences
 from ..objects.expressions import FOLLOW, is_expression
 from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row
 from .quantity import PlainQuantity, QuantityField
-from .texts import tr
+from .texts import tr, translated
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
@@ -31,10 +31,10 @@ class Field:
         self.row = row
         self.widget = widget
         self.read = read
-        self.label = label_of(row)
+        self.label = translated(row.label)
         self.shown = read()
         widget.setObjectName(row.name)
-        widget.setToolTip(row.spec.help)
+        widget.setToolTip(translated(row.spec.help))
 
     @property
     def value(self) -> Any:
@@ -61,14 +61,6 @@ class Field:
         return f"{self.label} ({self.row.unit})" if bare else self.label
 
 
-def label_of(row: Row) -> str:
-    """'Layer height' for layer_height; the group is told by its box."""
-    words = [("from", "to")[step] if isinstance(step, int) else step for step in row.path]
-    words = words[1:] if len(words) > 1 and words[-1] not in ("from", "to") else words
-    text = " ".join(words).replace("_", " ")
-    return "RZ" if text == "rz" else text[0].upper() + text[1:]
-
-
 def make(
     row: Row, value: Any, suggestions: Callable[[], list[str]] | None = None, expression: str = "", section: str = ""
 ) -> Field:
@@ -84,19 +76,19 @@ def whats_this(row: Row, section: str) -> str:
     """The help of a field: what it is, what it may be, what it is by default, and its name in jobs and macros."""
     spec, default = row.spec, row.text(row.default)
     unit = row.unit if row.form in (f.RATIO, f.TURN_RATE) else ""
-    lines = [spec.help]
+    lines = [translated(spec.help)]
     if spec.choices or spec.words:
         lines.append(tr("Words: {}.").format(", ".join((*spec.choices, *spec.words))))
     allowed = f.range_text(spec) if spec.low is not None or spec.high is not None else ""
     if allowed:
-        lines.append(tr("Allowed: {}.").format(allowed))
+        lines.append(tr("Allowed: {}.").format(translated(allowed)))
     if row.form in FOLLOW:
         lines.append(tr("It may follow an expression: {}.").format("=Spreadsheet.height / 2"))
     if default:
         lines.append(tr("By default: {}.").format(f"{default} {unit}".strip() if unit not in default else default))
     job = ".".join(map(str, (section, *row.path))) if section else ""
     lines.append(tr("In a job file: {}; in macros: {}.").format(job, row.key))
-    return "<b>{}</b><p>{}</p>".format(label_of(row), "<br>".join(map(html.escape, lines)))
+    return "<b>{}</b><p>{}</p>".format(translated(row.label), "<br>".join(map(html.escape, lines)))
 
 
 def _make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None, expression: str) -> Field:
@@ -106,7 +98,7 @@ def _make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None, exp
     if row.form == f.SPEED:
         return _speed(row, shown, expression)
     if row.form in _QUANTITIES:
-        quantity = QuantityField(shown, row.unit, label_of(row), expression)
+        quantity = QuantityField(shown, row.unit, row.label, expression)
         return Field(row, quantity.box, quantity.read)
     if row.form == f.CHOICE:
         return _choice(row, shown)
@@ -129,7 +121,7 @@ def _speed(row: Row, shown: float, expression: str) -> Field:
     unit = preferences.speed_unit()
     factor = preferences.SPEED_UNITS[unit]
     made = QuantityField if factor == 1.0 else PlainQuantity
-    quantity = made(round(shown * factor, 9), unit, label_of(row), expression)
+    quantity = made(round(shown * factor, 9), unit, row.label, expression)
 
     def read() -> float | str:
         value = quantity.read()
@@ -144,13 +136,14 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
         edit.setText(" ".join(value))
         return Field(row, edit, lambda: tuple(edit.text().replace(",", " ").split()))
     edit.setText(row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}")
-    words = " or ".join((row.unit and f"a quantity in {row.unit}", *row.spec.words)).removeprefix(" or ")
-    if words or row.spec.optional:
-        edit.setPlaceholderText(words + (" (empty: none)" if row.spec.optional else ""))
+    wanted = ([tr("a quantity in {}").format(row.unit)] if row.unit else []) + list(row.spec.words)
+    if wanted or row.spec.optional:
+        words = tr(" or ").join(wanted)
+        edit.setPlaceholderText(tr("{} (empty: none)").format(words).strip() if row.spec.optional else words)
     if expression:
         edit.setText(expression)
     if row.form == f.NUMBER:
-        return Field(row, edit, lambda: _number(edit.text(), label_of(row)))
+        return Field(row, edit, lambda: _number(edit.text(), row.label))
     return Field(row, edit, lambda: edit.text().strip())
 
 
@@ -165,10 +158,11 @@ def _number(text: str, name: str) -> float | str:
 
 def _choice(row: Row, shown: str) -> Field:
     combo = QtGui.QComboBox()
-    combo.addItems(list(row.spec.choices))
+    for choice in row.spec.choices:  # a job file and a macro have the word itself
+        combo.addItem(translated(choice), choice)
     _shrink(combo)
     combo.setCurrentIndex(row.spec.choices.index(shown))
-    return Field(row, combo, combo.currentText)
+    return Field(row, combo, combo.currentData)
 
 
 def _suggested(row: Row, shown: str, texts: list[str]) -> Field:
@@ -194,9 +188,9 @@ def _pose(row: Row, shown: tuple[float, ...]) -> Field:
     grid.setColumnStretch(1, 1)
     reads = []
     for index, (number, unit, name) in enumerate(zip(shown, _POSE_UNITS, _POSE_NAMES, strict=True)):
-        quantity = QuantityField(number, unit, f"{label_of(row)} {name}")
+        quantity = QuantityField(number, unit, f"{row.label} {name}")
         quantity.box.setObjectName(f"{row.name}{name}")
-        quantity.box.setToolTip(f"{name}: {row.spec.help}")
+        quantity.box.setToolTip(tr("{}: {}").format(name, translated(row.spec.help)))
         grid.addWidget(QtGui.QLabel(name), index, 0)
         grid.addWidget(quantity.box, index, 1)
         reads.append(quantity.read)

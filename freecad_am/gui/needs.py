@@ -12,7 +12,7 @@ from typing import Any
 from ..objects.stage import stage_of
 from ..objects.staleness import INFEASIBLE
 from .picking import is_mesh, usable
-from .texts import tr
+from .texts import tr, translated
 
 Need = Callable[[Any], str]
 
@@ -71,7 +71,7 @@ def joint_path(doc: Any) -> str:
     if any(obj.Key for obj in paths):
         return ""
     if paths:
-        return tr("{} has no result: {}").format(paths[-1].Label, paths[-1].Message)
+        return tr("{} has no result: {}").format(paths[-1].Label, translated(paths[-1].Message))
     return tr("First make a joint path: Joint Path…, or all stages at once: New Job….")
 
 
@@ -81,7 +81,7 @@ def feasible(doc: Any) -> str:
     if lacking or any(obj.Status != INFEASIBLE for obj in _stages(doc, "joint path")):
         return lacking
     last = list(_stages(doc, "joint path"))[-1]
-    return tr("{} cannot be carried out: {}").format(last.Label, last.Message)
+    return tr("{} cannot be carried out: {}").format(last.Label, translated(last.Message))
 
 
 def _stages(doc: Any, kind: str) -> Iterator[Any]:

@@ -55,6 +55,14 @@ class Row:
         """The outer unit, '' when there is none."""
         return f.OUTER_UNIT.get(self.spec.kind, "")
 
+    @property
+    def label(self) -> str:
+        """Its name in a panel: 'Layer height' for layer_height; the group is told by its box."""
+        words = [("from", "to")[step] if isinstance(step, int) else step for step in self.path]
+        words = words[1:] if len(words) > 1 and words[-1] not in ("from", "to") else words
+        text = " ".join(words).replace("_", " ")
+        return "RZ" if text == "rz" else text[0].upper() + text[1:]
+
     def inner(self, value: Any, where: str) -> Any:
         """The value as the dataclass holds it, from a property's value, a plain value in outer units or a text.
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts with figures put in are recognised by the templates they were made from.
+
+The core writes its messages in English, with the figures in them, and knows no language. Here a message is taken apart:
+'Box is a mesh; a wall is of faces.' is the template '{0} is a mesh; a wall is of faces.' and the value 'Box'.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+_FIELD = re.compile(r"\{(\d+)\}")
+
+
+@dataclass(frozen=True)
+class Template:
+    """A text with the places {0}, {1} and so on for what is put in; braces of the text itself are doubled."""
+
+    text: str
+
+    @cached_property
+    def literals(self) -> tuple[str, ...]:
+        """What stands before, between and after the places."""
+        return tuple(part.replace("{{", "{").replace("}}", "}") for part in _FIELD.split(self.text)[::2])
+
+    @cached_property
+    def fields(self) -> tuple[int, ...]:
+        """The numbers of the places, in their order."""
+        return tuple(map(int, _FIELD.findall(self.text)))
+
+    @cached_property
+    def weight(self) -> int:
+        """How much it says by itself: of two templates that fit a text the heavier one is meant."""
+        return len("".join(self.literals))
+
+    @cached_property
+    def key(self) -> str:
+        """Its longest literal part, which every text made from it holds."""
+        return max(self.literals, key=len)
+
+    @cached_property
+    def _pattern(self) -> re.Pattern[str]:
+        return re.compile("(.*?)".join(map(re.escape, self.literals)), re.DOTALL)
+
+    def values(self, text: str) -> dict[int, str] | None:
+        """What was put into the places of a text; None where it was not made from this template."""
+        found = self._pattern.fullmatch(text) if self.key in text else None
+        return None if found is None else dict(zip(self.fields, found.groups(), strict=True))
+
+
+class Phrases:
+    """All templates, those that say most first."""
+
+    def __init__(self, templates: Iterable[str]) -> None:
+        known = [Template(text) for text in dict.fromkeys(templates)]
+        self.plain = {one.literals[0] for one in known if not one.fields}
+        self.templates = sorted((one for one in known if one.fields), key=lambda one: -one.weight)
+
+    def find(self, text: str) -> tuple[Template, dict[int, str]] | None:
+        """The template of a text and what was put in; None for a text of none."""
+        if text in self.plain:
+            return Template(text.replace("{", "{{").replace("}", "}}")), {}
+        for one in self.templates:
+            values = one.values(text)
+            if values is not None:
+                return one, values
+        return None
+
+    def translated(self, text: str, translate: Callable[[str], str]) -> str:
+        """A text in another language, `translate` giving that of a template; itself where it is of none.
+
+        What was put in is a text of its own where it has several words, such as the remedy at the end of an error.
+        """
+        found = self.find(text)
+        if found is None:
+            return text
+        template, values = found
+        inner = {at: self.translated(value, translate) if " " in value else value for at, value in values.items()}
+        count = 1 + max(inner, default=-1)
+        return translate(template.text).format(*(inner.get(at, "") for at in range(count)))
