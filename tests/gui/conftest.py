@@ -27,6 +27,7 @@ class ModalWatch:
         self.application = qt_gui.QApplication
         self.label = qt_gui.QLabel
         self.texts = []
+        self.awaited = ()  # kinds of dialogs that the person has asked for
         self.first_seen = None
         self.timer = qt_core.QTimer()
         self.timer.setInterval(200)
@@ -35,7 +36,8 @@ class ModalWatch:
 
     def look(self):
         dialog = self.application.activeModalWidget()
-        if dialog is None or dialog.objectName() == "RoboticAM_Progress":  # of long work, as it should
+        # that of long work comes as it should
+        if dialog is None or dialog.objectName() == "RoboticAM_Progress" or isinstance(dialog, self.awaited):
             self.first_seen = None
             return
         if self.first_seen is None:
@@ -331,7 +333,7 @@ def hemisphere():
 @pytest.fixture
 def person(tmp_path, capfd, request):
     someone = Person(tmp_path)
-    watch = ModalWatch(someone.core, someone.widgets)
+    watch = someone.watch = ModalWatch(someone.core, someone.widgets)
     someone.open_workbench()
     mark = f"watching {request.node.name}"
     App.Console.PrintError(mark + "\n")
