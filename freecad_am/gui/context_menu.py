@@ -16,7 +16,7 @@ from ..objects.progress import Cancelled
 from ..objects.stage import stage_of
 from ..objects.staleness import UP_TO_DATE
 from . import recorded
-from .texts import tr
+from .texts import error_line, tr
 
 Act = Callable[[], Any]
 _NAME = "RoboticAM_Menu"
@@ -60,9 +60,9 @@ def renew(obj: Any, force: bool = False) -> None:
     try:
         Gui.doCommand(f"am.recompute({recorded.reference(obj)}{told})")
     except AmError as error:
-        App.Console.PrintError(error.line() + "\n")
+        App.Console.PrintError(error_line(error))
     except Cancelled:
-        App.Console.PrintWarning(f"{obj.Label}: cancelled\n")
+        App.Console.PrintWarning(tr("{}: cancelled").format(obj.Label) + "\n")
 
 
 def show_alone(group: Any) -> None:

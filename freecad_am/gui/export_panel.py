@@ -18,7 +18,7 @@ from . import icons, recorded
 from .colours import WRONG
 from .quantity import QuantityField
 from .stage_panel import CLOSED
-from .texts import tr
+from .texts import tr, translated_error
 
 STEP, DXF, CAM, TRAJECTORY = "step", "dxf", "cam", "trajectory"
 _FILES = {STEP: ".step", DXF: ".dxf"}
@@ -152,7 +152,7 @@ class ExportPanel:
         try:
             recorded.act(self.paths[self.path.currentIndex()], *self._call(kind))
         except AmError as error:
-            self.say(str(error))
+            self.say(translated_error(error))
         except Cancelled:
             self.say(tr("Cancelled: nothing was made."))
         except ReferenceError:

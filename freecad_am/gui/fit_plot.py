@@ -14,6 +14,7 @@ from ..plots.chart import Picture
 from ..plots.fit import fit
 from .plots.canvas import Canvas
 from .plots.words import in_words
+from .texts import tr
 
 HEIGHT = 210
 
@@ -38,15 +39,16 @@ class FitPlot(Canvas):
 def told(measured: Measured, model: BeadModel) -> str:
     """The fits in words."""
     lines = []
-    for name, found in (("Width", model.width), ("Height", model.height)):
+    for name, found in ((tr("Width"), model.width), (tr("Height"), model.height)):
         lines.append(
-            f"{name} = {found.m:.4g} v^(-1/3) {_signed(found.p)}/r {_signed(found.t)} mm, v in mm/min; "
-            f"R² {found.r_squared:.4f}, RMSE {found.rmse:.3f} mm"
+            f"{name} = {found.m:.4g} v^(-1/3) {_signed(found.p)}/r {_signed(found.t)} mm, "
+            + tr("v in mm/min; R² {:.4f}, RMSE {:.3f} mm").format(found.r_squared, found.rmse)
         )
     slow, fast = (MINUTE * speed for speed in model.speeds)
     lines.append(
-        f"{len(measured.width)} beads, {slow:g} to {fast:g} mm/min, r {model.radii[0]:g} to {model.radii[1]:g} mm, wire "
-        f"{MINUTE * model.wire_feed / 1000.0:g} m/min"
+        tr("{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min").format(
+            len(measured.width), slow, fast, model.radii[0], model.radii[1], MINUTE * model.wire_feed / 1000.0
+        )
     )
     return "\n".join(lines)
 
@@ -54,9 +56,12 @@ def told(measured: Measured, model: BeadModel) -> str:
 def speeds_told(model: BeadModel, width: float) -> str:
     """What speeds a width asks for, and whether the table has such."""
     asked = model.speed_for(width, np.array([model.radii[0], np.inf]))
-    ends = np.select([asked.too_slow, asked.too_fast], [" (the slowest of the table)", " (the fastest of the table)"], "")
-    tight, straight = (f"{MINUTE * speed:.0f} mm/min{end}" for speed, end in zip(asked.speed, ends, strict=True))
-    return f"{width:g} mm wide: {straight} where straight, {tight} where r is {model.radii[0]:g} mm"
+    ends = np.select(
+        [asked.too_slow, asked.too_fast],
+        [tr("{} mm/min (the slowest of the table)"), tr("{} mm/min (the fastest of the table)")], "{} mm/min",
+    )
+    tight, straight = (str(end).format(f"{MINUTE * speed:.0f}") for speed, end in zip(asked.speed, ends, strict=True))
+    return tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(width, straight, tight, model.radii[0])
 
 
 def _signed(number: float) -> str:

@@ -18,16 +18,17 @@ from .lines import Array
 from .pick_field import PickField
 from .pick_panel import PickPanel
 from .preview import Draft
+from .texts import marked, sentence, tr
 
 SOLIDS = Link(
-    "Solids", "", "The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.",
+    "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
     type_name="App::PropertyLinkList",
 )
 HUB = Link(
-    "Hub", "", "The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.",
+    "Hub", "",
+    marked("The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid."),
     required=False, type_name="App::PropertyLinkSub",
 )
-_PLACES = {"Source": "Solids", "Further": "Solids", "Substrate": "Hub", "BaseFaces": "Hub", "Fixtures": "Fixtures"}
 COARSE = 0.3  # mm
 _SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
 _OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_plane")
@@ -46,17 +47,17 @@ class HubPanel(PickPanel):
 
     def __init__(self, obj: Any = None) -> None:
         solids, hub, fixtures = ((), None, ()) if obj is None else _present(obj)
-        self.solids = PickField(SOLIDS, "Solids", solids, self._arm)
-        self.hub = PickField(HUB, "Hub", hub, self._arm, picking.FACE, meshes=True)
-        self.fixtures = PickField(FIXTURES, "Fixtures", fixtures, self._arm)
+        self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
+        self.hub = PickField(HUB, tr("Hub"), hub, self._arm, picking.FACE, meshes=True)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
         picks = [self.solids, self.hub, self.fixtures]
-        title = "Solids on hub" if obj is None else obj.Label
+        title = tr("Solids on hub") if obj is None else obj.Label
         super().__init__(title, picks, obj, HubNodes(pickable=False))
         for place in _OF_WALLS:
             field, _, fold = self.places[place]
             if field.value == field.row.outer(field.row.default):  # what is refused must be put right here
                 fold.enable(field.widget, False)
-                field.widget.setToolTip("Of walls alone: solids on a hub grow along the normals of its surface")
+                field.widget.setToolTip(tr("Of walls alone: solids on a hub grow along the normals of its surface"))
 
     # ---- what is picked
 
@@ -80,7 +81,8 @@ class HubPanel(PickPanel):
             self.solids.show()
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
-        return f"{pick.obj.Label} is another object; faces of a hub are of one object. Clear it first to start again."
+        told = tr("{} is another object; faces of a hub are of one object. Clear it first to start again.")
+        return told.format(pick.obj.Label)
 
     def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
         """The objects to deposit, faces of the first one that are the base, the hub, and faces of it."""
@@ -135,11 +137,14 @@ class HubPanel(PickPanel):
         return both
 
     def _link_places(self) -> dict[str, str]:
-        return _PLACES
+        return {
+            "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.hub.label,
+            "BaseFaces": self.hub.label, "Fixtures": self.fixtures.label,
+        }
 
     def _placed(self, error: AmError) -> tuple[str, str]:
         if error.code in _NO_BASE:
-            return self.hub.label, error.message[:1].upper() + error.message[1:]
+            return self.hub.label, sentence(error.message)
         return super()._placed(error)
 
     def _draw(self, made: Outcome, drawing: Drawing) -> str:
@@ -162,16 +167,15 @@ def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]]) -> str:
     lines = []
     for group, solids in zip(made.value.groups, contours, strict=True):
         surface, count = group.base.surface, len(group.bodies)
-        shape = f"R {surface.radius:.4g} mm"
-        if not surface.is_cylinder:
-            shape += f", half angle {np.degrees(surface.taper):.4g}°"
+        if surface.is_cylinder:
+            shape = tr("cylinder, R {:.4g} mm").format(surface.radius)
+        else:
+            shape = tr("cone, R {:.4g} mm, half angle {:.4g}°").format(surface.radius, np.degrees(surface.taper))
         length = sum(
             float(np.linalg.norm(np.diff(one, axis=0), axis=1).sum()) for solid in solids for one in solid
         )
-        kind = "cylinder" if surface.is_cylinder else "cone"
-        lines.append(
-            f"{count} {'solid' if count == 1 else 'solids'} on {group.base.name} ({kind}, {shape}); "
-            f"first layer: {sum(map(len, solids))} contours, {length:.1f} mm"
-        )
+        stands = tr("1 solid on {1} ({2})") if count == 1 else tr("{0} solids on {1} ({2})")
+        first = tr("first layer: {} contours, {:.1f} mm").format(sum(map(len, solids)), length)
+        lines.append(f"{stands.format(count, group.base.name, shape)}; {first}")
     findings: tuple[Issue, ...] = made.issues
-    return "\n".join([*lines, *(issue.message[:1].upper() + issue.message[1:] for issue in findings)])
+    return "\n".join([*lines, *(sentence(issue.message) for issue in findings)])

@@ -11,6 +11,7 @@ from PySide import QtGui
 
 from ..objects.stage import Link, Stage, stage_of
 from . import recorded
+from .texts import tr, translated
 
 
 class Input:
@@ -36,11 +37,11 @@ class StageChoice(Input):
     """One of the stages of a kind in the active document; the present one, else the selected one, else the last."""
 
     def __init__(self, link: Link, present: Any) -> None:
-        self.link, self.label = link, link.kind[0].upper() + link.kind[1:]
+        self.link, self.label = link, translated(link.label)
         self.document = App.ActiveDocument
         self.widget = QtGui.QComboBox()
         self.widget.setObjectName(f"Input{link.name}")
-        self.widget.setToolTip(link.help)
+        self.widget.setToolTip(translated(link.help))
         names = []
         for obj in self.document.Objects:
             stage = stage_of(obj)
@@ -48,7 +49,7 @@ class StageChoice(Input):
                 names.append(obj.Name)
                 self.widget.addItem(obj.Label, obj.Name)
         if not link.required:
-            self.widget.addItem("none", "")
+            self.widget.addItem(tr("none"), "")
         selected = [obj.Name for obj in Gui.Selection.getSelection() if obj.Name in names]
         wanted = present.Name if present is not None else (selected or names[-1:] or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(wanted)))
@@ -57,7 +58,7 @@ class StageChoice(Input):
     def missing(self) -> str:
         if not self.link.required or self.widget.count():
             return ""
-        return f"There is no {self.link.kind} in this document yet. Make one first: button {self.label} in the toolbar."
+        return tr("{0} is missing in this document. Make it first: button {0} in the toolbar.").format(self.label)
 
     def arguments(self) -> dict[str, str]:
         name = self.widget.currentData() if self.widget.count() else ""
@@ -68,19 +69,19 @@ class ShapeChoice(Input):
     """A shape with some of its faces, or an axis: what is selected, renewed by a button. `present`: as the link holds it."""
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
-        self.link, self.label, self.present = link, link.name, present
+        self.link, self.label, self.present = link, translated(link.label), present
         self.document = App.ActiveDocument
         self.widget = QtGui.QWidget()
-        self.widget.setToolTip(link.help)
+        self.widget.setToolTip(translated(link.help))
         row = QtGui.QHBoxLayout(self.widget)
         row.setContentsMargins(0, 0, 0, 0)
         self.text = QtGui.QLineEdit()
         self.text.setObjectName(link.name)
         self.text.setReadOnly(True)
-        self.text.setPlaceholderText("select" if link.required else "of the shape")
-        button = QtGui.QPushButton("Use selection")
+        self.text.setPlaceholderText(tr("select") if link.required else tr("of the shape"))
+        button = QtGui.QPushButton(tr("Use selection"))
         button.setObjectName(f"Use{link.name}")
-        button.setToolTip(f"Takes what is selected now. {link.help}")
+        button.setToolTip(tr("Takes what is selected now. {}").format(translated(link.help)))
         button.clicked.connect(self.take)
         row.addWidget(self.text)
         row.addWidget(button)
@@ -111,7 +112,7 @@ class ShapeChoice(Input):
     def missing(self) -> str:
         if not self.link.required or self.present is not None:
             return ""
-        return "Select the shape to deposit, or its faces, and press Use selection."
+        return tr("Select the shape to deposit, or its faces, and press Use selection.")
 
     def arguments(self) -> dict[str, str]:
         if self.present is None:
@@ -130,7 +131,8 @@ class ObjectChoice(ShapeChoice):
 
     @property
     def missing(self) -> str:
-        return "" if self.present is not None else f"Select the {self.link.key} and press its Use selection."
+        told = tr("{} is missing: select it and press its Use selection.")
+        return "" if self.present is not None else told.format(self.label)
 
     def arguments(self) -> dict[str, str]:
         return {self.link.key: "None" if self.present is None else recorded.reference(self.present[0])}
@@ -142,7 +144,7 @@ class ObjectsChoice(ShapeChoice):
     def __init__(self, link: Link, present: Any) -> None:
         self.objects, self.told = list(present or ()), bool(present)
         super().__init__(link, None, take_now=False)
-        self.text.setPlaceholderText("none")
+        self.text.setPlaceholderText(tr("none"))
 
     def take(self, *_: Any) -> None:
         """Take what is selected now."""
@@ -167,12 +169,11 @@ class ObjectsChoice(ShapeChoice):
 class NameChoice(Input):
     """The name of a program."""
 
-    label = "Name"
-
     def __init__(self, name: str) -> None:
+        self.label = tr("Name")
         self.widget = QtGui.QLineEdit(name)
         self.widget.setObjectName("ProgramName")
-        self.widget.setToolTip("Name of the program and of its files; the controller may refuse some")
+        self.widget.setToolTip(tr("Name of the program and of its files; the controller may refuse some"))
 
     def arguments(self) -> dict[str, str]:
         return {"name": repr(self.widget.text().strip())}

@@ -23,7 +23,7 @@ from .guess import Guess
 from .later import Background
 from .picking import Pick
 from .stage_panel import CLOSED
-from .texts import tr
+from .texts import tr, translated, translated_error
 from .worker import Worker
 
 _TOLD = 15000  # ms that the next step is told on the status bar
@@ -127,7 +127,7 @@ class JobPanel:
         try:
             found = self._meaning()
         except AmError as error:
-            self.guess = Guess(self.asked, "", missing=str(error))
+            self.guess = Guess(self.asked, "", missing=translated_error(error))
             self._show()
             return
         if isinstance(found, Guess):
@@ -146,7 +146,7 @@ class JobPanel:
         try:
             self._understood(worker.result())
         except AmError as error:
-            self._understood(Guess(guess.REVOLUTION, "", missing=str(error)))
+            self._understood(Guess(guess.REVOLUTION, "", missing=translated_error(error)))
         except Cancelled:
             pass
 
@@ -194,11 +194,11 @@ class JobPanel:
             before = {obj.Name for obj in self.document.Objects}
             recorded.make(self.document, "make_all", self._arguments())
         except AmError as error:
-            self.say(str(error))
+            self.say(translated_error(error))
         except Cancelled:
             self.say(tr("Cancelled: the document is as it was."))
         except ReferenceError:
-            self.say(CLOSED)
+            self.say(tr(CLOSED))
         else:
             self.close()
             _tell_next([obj for obj in api.stages_of(self.document) if obj.Name not in before])
@@ -281,7 +281,7 @@ def _tell_next(stages: list[Any]) -> None:
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
         text = tr("{} is {}: {}. Double-click a stage in the tree to change it.").format(
-            wrong.Label, wrong.Status, wrong.Message.rstrip("."))
+            wrong.Label, translated(wrong.Status), translated(wrong.Message.rstrip(".")))
     elif stages[-1].Proxy.kind == "program":
         text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
     else:

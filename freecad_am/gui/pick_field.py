@@ -12,6 +12,7 @@ from ..objects.stage import Link
 from . import recorded
 from .inputs import Input
 from .picking import EDGE, FACE, Pick, is_mesh
+from .texts import tr, translated
 
 _LIST = "App::PropertyLinkList"
 
@@ -31,15 +32,17 @@ class PickField(Input):
         self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()
         self.widget.setObjectName(f"Input{link.name}")
-        self.widget.setToolTip(link.help)
+        self.widget.setToolTip(translated(link.help))
         self.text = QtGui.QLineEdit()
         self.text.setObjectName(link.name)
         self.text.setReadOnly(True)
         self.text.setMinimumWidth(40)
-        self.pick = _button("Pick", f"Pick{link.name}", f"Then click in the tree or the 3D view. {link.help}")
+        self.pick = _button(
+            tr("Pick"), f"Pick{link.name}", tr("Then click in the tree or the 3D view. {}").format(translated(link.help))
+        )
         self.pick.setCheckable(True)
         self.pick.toggled.connect(lambda on: toggled(self, on))
-        self.empty = _button("×", f"Clear{link.name}", "Clears it")
+        self.empty = _button("×", f"Clear{link.name}", tr("Clears it"))
         self.empty.clicked.connect(self.clear)
         row = QtGui.QHBoxLayout(self.widget)
         row.setContentsMargins(0, 0, 0, 0)
@@ -93,10 +96,13 @@ class PickField(Input):
         text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in self.picks)
         self.text.setText(text)
         self.text.setCursorPosition(0)
-        self.text.setToolTip(text or self.link.help)
-        wanted = {FACE: "faces or an object", EDGE: "edges"}.get(self.element, "objects" if self.several else "an object")
-        waiting = f"click {wanted}" if self.pick.isChecked() else "none"
-        self.text.setPlaceholderText(waiting if not self.link.required or self.pick.isChecked() else "pick")
+        self.text.setToolTip(text or translated(self.link.help))
+        if self.pick.isChecked():
+            several = tr("click objects") if self.several else tr("click an object")
+            told = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(self.element, several)
+        else:
+            told = tr("pick") if self.link.required else tr("none")
+        self.text.setPlaceholderText(told)
         self.empty.setEnabled(bool(self.picks))
 
     # ---- for the panel
@@ -105,7 +111,7 @@ class PickField(Input):
     def missing(self) -> str:
         if not self.link.required or self.picks:
             return ""
-        return f"{self.label} is missing: click it in the tree or the 3D view."
+        return tr("{} is missing: click it in the tree or the 3D view.").format(self.label)
 
     def value(self) -> Any:
         """What is picked as the link's property holds it."""

@@ -20,7 +20,7 @@ from .later import Background
 from .pick_field import PickField
 from .preview import Draft, Preview
 from .stage_panel import StagePanel
-from .texts import tr
+from .texts import tr, translated, translated_error
 from .wall_nodes import WallNodes
 from .worker import Worker
 
@@ -180,8 +180,10 @@ class PickPanel(StagePanel):
             self.tell(place, "")
         lacking = self._lacking()
         if lacking is not None:
-            verb, them = ("are", "them") if lacking.several else ("is", "it")
-            self._say(f"{lacking.label} {verb} missing: click {them} in the tree or the 3D view.", False)
+            missing = tr("{} are missing: click them in the tree or the 3D view.") if lacking.several else tr(
+                "{} is missing: click it in the tree or the 3D view."
+            )
+            self._say(missing.format(lacking.label), False)
             self._draw_without()
             return
         try:
@@ -214,11 +216,11 @@ class PickPanel(StagePanel):
     def _refuse(self, error: AmError) -> None:
         place, text = self._placed(error)
         if place:
-            self._say("No preview: see the field marked.", False)
+            self._say(tr("No preview: see the field marked."), False)
             self._unfolded(place)
             self.tell(place, text)
         else:
-            self._say(str(error), True)
+            self._say(translated_error(error), True)
         self._draw_without()
 
     def _values(self) -> dict[str, Any]:
@@ -242,8 +244,8 @@ class PickPanel(StagePanel):
         named += [(f"{name}.{link}", place) for link, place in self._link_places().items() for name in names]
         for label, place in sorted(named, key=lambda pair: -len(pair[0])):
             if error.where == label or error.where.startswith(f"{label} "):
-                return place, f"{error.where.removeprefix(label)} {error.message}".strip()
-        return "", str(error)
+                return place, f"{error.where.removeprefix(label)} {translated(error.message)}".strip()
+        return "", translated_error(error)
 
     def _say(self, text: str, wrong: bool) -> None:
         self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")

@@ -112,7 +112,10 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     faced = [pick for pick in walls if pick.names]
     if len(picks) > 2:
         wall = faced[0] if len(faced) == 1 else None
-        return wall, None, f"{len(picks)} objects are selected; pick the {'wall and the ' * (wall is None)}substrate"
+        told = tr("{} objects are selected; pick the wall and the substrate") if wall is None else tr(
+            "{} objects are selected; pick the substrate"
+        )
+        return wall, None, told.format(len(picks))
     wall = (faced or walls or [None])[0]
     others = [pick for pick in picks if pick is not wall]
     return wall, Pick(others[0].obj) if len(others) == 1 else None, ""

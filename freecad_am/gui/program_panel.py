@@ -18,6 +18,7 @@ from . import icons
 from .colours import WRONG
 from .simulation import told
 from .simulation.run import run_of
+from .texts import error_line, tr, translated, translated_error
 
 
 class ProgramWindow:
@@ -47,7 +48,9 @@ class ProgramWindow:
         font = QtGui.QFont("monospace")
         font.setStyleHint(QtGui.QFont.TypeWriter)
         self.text.setFont(font)
-        self.export_button = _button("Export…", "export", "Writes all files of the program into a folder", self._export)
+        self.export_button = _button(
+            tr("Export…"), "export", tr("Writes all files of the program into a folder"), self._export
+        )
         self._lay_out()
         self.load()
         self.choice.currentIndexChanged.connect(self._show)
@@ -68,10 +71,12 @@ class ProgramWindow:
         self.choice.blockSignals(False)
         self.export_button.setEnabled(bool(names))
         fits = self.obj.Status == UP_TO_DATE
-        warning = "" if fits or not names else "This text is of an earlier plan; do not run it. "
-        self.state.setText(f"{warning}Status: {self.obj.Status}. {self.obj.Message}".rstrip(" "))
+        warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
+        status = tr("Status: {}.").format(translated(self.obj.Status))
+        self.state.setText(" ".join(filter(None, (warning, status, translated(self.obj.Message)))))
         try:
-            self.sums.setText("  ·  ".join(f"{name}: {value}" for name, value in told.totals(run_of(self.obj))))
+            sums = told.totals(run_of(self.obj))
+            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in sums))
         except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
             self.sums.setText("")
         self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
@@ -82,7 +87,7 @@ class ProgramWindow:
         column, row = QtGui.QVBoxLayout(self.window), QtGui.QHBoxLayout()
         row.addWidget(self.choice, 1)
         row.addWidget(self.export_button)
-        row.addWidget(_button("Close", "close", "Closes this window", lambda *_: self.window.close()))
+        row.addWidget(_button(tr("Close"), "close", tr("Closes this window"), lambda *_: self.window.close()))
         column.addLayout(row)
         column.addWidget(self.text, 1)
         column.addWidget(self.sums)
@@ -97,7 +102,7 @@ class ProgramWindow:
         try:
             self.state.setText(export(self.obj, self.window))
         except ReferenceError:
-            self.state.setText("The document is closed; open it again to export.")
+            self.state.setText(tr("The document is closed; open it again to export."))
 
 
 def _button(text: str, name: str, help: str, act: Any) -> Any:
@@ -133,15 +138,15 @@ def _of(obj: Any) -> ProgramWindow | None:
 def export(obj: Any, window: Any = None) -> str:
     """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it."""
     first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
-    folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), "Export program", first)
+    folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), tr("Export program"), first)
     if not folder:
-        return f"Status: {obj.Status}"
+        return tr("Status: {}.").format(translated(obj.Status))
     try:
         paths = api.export(obj, folder)
     except AmError as error:
-        App.Console.PrintError(error.line() + "\n")
-        return str(error)
+        App.Console.PrintError(error_line(error))
+        return translated_error(error)
     preferences.keep("ExportFolder", folder)
-    text = f"{len(paths)} files written to {folder}"
+    text = tr("{} files written to {}").format(len(paths), folder)
     Gui.getMainWindow().statusBar().showMessage(text, 5000)
     return text

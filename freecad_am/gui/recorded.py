@@ -12,6 +12,7 @@ import FreeCADGui as Gui
 from .. import api
 from ..objects.staleness import FAILED, INFEASIBLE
 from .busy import busy
+from .texts import tr, translated
 
 IMPORT = "import freecad_am.api as am"
 
@@ -56,7 +57,7 @@ def _run(document: Any, function: str, first: str, arguments: dict[str, str]) ->
         Gui.doCommand(f"am.{function}({', '.join(texts)})")
     new = [told for told in _wrong(document) if told not in before]
     for name, status, message in new[:1]:  # those that follow say it again
-        App.Console.PrintError(f"{name} is {status}: {message}\n")
+        App.Console.PrintError(tr("{} is {}: {}").format(name, translated(status), translated(message)) + "\n")
 
 
 def _wrong(document: Any) -> list[tuple[str, str, str]]:

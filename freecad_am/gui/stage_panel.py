@@ -14,17 +14,18 @@ from PySide import QtCore, QtGui
 from ..core.issues import AmError, InputError
 from ..objects import expressions, preferences
 from ..objects.progress import Cancelled
-from ..objects.rows import rows
+from ..objects.rows import group_of, rows
 from ..objects.stage import Stage, issues_of
 from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
 from .later import Later
-from .texts import tr
+from .texts import marked, tr, translated, translated_error
 
 MOST_ISSUES = 6
+ADVANCED = marked("{}: advanced")
 ROOM_IN_BUTTON = 26  # pixels beside its text
-CLOSED = "The document or object of this panel is gone; cancel and open the panel again."
+CLOSED = marked("The document or object of this panel is gone; cancel and open the panel again.")
 
 
 class StagePanel:
@@ -51,7 +52,7 @@ class StagePanel:
         self.heading: Any = None
         self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
         if choices:
-            self.heading = Fold("Inputs", obj is None)
+            self.heading = Fold(tr("Inputs"), obj is None)
             for choice in choices:
                 self.notes[choice.label] = self.heading.add(choice.label, choice.widget)
             self.column.addWidget(self.heading.widget)
@@ -90,10 +91,11 @@ class StagePanel:
         folds: dict[str, Fold] = {}
         for row in rows(section.cls):
             nested = isinstance(row.path[-1], str) and len(row.path) > 1
-            title = str(row.path[0]).replace("_", " ").capitalize() if nested else section.group
-            title = f"{section.group}: advanced" if row.spec.advanced else title
+            title = group_of(row) if nested else section.group
+            title = ADVANCED if row.spec.advanced else title
             if title not in folds:
-                folds[title] = Fold(title, title == section.group)
+                told = tr(ADVANCED).format(translated(section.group)) if title == ADVANCED else translated(title)
+                folds[title] = Fold(told, title == section.group)
             value = preferences.proposed(section.prefix, row) if current is None else current[row.key]
             follows = "" if self.obj is None else expressions.of(self.obj, row)
             field = fields.make(row, value, suggestions.of(section.prefix, row.key), follows, section.prefix)
@@ -101,7 +103,8 @@ class StagePanel:
                 field.differs_from(row.default)
             self._mark_driven(field)
             self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(field.heading, field.widget)
-            name = field.label if title == section.group or row.spec.advanced else f"{title}, {field.label.lower()}"
+            own = title == section.group or row.spec.advanced
+            name = field.label if own else tr("{}, {}").format(translated(title), field.label.lower())
             self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
         for fold in folds.values():
             self.column.addWidget(fold.widget)
@@ -121,17 +124,21 @@ class StagePanel:
         expression = driven.get(field.row.name)
         if expression and field.row.form not in expressions.FOLLOW:
             field.widget.setEnabled(False)
-            field.widget.setToolTip(f"Driven by the expression {expression}")
+            field.widget.setToolTip(tr("Driven by the expression {}").format(expression))
 
     def _show_findings(self) -> None:
         if self.obj is None:
             return
         found = issues_of(self.obj)
-        lines = [self.obj.Message] if self.obj.Message and not found else []
-        lines += [f"{' '.join(filter(None, (issue.level, issue.where)))}: {issue.message}" for issue in found[:MOST_ISSUES]]
+        lines = [translated(self.obj.Message)] if self.obj.Message and not found else []
+        lines += [
+            tr("{}: {}").format(
+                " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)
+            ) for issue in found[:MOST_ISSUES]
+        ]
         if len(found) > MOST_ISSUES:
-            lines.append(f"and {len(found) - MOST_ISSUES} more")
-        self.findings.setText("\n".join([f"Status: {self.obj.Status}", *lines]))
+            lines.append(tr("and {} more").format(len(found) - MOST_ISSUES))
+        self.findings.setText("\n".join([tr("Status: {}").format(translated(self.obj.Status)), *lines]))
         self.findings.show()
 
     def _inputs(self) -> dict[str, str]:
@@ -155,7 +162,7 @@ class StagePanel:
         """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
         place, text = self._placed(error)
         if not place:
-            self.say(str(error))
+            self.say(translated_error(error))
             return
         self.marked.add(place)
         self.tell(place, text)
@@ -168,13 +175,13 @@ class StagePanel:
         place, names = error.where.replace(".", "_"), self._names()
         for known, (field, _, _) in self.places.items():
             if known == place or error.where in [f"{name}.{field.row.name}" for name in names]:
-                return known, error.message
+                return known, translated(error.message)
         for choice in self.choices:
             own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
             missing = error.code == "NO_INPUT" and error.message.startswith(f"{own} is missing")
             if missing or error.where in [f"{name}.{own}" for name in names]:
-                return choice.label, error.message
-        return "", str(error)
+                return choice.label, translated(error.message)
+        return "", translated_error(error)
 
     def _names(self) -> list[str]:
         """What errors call the stage: by its label, while it is made and where it is but previewed."""
@@ -211,7 +218,7 @@ class StagePanel:
         try:
             found = self._evaluated(field, value)
         except InputError as error:
-            return error.message, True
+            return translated(error.message), True
         return f"= {getattr(found, 'UserString', found)}", False
 
     def _evaluated(self, field: fields.Field, value: str) -> Any:
@@ -277,7 +284,7 @@ class StagePanel:
         except Cancelled:
             self.say(tr("Cancelled: the document is as it was."))
         except ReferenceError:
-            self.say(CLOSED)
+            self.say(tr(CLOSED))
         else:
             return True
         return False
@@ -320,7 +327,7 @@ def _bring_into_sight(form: Any, widget: Any) -> None:
 def show(panel: Any) -> None:
     """Open a task panel, unless another one is open."""
     if Gui.Control.activeDialog():
-        App.Console.PrintWarning("Another task panel is open; close it first.\n")
+        App.Console.PrintWarning(tr("Another task panel is open; close it first.") + "\n")
         return
     Gui.Control.showDialog(panel)
 

@@ -38,9 +38,16 @@ def translated(text: str) -> str:
     return _translated(text, tr("en"))
 
 
-def translated_error(error: AmError) -> str:
+def translated_error(error: BaseException) -> str:
     """An error with the place it belongs to, in the language of the window."""
+    if not isinstance(error, AmError):
+        return str(error)
     return tr("{}: {}").format(translated(error.where), translated(error.message))
+
+
+def error_line(error: AmError) -> str:
+    """An error as a line of the report view, with the code that it has in the headless commands."""
+    return f"error[{error.code}] {translated_error(error)}\n"
 
 
 def sentence(text: str) -> str:

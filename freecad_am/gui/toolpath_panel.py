@@ -16,6 +16,7 @@ from . import inputs
 from .fit_plot import FitPlot, speeds_told, told
 from .later import Later
 from .stage_panel import StagePanel
+from .texts import tr, translated_error
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
 NONE = "none"
@@ -28,7 +29,7 @@ class ToolpathPanel(StagePanel):
     to_be_seen = False  # whether the fit is scrolled to when it is shown next
 
     def __init__(self, obj: Any = None) -> None:
-        title = "Toolpath" if obj is None else obj.Label
+        title = tr("Toolpath") if obj is None else obj.Label
         super().__init__(Toolpath, title, inputs.of(Toolpath, obj), obj)
         self.plot = FitPlot()
         self.fit = QtGui.QLabel()
@@ -36,9 +37,9 @@ class ToolpathPanel(StagePanel):
         self.fit.setWordWrap(True)
         self.fit.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         field, _, fold = self.places[MODEL]
-        self.choose = QtGui.QPushButton("Choose a table…")
+        self.choose = QtGui.QPushButton(tr("Choose a table…"))
         self.choose.setObjectName("ChooseBeadTable")
-        self.choose.setToolTip("Takes the beads that were measured from a file of comma separated values")
+        self.choose.setToolTip(tr("Takes the beads that were measured from a file of comma separated values"))
         self.choose.setAutoDefault(False)
         self.choose.clicked.connect(self._choose)
         for more in (self.fit, self.plot, self.choose):
@@ -50,8 +51,8 @@ class ToolpathPanel(StagePanel):
 
     def _choose(self, *_: Any) -> None:
         """Ask for the file of a calibration table."""
-        first, kinds = os.path.dirname(self.document.FileName), "Tables (*.csv);;All files (*)"
-        path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), "Calibration table", first, kinds)
+        first, kinds = os.path.dirname(self.document.FileName), f"{tr('Tables')} (*.csv);;{tr('All files')} (*)"
+        path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), tr("Calibration table"), first, kinds)
         if path:
             self.places[MODEL][0].widget.setEditText(path)
 
@@ -72,7 +73,7 @@ class ToolpathPanel(StagePanel):
             measured = bead_table.measured(name)
             model = bead_model.fit(*measured)
         except InputError as error:
-            note.setText(f"{error.where}: {error.message}")
+            note.setText(translated_error(error))
             note.show()
             return
         width = self._width()

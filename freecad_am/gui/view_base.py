@@ -11,6 +11,7 @@ from pivy import coin
 from ..core.issues import InputError
 from ..objects.job_group import is_group
 from . import icons
+from .texts import error_line
 
 MODE = "Drawing"
 
@@ -77,7 +78,7 @@ class StageView:
             self.drawn = obj.Key
         except InputError as error:
             if not obj.Document.Transacting:  # within undo the parts of a result come back one by one
-                App.Console.PrintError(error.line() + "\n")
+                App.Console.PrintError(error_line(error))
             return
         self.style(obj.ViewObject)
 

@@ -16,9 +16,10 @@ from . import picking
 from .pick_field import PickField
 from .pick_panel import PickPanel
 from .preview import Draft
+from .texts import marked, sentence, tr, translated
 from .wall_nodes import WallNodes, first_curves, triangles_of
 
-_NAMES = {"Source": "Wall", "Substrate": "Substrate"}
+_NAMES = {"Source": marked("Wall")}
 _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
 
 
@@ -35,7 +36,7 @@ class WallPanel(PickPanel):
             )
             for link in SurfaceFeature.links
         ]
-        super().__init__("Wall on part" if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+        super().__init__(tr("Wall on part") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         wall, substrate, unclear = picking.proposal(picks)
@@ -62,10 +63,11 @@ class WallPanel(PickPanel):
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         if field.element == picking.EDGE:
-            return "Click edges of one object."
+            return tr("Click edges of one object.")
         if picking.is_mesh(pick.obj):
-            return f"{pick.obj.Label} is a mesh; a wall is of faces."
-        return f"{pick.obj.Label} is another object; faces of a wall are of one object. Clear it first to start again."
+            return tr("{} is a mesh; a wall is of faces.").format(pick.obj.Label)
+        told = tr("{} is another object; faces of a wall are of one object. Clear it first to start again.")
+        return told.format(pick.obj.Label)
 
     def _links(self) -> dict[str, Any]:
         return {field.link.name: field.value() for field in self.picks}
@@ -95,13 +97,14 @@ class WallPanel(PickPanel):
 
 
 def _label(link: Any) -> str:
-    words = link.key.replace("_", " ")
-    return _NAMES.get(link.name, words[0].upper() + words[1:])
+    return tr(_NAMES[link.name]) if link.name in _NAMES else translated(link.label)
 
 
 def _told(curves: list[Any], issues: tuple[Issue, ...]) -> str:
     lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
-    kinds = ["closed" if np.allclose(curve[0], curve[-1], atol=1e-9) else "open" for curve in curves]
-    parts = [f"{kind}, {length:.1f} mm" for kind, length in zip(kinds, lengths, strict=True)]
-    findings = (issue.message[:1].upper() + issue.message[1:] for issue in issues)
-    return "\n".join([f"First layer: {'; '.join(parts)}", *findings])
+    parts = [
+        (tr("closed, {:.1f} mm") if np.allclose(curve[0], curve[-1], atol=1e-9) else tr("open, {:.1f} mm")).format(length)
+        for curve, length in zip(curves, lengths, strict=True)
+    ]
+    findings = (sentence(issue.message) for issue in issues)
+    return "\n".join([tr("First layer: {}").format("; ".join(parts)), *findings])

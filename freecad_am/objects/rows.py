@@ -107,6 +107,11 @@ class Row:
         return f"{shown!r} {self.unit}".strip()
 
 
+def group_of(row: Row) -> str:
+    """What a panel calls the group that a row is nested in: 'Seam' for seam.angle."""
+    return str(row.path[0]).replace("_", " ").capitalize()
+
+
 def property_name(key: str) -> str:
     """LayerHeight for layer_height."""
     return "".join(word[0].upper() + word[1:] for word in re.split(r"[_.]", key))

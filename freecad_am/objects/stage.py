@@ -44,6 +44,12 @@ class Link:
     type_name: str = "App::PropertyLink"
 
     @property
+    def label(self) -> str:
+        """Its name in a panel: the kind of stage, or 'Start edges' for StartEdges."""
+        words = (self.kind or self.key).replace("_", " ")
+        return words[0].upper() + words[1:]
+
+    @property
     def key(self) -> str:
         """Its name as a macro keyword: joint_path for JointPath."""
         return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in self.name).lstrip("_")

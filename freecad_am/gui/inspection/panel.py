@@ -17,7 +17,7 @@ from ...core.issues import AmError
 from ...objects.inspection import Inspection
 from ..fold import Fold
 from ..stage_panel import StagePanel
-from ..texts import tr
+from ..texts import tr, translated_error
 from .histogram import Histogram
 from .inputs import FileChoice, PlannedChoice
 
@@ -113,7 +113,7 @@ class InspectionPanel(StagePanel):
                 paths = api.export(self.obj, folder)
                 Gui.getMainWindow().statusBar().showMessage(tr("{} files written").format(len(paths)), 5000)
         except AmError as error:
-            self.say(str(error))
+            self.say(translated_error(error))
         except ReferenceError:
             self.say(tr("The document is closed; open it again to save its figures."))
 

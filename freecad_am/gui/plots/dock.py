@@ -17,7 +17,7 @@ from ...plots.rows import OVER, PATH, TIME
 from ...plots.source import Source
 from ..follower import Follower
 from ..later import Background, Later
-from ..texts import tr
+from ..texts import tr, translated_error
 from ..worker import Worker
 from . import saving, words
 from .canvas import STEP, Canvas
@@ -173,7 +173,7 @@ class PlotsDock(Follower):
         try:
             key, make = key_of(obj), maker_of(obj)
         except AmError as error:
-            self._show(None, str(error))
+            self._show(None, translated_error(error))
             return
         known = self.source[1] if self.source is not None and self.source[0] == key else None
         name, over = self.which.currentData(), self.over.currentData()
@@ -208,7 +208,7 @@ class PlotsDock(Follower):
             source, picture = worker.result()
             picture = words.in_words(picture)
         except AmError as error:
-            self._show(None, str(error))
+            self._show(None, translated_error(error))
             return
         self.source = (key, source)
         self._show(picture, picture.lacking, self.shown == shown)

@@ -12,7 +12,7 @@ from ...core.issues import AmError
 from ...objects import hooks
 from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
-from ..texts import tr
+from ..texts import error_line, tr, translated_error
 from . import dock
 from .run import prepared
 
@@ -45,8 +45,8 @@ def show(obj: Any) -> None:
     try:
         run = hooks.carry_out(prepared(obj), tr("Simulation"))
     except AmError as error:
-        App.Console.PrintError(error.line() + "\n")
-        _say(str(error))
+        App.Console.PrintError(error_line(error))
+        _say(translated_error(error))
         return
     except Cancelled:
         return

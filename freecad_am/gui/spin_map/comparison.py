@@ -15,7 +15,7 @@ from ...core.planning.task import Task
 from ...objects import progress
 from ...objects.progress import Cancelled
 from ..later import Background
-from ..texts import tr
+from ..texts import tr, translated_error
 from ..worker import Worker
 from .source import Source
 
@@ -55,7 +55,7 @@ class Comparison:
         try:
             found = worker.result()
         except (AmError, Cancelled) as error:
-            self.tell(str(error))
+            self.tell(translated_error(error))
             found = ()
         self.done(found)
 

@@ -20,7 +20,7 @@ from ...objects.stage import first_message, issues_of
 from .. import recorded
 from ..later import Background, Later
 from ..simulation.dock import _Dock
-from ..texts import tr
+from ..texts import tr, translated_error
 from ..worker import Worker
 from .board import Board
 from .canvas import Canvas, Curve, Dragged, Handle
@@ -104,7 +104,7 @@ class SpinMapDock:
         try:
             self._take(source_of(self.obj), self.board)
         except (AmError, ReferenceError, RuntimeError, AttributeError) as error:
-            self.end(str(error))
+            self.end(translated_error(error))
 
     # ---- the cells
 
@@ -321,7 +321,7 @@ class SpinMapDock:
         try:
             recorded.change(self.obj, arguments)
         except (AmError, Cancelled, ReferenceError) as error:
-            self.form.tell(str(error) or tr("Cancelled: the document is as it was."), True)
+            self.form.tell(translated_error(error) or tr("Cancelled: the document is as it was."), True)
             return
         self.renewing.timer.stop()
         self.renew()

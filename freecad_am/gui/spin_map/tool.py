@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..texts import tr
+from ..texts import error_line, tr, translated_error
 from . import dock
 
 
@@ -24,8 +24,8 @@ def spin_map() -> None:
     try:
         dock.show(chosen[0] if chosen else made[-1])
     except AmError as error:
-        App.Console.PrintWarning(error.line() + "\n")
-        Gui.getMainWindow().statusBar().showMessage(str(error), 8000)
+        App.Console.PrintWarning(error_line(error))
+        Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)
 
 
 def _joint_path(obj: Any) -> Any:
