@@ -16,7 +16,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..objects import progress
-from .texts import tr
+from .texts import tr, translated
 from .worker import Worker
 
 NAME = "RoboticAM_Progress"
@@ -146,7 +146,7 @@ class _Dialog:
         """What is computed, how far it is (None: unknown) and what it is doing."""
         if self.box is None:
             return
-        shown = f"{title}: {text}" if text else tr("{} is being computed").format(title)
+        shown = tr("{}: {}").format(title, translated(text)) if text else tr("{} is being computed").format(title)
         if self.text.text() != shown:
             self.text.setText(shown)
         self.bar.setRange(0, 0 if fraction is None else STEPS)

@@ -156,7 +156,7 @@ class ExportPanel:
         except Cancelled:
             self.say(tr("Cancelled: nothing was made."))
         except ReferenceError:
-            self.say(CLOSED)
+            self.say(tr(CLOSED))
         else:
             if kind in _FILES:
                 path = self.file.text().strip()

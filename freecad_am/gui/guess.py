@@ -15,7 +15,7 @@ from ..core.issues import InputError
 from ..objects.shapes import global_shape, taken
 from . import picking
 from .picking import Pick
-from .texts import tr
+from .texts import tr, translated
 
 REVOLUTION, SURFACE, DEVELOPABLE = "revolution", "surface", "developable"  # as macros and job files call them
 _TOUCHING = 0.05  # mm from the surface of a hub
@@ -79,7 +79,7 @@ def _not_turned(pick: Pick, shape: Any, faces: Sequence[str], error: InputError)
     """What a shape means that is not of revolution."""
     if error.code == "NO_AXIS":
         missing = tr("Use the tool Feature…: it takes an edge as the axis.")
-        return Guess(REVOLUTION, error.message, (pick,), None, missing)
+        return Guess(REVOLUTION, translated(error.message), (pick,), None, missing)
     chosen = [shape.getElement(name) for name in faces]
     if chosen and shape.Solids and all(face.Surface.TypeId in _ROUND for face in chosen):
         return Guess(DEVELOPABLE, tr("cylinders and cones of {} are picked as hub").format(pick.obj.Label),

@@ -19,6 +19,7 @@ from ..core.simulation import robot_links, table_links
 from ..core.simulation.solids import BODY, BRIGHT, DARK, Solid
 from ..objects import preferences
 from .lines import fill
+from .texts import error_line
 
 Array = NDArray[np.float64]
 
@@ -108,7 +109,7 @@ def _of_file(shape: LinkShape) -> Any:
         points, triangles = looks.triangles(shape.path)
     except InputError as error:
         told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
-        App.Console.PrintError(f"{told.line()}\n")
+        App.Console.PrintError(error_line(told))
         return None
     group, hints = coin.SoGroup(), coin.SoShapeHints()
     hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.UNKNOWN_SHAPE_TYPE

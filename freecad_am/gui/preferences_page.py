@@ -14,7 +14,7 @@ from ..core.issues import InputError
 from ..objects import preferences
 from ..posts import catalogue
 from . import fields, suggestions
-from .texts import tr
+from .texts import tr, translated
 
 
 class PreferencesPage:
@@ -63,7 +63,7 @@ class PreferencesPage:
             value = row.inner(preferred[row.key], row.name) if row.key in preferred else row.default
             field = fields.make(row, value, section="process")
             _without_expression(field.widget)
-            rows.addRow(_label(row), field.widget)
+            rows.addRow(translated(preferences.label(row)), field.widget)
             self.process[row.key] = field
 
     def _folders(self) -> None:
@@ -148,15 +148,8 @@ class PreferencesPage:
                 preferences.check(field.row, inner)
                 found[key] = float(field.row.outer(inner))
             except InputError as error:
-                _warn(f"{field.label}: {error.message}")
+                _warn(tr("{}: {}").format(field.label, translated(error.message)))
         return found
-
-
-def _label(row: Any) -> str:
-    """'Wire diameter', 'Wait between layers'."""
-    *before, last = (str(step).replace("_", " ") for step in row.path)
-    words = [last, *before] if before and before[0].startswith("between") else [*before, last]
-    return " ".join(words).capitalize() + (" (g/cm³)" if row.key == "density" else "")
 
 
 def _without_expression(widget: Any) -> None:
@@ -167,4 +160,4 @@ def _without_expression(widget: Any) -> None:
 
 
 def _warn(text: str) -> None:
-    App.Console.PrintWarning(f"Robotic AM, {tr('Preferences')}: {text}\n")
+    App.Console.PrintWarning(tr("Robotic AM, preferences: {}").format(text) + "\n")

@@ -12,7 +12,7 @@ import FreeCAD as App
 from ..core.issues import AmError
 from .phrases import Phrases
 
-CONTEXT, MESSAGES = "RoboticAM", "RoboticAM messages"
+CONTEXT = "RoboticAM"
 FOLDER = Path(__file__).resolve().parents[2] / "resources" / "translations"
 
 
@@ -58,7 +58,7 @@ def sentence(text: str) -> str:
 
 @lru_cache(maxsize=4096)
 def _translated(text: str, language: str) -> str:
-    return _phrases().translated(text, lambda template: str(App.Qt.translate(MESSAGES, template)))
+    return _phrases().translated(text, tr)
 
 
 @lru_cache(maxsize=1)

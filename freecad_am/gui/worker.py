@@ -3,11 +3,18 @@
 
 It ends at its next report of progress, or between any two steps of Python, whichever comes first. A single call into
 compiled code is not interrupted: the work is left to itself then, and what it returns is dropped.
+
+What the window is made of must end in the window's thread: a timer that is deleted in another one is still called by Qt
+afterwards, and FreeCAD crashes. Python deletes what nothing refers to in whatever thread dropped it last, and collects
+cycles (a widget and the method its signal calls are one) in whatever thread has just made many objects, which is the
+working one. So workers are kept, with what their work refers to, until their threads have ended, and while any thread
+goes on cycles are collected by a timer of the window alone.
 """
 
 from __future__ import annotations
 
 import ctypes
+import gc
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +23,8 @@ from PySide import QtCore
 
 from ..objects.progress import Cancelled, told_to
 
-AGAIN = 200  # ms between two attempts to end work that goes on
+AGAIN = 200  # ms between two looks at the threads that go on
+YOUNG = 1  # the generations of objects made since the last look are collected at each, all of them when Python would
 
 
 class Worker:
@@ -32,22 +40,23 @@ class Worker:
         self._cancelled = False
         self._ending = threading.Lock()
         self._thread = threading.Thread(target=self._run, name="Robotic AM", daemon=True)
+        _attend(self)
         self._thread.start()
 
     def result(self) -> Any:
         """What the work, which has ended, returned; raises what it raised, Cancelled when it was."""
         if self._cancelled:
             raise Cancelled
-        if self._error is not None:
-            raise self._error
+        error, self._error = self._error, None  # its traceback refers to this worker
+        if error is not None:
+            raise error
         return self._value
 
     def cancel(self) -> None:
-        """End it, as soon as it can be; its result is of no use any more."""
+        """End it, as soon as it can be; its result is of no use any more. Compiled code may swallow the order to end: it is
+        given again until it is followed."""
         self._cancelled = True
         self._stop()
-        if not self.ended.is_set():
-            _keep_stopping(self)
 
     # ---- in the thread
 
@@ -78,20 +87,35 @@ class Worker:
                     ctypes.c_ulong(self._thread.ident or 0), ctypes.py_object(Cancelled)
                 )
 
-
-_to_stop: list[Worker] = []
-
-
-def _keep_stopping(worker: Worker) -> None:
-    """Compiled code may have swallowed the order to end: give it again until it is followed."""
-    _to_stop.append(worker)
-    if len(_to_stop) == 1:
-        QtCore.QTimer.singleShot(AGAIN, _stop_again)
+    def goes_on(self) -> bool:
+        """Whether the thread may still do anything; a cancelled one is told again to end."""
+        if self._cancelled:
+            self._stop()
+            if self.ended.is_set():
+                self._value = self._error = None
+        return self._thread.is_alive()
 
 
-def _stop_again() -> None:
-    _to_stop[:] = [worker for worker in _to_stop if not worker.ended.is_set()]
-    for worker in _to_stop:
-        worker._stop()
-    if _to_stop:
-        QtCore.QTimer.singleShot(AGAIN, _stop_again)
+_going: list[Worker] = []
+_collecting = False  # whether Python collected cycles by itself before the first of them
+
+
+def _attend(worker: Worker) -> None:
+    """Keep a worker that is about to start until its thread has ended."""
+    global _collecting
+    if not _going:
+        _collecting = gc.isenabled()
+        gc.disable()
+        QtCore.QTimer.singleShot(AGAIN, _look)
+    _going.append(worker)
+
+
+def _look() -> None:
+    """Drop workers that have ended, and collect cycles as Python would, but in this thread."""
+    _going[:] = [worker for worker in _going if worker.goes_on()]
+    if _going:
+        if _collecting:
+            gc.collect(YOUNG)
+        QtCore.QTimer.singleShot(AGAIN, _look)
+    elif _collecting:
+        gc.enable()

@@ -69,6 +69,13 @@ def process_rows() -> tuple[rows.Row, ...]:
     return tuple(row for row in rows.rows(ProcessParameters) if row.key in PROCESS)
 
 
+def label(row: rows.Row) -> str:
+    """What the page calls it: 'Wire diameter', 'Wait between layers'."""
+    *before, last = (str(step).replace("_", " ") for step in row.path)
+    words = [last, *before] if before and before[0].startswith("between") else [*before, last]
+    return " ".join(words).capitalize() + (" (g/cm³)" if row.key == "density" else "")
+
+
 def process() -> dict[str, Any]:
     """What is preferred for the process in place of the defaults, by row key in outer units."""
     found = {}

@@ -11,6 +11,7 @@ from PySide import QtCore, QtGui
 from ...core.inspection.bands import band_of, bands
 from ...core.inspection.figures import Spread
 from ..path.colouring import round_numbers
+from ..texts import tr
 
 HEIGHT = 130
 _SIDE, _TOP, _FOOT, _FAINT = 12, 6, 34, 90
@@ -71,5 +72,6 @@ class Histogram(QtGui.QWidget):
         for number in np.asarray(round_numbers(low, high, 0.0)).tolist():
             box = QtCore.QRectF(across(number) - 30.0, area.bottom() + 2.0, 60.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
+        told = tr("deviation, mm (most: {} points)").format(int(self.spread.counts.max()))
         box = QtCore.QRectF(0.0, self.height() - line - 1.0, self.width(), line)
-        painter.drawText(box, QtCore.Qt.AlignHCenter, f"deviation, mm (most: {int(self.spread.counts.max())} points)")
+        painter.drawText(box, QtCore.Qt.AlignHCenter, told)

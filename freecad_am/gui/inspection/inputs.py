@@ -16,7 +16,7 @@ from ...objects.inspection import KINDS
 from ...objects.stage import Link, stage_of
 from .. import inputs, recorded
 from ..picking import usable
-from ..texts import tr
+from ..texts import tr, translated
 
 
 class PlannedChoice(inputs.Input):
@@ -28,7 +28,7 @@ class PlannedChoice(inputs.Input):
         self.document = App.ActiveDocument if present is None else present.Document
         self.widget = QtGui.QComboBox()
         self.widget.setObjectName("Planned")
-        self.widget.setToolTip(link.help)
+        self.widget.setToolTip(translated(link.help))
         self.widget.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
         self.widget.setMinimumContentsLength(8)
         found = offered(self.document)

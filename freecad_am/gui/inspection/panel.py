@@ -17,7 +17,7 @@ from ...core.issues import AmError
 from ...objects.inspection import Inspection
 from ..fold import Fold
 from ..stage_panel import StagePanel
-from ..texts import tr, translated_error
+from ..texts import tr, translated, translated_error
 from .histogram import Histogram
 from .inputs import FileChoice, PlannedChoice
 
@@ -74,9 +74,9 @@ class InspectionPanel(StagePanel):
         found = [row for row in rows(value) if row.short]
         self.table.setRowCount(len(found))
         for number, row in enumerate(found):
-            for column, text in enumerate((row.short, row.text, row.unit)):
+            for column, text in enumerate((translated(row.short), row.text, row.unit)):
                 item = QtGui.QTableWidgetItem(text)
-                item.setToolTip(row.name)
+                item.setToolTip(translated(row.name))
                 if column == 1:
                     item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
                 self.table.setItem(number, column, item)
@@ -92,7 +92,7 @@ class InspectionPanel(StagePanel):
         file = self.choices[1]
         name = os.path.basename(file.line.text().strip())
         if not place and (error.where.endswith(".File") or (name and error.where.startswith(name))):
-            return file.label, error.message if error.where.endswith(".File") else text
+            return file.label, translated(error.message) if error.where.endswith(".File") else text
         return place, text
 
     def _value(self) -> Inspected | None:

@@ -13,7 +13,7 @@ from ...core.inspection.inspect import Inspected
 from ..lines import fill, unshaded
 from ..path import legend
 from ..path.colouring import Scale
-from ..texts import tr
+from ..texts import marked
 from ..view_base import StageView
 
 
@@ -59,5 +59,5 @@ def scale_of(value: Inspected) -> Scale:
     """The legend of an inspection: its bands, the most outside first."""
     classes = tuple((band.text, band.colour) for band in reversed(bands(value.tolerance)))
     if not value.counted.all():
-        classes += ((tr("past the edges"), NOT_COUNTED),)
-    return Scale(tr("deviation"), "mm", 0.0, 0.0, (), value.spread.least, value.spread.most, classes=classes)
+        classes += ((marked("past the edges"), NOT_COUNTED),)
+    return Scale(marked("deviation"), "mm", 0.0, 0.0, (), value.spread.least, value.spread.most, classes=classes)

@@ -9,7 +9,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
 from ..colours import WRONG
-from ..texts import tr
+from ..texts import tr, translated, translated_error
 
 
 class Page(QtGui.QWizardPage):
@@ -71,7 +71,7 @@ class Page(QtGui.QWizardPage):
 
 def told(error: InputError) -> str:
     """An error with its place, where that is a place a user knows."""
-    text = error.message if error.where in ("geometry", "flange") else f"{error.where}: {error.message}"
+    text = translated(error.message) if error.where in ("geometry", "flange") else translated_error(error)
     return text[:1].upper() + text[1:]
 
 

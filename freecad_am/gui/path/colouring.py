@@ -13,21 +13,25 @@ from ...core.toolpath import Bead, Toolpath
 from ...objects import preferences
 from ..colours import ramp
 from ..lines import Array
+from ..texts import marked, translated
 
 Colour = tuple[float, float, float]
 
-LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND = "layer", "local distance", "tilt", "speed", "width", "kind of bead"
+# in English: names of choices, which documents hold; whoever shows a scale translates its texts
+LAYER, DISTANCE, TILT = marked("layer"), marked("local distance"), marked("tilt")
+SPEED, WIDTH, KIND = marked("speed"), marked("width"), marked("kind of bead")
 KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND)
-MARGIN, RATIO, CONDITION = "joint margin", "joint speed", "condition"
+MARGIN, RATIO, CONDITION = marked("joint margin"), marked("joint speed"), marked("condition")
 JOINT_KINDS = (MARGIN, RATIO, CONDITION, *KINDS)
 UNREACHABLE = (0.90, 0.10, 0.20)
 TOO_NEAR, TOO_FAR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
-CLOSED, OPEN = ("contour, or closed", (0.13, 0.40, 0.80)), ("fill, or open", (0.93, 0.55, 0.10))
-CENTRE, CLOSING = ("in the middle", (0.20, 0.62, 0.35)), ("closes a gap", (0.80, 0.20, 0.55))
+CLOSED, OPEN = (marked("contour, or closed"), (0.13, 0.40, 0.80)), (marked("fill, or open"), (0.93, 0.55, 0.10))
+CENTRE, CLOSING = (marked("in the middle"), (0.20, 0.62, 0.35)), (marked("closes a gap"), (0.80, 0.20, 0.55))
 _CLASSES = {
     "contour": CLOSED, "line": OPEN, "zigzag": OPEN, "spiral": OPEN, "centre": CENTRE, "closing": CLOSING,
 }
-NO_WIDTH = ("no bead model", NONE)
+NO_WIDTH = (marked("no bead model"), NONE)
+FIRST = marked("first layer")
 TICKS = 5
 _ALIKE = 1e-9
 _ROUNDED = 1e-9  # shares that differ by less are alike
@@ -61,8 +65,8 @@ class Scale:
         if self.values is None:
             return ""
         value = float(self.values[row])
-        told = f"{value:.3g} {self.unit}" if np.isfinite(value) else self.without
-        return f"{self.title} {told}".rstrip()
+        told = f"{value:.3g} {self.unit}" if np.isfinite(value) else translated(self.without)
+        return f"{translated(self.title)} {told}".rstrip()
 
     def share(self, values: Array) -> Array:
         """Places of values on the ramp, 0..1; the middle where low is high."""
@@ -83,16 +87,16 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
         values, title, unit = np.concatenate([bead.width for bead in beads]), WIDTH, "mm"
     elif kind == TILT:
         upright = np.concatenate([bead.tool for bead in beads]) @ toolpath.frame[:3, 2]
-        values, title, unit = np.degrees(np.arccos(np.clip(upright, -1.0, 1.0))), "tilt", "deg"
+        values, title, unit = np.degrees(np.arccos(np.clip(upright, -1.0, 1.0))), TILT, "deg"
     elif kind == SPEED:
         speeds = preferences.speed(1.0) * np.concatenate([bead.speed for bead in beads])
-        values, title, unit = speeds, "speed", preferences.speed_unit()
+        values, title, unit = speeds, SPEED, preferences.speed_unit()
     elif len(beads) == 1:
-        values, title, unit = np.linspace(0.0, 100.0, len(beads[0])), "way", "%"
+        values, title, unit = np.linspace(0.0, 100.0, len(beads[0])), marked("way"), "%"
     else:
         number = numbered(toolpath)
         values = np.repeat([number[layer] for layer, _, _ in toolpath], [len(bead) for bead in beads]).astype(float)
-        title, unit = "layer", ""
+        title, unit = LAYER, ""
     scale = automatic(values, title, unit)
     return ramp(scale.share(values)), replace(scale, values=values)
 
@@ -130,9 +134,9 @@ def automatic(values: Array, title: str, unit: str) -> Scale:
 def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     values = np.concatenate(local_distances(toolpath))
     known = np.isfinite(values)
-    height, title = toolpath.layer_height, "local distance"
+    height, title = toolpath.layer_height, DISTANCE
     if not known.any():
-        scale = Scale(title, "mm", height, height, ((height, f"{height:.4g}"),), height, height, without="first layer")
+        scale = Scale(title, "mm", height, height, ((height, f"{height:.4g}"),), height, height, without=FIRST)
         return np.tile(np.array(NONE), (len(values), 1)), scale
     low, high = height * (1.0 - band), height * (1.0 + band)
     found = values[known]
@@ -142,7 +146,7 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
     scale = Scale(
         title, "mm", low, high, ticks, float(found.min()), float(found.max()),
         f"< {ticks[0][1]}" if below.any() else "", f"> {ticks[-1][1]}" if above.any() else "",
-        "" if known.all() else "first layer", values=values,
+        "" if known.all() else FIRST, values=values,
     )
     colours = ramp(scale.share(np.where(known, values, height)))
     for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, NONE)):
@@ -157,7 +161,7 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     limit, and faster than an axis can, is a colour of its own.
     """
     known = np.isfinite(values)
-    without = "" if known.all() else "unreachable"
+    without = "" if known.all() else marked("unreachable")
     unit, factor = ("", 1.0) if kind == CONDITION else ("%", 100.0)
     told = factor * values
     below = known & (values < -_ROUNDED) & (kind == MARGIN)
@@ -165,8 +169,8 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     within = known & ~below & ~above
     found = told[within] if within.any() else np.zeros(1)
     scale = replace(
-        automatic(found, kind, unit), below="beyond a limit" if below.any() else "",
-        above="faster than it can" if above.any() else "", without=without, without_colour=UNREACHABLE,
+        automatic(found, kind, unit), below=marked("beyond a limit") if below.any() else "",
+        above=marked("faster than it can") if above.any() else "", without=without, without_colour=UNREACHABLE,
         values=told,
     )
     colours = ramp(scale.share(np.where(within, told, scale.low)))

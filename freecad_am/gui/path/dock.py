@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -10,7 +11,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..follower import Follower
-from ..texts import tr
+from ..texts import tr, translated
 from . import path_view
 from .colouring import LAYER
 from .facts import facts
@@ -89,8 +90,8 @@ class PathDock(Follower):
 
     def _connect(self) -> None:
         self.choice.activated.connect(self._chosen)
-        self.colouring.activated.connect(lambda *_: self._set("Colouring", self.colouring.currentText()))
-        self.look.activated.connect(lambda *_: self._set("Look", self.look.currentText()))
+        self.colouring.activated.connect(lambda *_: self._set("Colouring", self.colouring.currentData()))
+        self.look.activated.connect(lambda *_: self._set("Look", self.look.currentData()))
         self.directions.clicked.connect(lambda *_: self._set("ShowDirections", self.directions.isChecked()))
         self.single.clicked.connect(lambda *_: self._moved(self.to))
         self.all.clicked.connect(self._show_all)
@@ -170,7 +171,7 @@ class PathDock(Follower):
         vobj = obj.ViewObject
         for combo, name in ((self.colouring, "Colouring"), (self.look, "Look")):
             names = vobj.getEnumerationsOfProperty(name)
-            _offer(combo, names, names.index(getattr(vobj, name)))
+            _offer(combo, names, names.index(getattr(vobj, name)), translated)
         self.directions.setChecked(vobj.ShowDirections)
         first, last, count = view.shown or (0, rows.layer_count - 1, None)
         low, high = rows.of_layers(last, last)
@@ -218,11 +219,12 @@ class PathDock(Follower):
             self.fill()
 
 
-def _offer(combo: Any, names: list[str], chosen: int) -> None:
+def _offer(combo: Any, names: list[str], chosen: int, told: Callable[[str], str] = str) -> None:
     """Choices of a combo box, changed only where they differ."""
-    if [combo.itemText(index) for index in range(combo.count())] != list(names):
+    if [combo.itemData(index) for index in range(combo.count())] != list(names):
         combo.clear()
-        combo.addItems(list(names))
+        for name in names:
+            combo.addItem(told(name), name)
     combo.setCurrentIndex(chosen)
 
 

@@ -18,6 +18,7 @@ from PySide import QtCore, QtGui
 
 from ..colours import ramp
 from ..lines import unshaded
+from ..texts import translated
 from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
@@ -100,7 +101,8 @@ def _picture(entry: Entry, left: int) -> Any:
 
 
 def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
-    return [*names, f"{scale.title}, {scale.unit}" if scale.unit else scale.title]
+    title = translated(scale.title)
+    return [*names, f"{title}, {scale.unit}" if scale.unit else title]
 
 
 def _foot(scale: Scale) -> str:
@@ -121,8 +123,8 @@ def _wide(text: str) -> int:
 
 
 def _width(names: tuple[str, ...], scale: Scale) -> int:
-    texts = [text for _, text in scale.ticks] + [text for text, _ in scale.classes]
-    texts += [scale.below, scale.above, scale.without]
+    texts = [text for _, text in scale.ticks]
+    texts += map(translated, [*(text for text, _ in scale.classes), scale.below, scale.above, scale.without])
     beside = _BAR_WIDTH + 10 + max(map(_wide, texts))
     return 2 * _PAD + max(beside, *map(_wide, [*_lines(names, scale), _foot(scale)]))
 
@@ -168,7 +170,7 @@ def _draw(painter: Any, names: tuple[str, ...], scale: Scale) -> None:
 
 def _swatch(painter: Any, left: int, top: int, colour: Any, text: str) -> None:
     painter.fillRect(left, top + 2, _BAR_WIDTH, _line() - 4, _colour(colour))
-    _text(painter, left + _BAR_WIDTH + 8, top, text)
+    _text(painter, left + _BAR_WIDTH + 8, top, translated(text))
 
 
 def _text(painter: Any, left: int, top: int, text: str) -> None:

@@ -11,13 +11,14 @@ from PySide import QtCore
 
 from ...core.issues import InputError
 from ..lines import Array
+from ..texts import marked
 from ..view_base import StageView
 from . import legend
 from .colouring import Scale
 from .pieces import PathNodes
 from .rows import Rows
 
-LINES, TUBES = "lines", "tubes"
+LINES, TUBES = marked("lines"), marked("tubes")
 OPTIONS: dict[str, tuple[str, Any, str]] = {
     "Look": ("App::PropertyEnumeration", (LINES, TUBES), "Draw beads as lines, or as tubes as wide and high as they are."),
     "ShowLegend": ("App::PropertyBool", True, "Show in the corner of the view what the colours mean."),

@@ -6,62 +6,38 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...plots.chart import Chart, Picture, Quantity
-from ..texts import tr
+from ..texts import marked, translated
 
-
-def _words() -> dict[str, str]:
-    """All words that stand alone in pictures; literals, so that a script can collect them."""
-    found = (
-        ("Joint angles", tr("Joint angles")), ("Joint speeds", tr("Joint speeds")),
-        ("Joint speeds in %", tr("Joint speeds in %")),
-        ("Joint accelerations", tr("Joint accelerations")), ("Joint jerks", tr("Joint jerks")),
-        ("Condition", tr("Condition")), ("Speed along the path", tr("Speed along the path")),
-        ("Deposit rate", tr("Deposit rate")), ("Deposited mass", tr("Deposited mass")),
-        ("Distance between layers", tr("Distance between layers")), ("Predicted heights", tr("Predicted heights")),
-        ("Predicted widths and speeds", tr("Predicted widths and speeds")),
-        ("Fit of the bead widths", tr("Fit of the bead widths")), ("Width of beads", tr("Width of beads")),
-        ("Joint speeds while depositing", tr("Joint speeds while depositing")),
-        ("Condition of the Jacobian (0 is singular)", tr("Condition of the Jacobian (0 is singular)")),
-        ("Travel speed", tr("Travel speed")), ("Predicted width of the bead", tr("Predicted width of the bead")),
-        ("Predicted height of the bead", tr("Predicted height of the bead")),
-        ("Predicted height by layer", tr("Predicted height by layer")),
-        ("Sum of the heights, off the layers", tr("Sum of the heights, off the layers")),
-        ("time", tr("time")), ("path", tr("path")), ("layer", tr("layer")), ("angle", tr("angle")), ("place", tr("place")),
-        ("speed", tr("speed")), ("acceleration", tr("acceleration")), ("jerk", tr("jerk")), ("rate", tr("rate")),
-        ("mass", tr("mass")), ("width", tr("width")), ("height", tr("height")), ("off", tr("off")),
-        ("travel speed", tr("travel speed")), ("local distance", tr("local distance")),
-        ("share of the limit", tr("share of the limit")), ("share of the points", tr("share of the points")),
-        ("share of the length", tr("share of the length")), ("rapid", tr("rapid")), ("deposit", tr("deposit")),
-        ("as the axes can", tr("as the axes can")), ("lowest", tr("lowest")), ("mean", tr("mean")),
-        ("highest", tr("highest")), ("drift", tr("drift")), ("least allowed", tr("least allowed")),
-        ("condition", tr("condition")), ("layer height", tr("layer height")),
-        ("a toolpath has no joints yet; choose a joint path", tr("a toolpath has no joints yet; choose a joint path")),
-        ("there is nothing to be seen in these layers", tr("there is nothing to be seen in these layers")),
-        ("this machine has no condition", tr("this machine has no condition")),
-        ("none of these layers lies on another", tr("none of these layers lies on another")),
-        ("no bead model sets the speeds (process.bead_model)", tr("no bead model sets the speeds (process.bead_model)")),
-    )
-    return dict(found)
-
-
-def translated(text: str) -> str:
-    """A word of a picture; itself where it is a name, such as that of an axis."""
-    return _words().get(text, text)
+# all that stands alone in pictures, which `plots` draws in English for reports
+WORDS = (
+    marked("Joint angles"), marked("Joint speeds"), marked("Joint speeds in %"), marked("Joint accelerations"),
+    marked("Joint jerks"), marked("Condition"), marked("Speed along the path"), marked("Deposit rate"),
+    marked("Deposited mass"), marked("Distance between layers"), marked("Predicted heights"),
+    marked("Predicted widths and speeds"), marked("Fit of the bead widths"), marked("Width of beads"),
+    marked("Joint speeds while depositing"), marked("Condition of the Jacobian (0 is singular)"),
+    marked("Travel speed"), marked("Predicted width of the bead"), marked("Predicted height of the bead"),
+    marked("Predicted height by layer"), marked("Sum of the heights, off the layers"), marked("time"), marked("path"),
+    marked("layer"), marked("angle"), marked("place"), marked("speed"), marked("acceleration"), marked("jerk"),
+    marked("rate"), marked("mass"), marked("width"), marked("height"), marked("off"), marked("travel speed"),
+    marked("local distance"), marked("share of the limit"), marked("share of the points"),
+    marked("share of the length"), marked("rapid"), marked("deposit"), marked("as the axes can"), marked("lowest"),
+    marked("mean"), marked("highest"), marked("drift"), marked("least allowed"), marked("condition"),
+    marked("layer height"), marked("a toolpath has no joints yet; choose a joint path"),
+    marked("there is nothing to be seen in these layers"), marked("this machine has no condition"),
+    marked("none of these layers lies on another"), marked("no bead model sets the speeds (process.bead_model)"),
+)
 
 
 def in_words(picture: Picture) -> Picture:
-    """A picture in the language of the window."""
-    words = _words()
-
-    def of(text: str) -> str:
-        return words.get(text, text)
+    """A picture in the language of the window; what is a name, such as that of an axis, stays."""
 
     def of_chart(chart: Chart) -> Chart:
         return replace(
-            chart, title=of(chart.title), x=Quantity(of(chart.x.name), chart.x.unit),
-            y=Quantity(of(chart.y.name), chart.y.unit),
-            curves=tuple(replace(curve, name=of(curve.name)) for curve in chart.curves),
-            upright=tuple((value, of(name)) for value, name in chart.upright),
+            chart, title=translated(chart.title), x=Quantity(translated(chart.x.name), chart.x.unit),
+            y=Quantity(translated(chart.y.name), chart.y.unit),
+            curves=tuple(replace(curve, name=translated(curve.name)) for curve in chart.curves),
+            marks=tuple((value, translated(name)) for value, name in chart.marks),
+            upright=tuple((value, translated(name)) for value, name in chart.upright),
         )
 
-    return replace(picture, charts=tuple(map(of_chart, picture.charts)), lacking=of(picture.lacking))
+    return replace(picture, charts=tuple(map(of_chart, picture.charts)), lacking=translated(picture.lacking))

@@ -11,7 +11,7 @@ from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...objects import preferences
-from ..texts import tr
+from ..texts import tr, translated
 from .player import Moment
 from .run import Run
 
@@ -38,7 +38,8 @@ def finding(found: Finding, unit: str = "deg") -> str:
     value = -found.value if found.kind == watch.LIMIT else found.value
     if found.kind == watch.SLOWED:
         return texts[found.kind].format(label=found.label, value=_speed(value), than=_speed(found.than))
-    return texts[found.kind].format(label=found.label, value=value, than=found.than, unit=unit)
+    label = translated(found.label) if found.kind == watch.ISSUE else found.label
+    return texts[found.kind].format(label=label, value=value, than=found.than, unit=unit)
 
 
 def place(run: Run, moment: Moment) -> str:

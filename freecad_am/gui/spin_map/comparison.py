@@ -15,7 +15,7 @@ from ...core.planning.task import Task
 from ...objects import progress
 from ...objects.progress import Cancelled
 from ..later import Background
-from ..texts import tr, translated_error
+from ..texts import tr, translated, translated_error
 from ..worker import Worker
 from .source import Source
 
@@ -62,5 +62,5 @@ class Comparison:
     def _tell(self) -> None:
         worker = self.background.worker
         if worker is not None:
-            share = "" if worker.fraction is None else f"{100.0 * worker.fraction:.0f} %  {worker.text}"
+            share = "" if worker.fraction is None else f"{100.0 * worker.fraction:.0f} %  {translated(worker.text)}"
             self.tell(f"{tr('Planning')} {share}")

@@ -17,10 +17,11 @@ from ...core.planning.points import TURN
 from ...core.planning.spin_curve import Compared, Sums
 from ...objects.progress import Cancelled
 from ...objects.stage import first_message, issues_of
+from ...objects.staleness import UP_TO_DATE
 from .. import recorded
 from ..later import Background, Later
 from ..simulation.dock import _Dock
-from ..texts import tr, translated_error
+from ..texts import tr, translated, translated_error
 from ..worker import Worker
 from .board import Board
 from .canvas import Canvas, Curve, Dragged, Handle
@@ -250,8 +251,8 @@ class SpinMapDock:
     def _planned_text(self) -> tuple[str, bool]:
         with contextlib.suppress(ReferenceError, RuntimeError):
             message = first_message(issues_of(self.obj))
-            wrong = self.obj.Status != "up to date"
-            return f"{self.obj.Status}" + (f": {message}" if message and wrong else ""), wrong
+            wrong, status = self.obj.Status != UP_TO_DATE, translated(self.obj.Status)
+            return tr("{}: {}").format(status, translated(message)) if message and wrong else status, wrong
         return "", False
 
     def _show_curves(self) -> None:
@@ -287,8 +288,8 @@ class SpinMapDock:
             self._consequences()
         planned = self.planned_exact or self.planned
         for one in self.compared:
-            help = "; ".join(issue.message for issue in one.issues[:3]) or tr("nothing forbids it")
-            self.figures.set(one.name, tr(one.name), COLOURS[one.name], one.sums, planned, help=help)
+            help = "; ".join(translated(issue.message) for issue in one.issues[:3]) or tr("nothing forbids it")
+            self.figures.set(one.name, translated(one.name), COLOURS[one.name], one.sums, planned, help=help)
         self._show_curves()
 
     # ---- what the mouse is over

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from ...core.planning.spin_map import Picture
 from ..colours import ramp
 from ..path.colouring import NONE, TOO_FAR, TOO_NEAR, Scale, automatic
+from ..texts import marked
 
-MARGIN, CONDITION = "joint margin", "condition"
+MARGIN, CONDITION = marked("joint margin"), marked("condition")
 KINDS = (MARGIN, CONDITION)
 Pixels = NDArray[np.uint8]
 
@@ -38,7 +39,8 @@ def painted(of: Picture, kind: str) -> Painted:
     colours = ramp(scale.share(np.where(good, values, scale.low)).ravel()).reshape(*values.shape, 3)
     classes = []
     for text, cells, colour in (
-        ("unreachable", ~reachable, NONE), ("beyond a limit", beyond, TOO_NEAR), ("near a singularity", singular, TOO_FAR),
+        (marked("unreachable"), ~reachable, NONE), (marked("beyond a limit"), beyond, TOO_NEAR),
+        (marked("near a singularity"), singular, TOO_FAR),
     ):
         if cells.any():
             colours[cells] = colour
