@@ -77,6 +77,9 @@ class Person:
             if found:
                 return found
             self.idle(0.05)
+        found = condition()  # what the window did meanwhile may have taken all of the time
+        if found:
+            return found
         raise AssertionError(f"waited {seconds} s for {what}")
 
     # ---- toolbar, panels, tree
