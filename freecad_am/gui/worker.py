@@ -24,7 +24,7 @@ from PySide import QtCore
 from ..objects.progress import Cancelled, told_to
 
 AGAIN = 200  # ms between two looks at the threads that go on
-YOUNG = 1  # the generations of objects made since the last look are collected at each, all of them when Python would
+YOUNG = 1  # the generation of objects up to which cycles are collected at each look: those made since the last one
 
 
 class Worker:
@@ -47,9 +47,8 @@ class Worker:
         """What the work, which has ended, returned; raises what it raised, Cancelled when it was."""
         if self._cancelled:
             raise Cancelled
-        error, self._error = self._error, None  # its traceback refers to this worker
-        if error is not None:
-            raise error
+        if self._error is not None:
+            raise self._error
         return self._value
 
     def cancel(self) -> None:
@@ -92,7 +91,7 @@ class Worker:
         if self._cancelled:
             self._stop()
             if self.ended.is_set():
-                self._value = self._error = None
+                self._value = self._error = None  # of no use, and its traceback refers to this worker
         return self._thread.is_alive()
 
 
@@ -111,7 +110,7 @@ def _attend(worker: Worker) -> None:
 
 
 def _look() -> None:
-    """Drop workers that have ended, and collect cycles as Python would, but in this thread."""
+    """Drop workers that have ended, and collect the cycles of a moment, in the window's thread."""
     _going[:] = [worker for worker in _going if worker.goes_on()]
     if _going:
         if _collecting:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Long work beside a window that stays alive: progress, Cancel by the mouse and by Esc, and the document as before."""
 
+import gc
 import re
 import subprocess
 import threading
@@ -79,6 +80,17 @@ def long_job(person, request, root):
 def dialogs(person):
     found = person.window.findChildren(person.widgets.QDialog, busy.NAME)
     return [dialog for dialog in found if dialog.isVisible()]
+
+
+class Traced:
+    """Notes the thread it is deleted in, as a widget would feel it; one of a cycle is deleted by Python's collection."""
+
+    def __init__(self, ends, cycle):
+        self.ends = ends
+        self.itself = self if cycle else None
+
+    def __del__(self):
+        self.ends.append(threading.current_thread())
 
 
 class Watcher:
@@ -306,3 +318,36 @@ def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):
         worker.result()
     person.until(lambda: worker.ended.is_set(), "the second order to end", 10)
     assert seen == ["swallowed", "swallowed"]
+
+
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_nothing_of_the_window_is_deleted_in_the_thread_of_work(person, cancelled):
+    """Neither what the work refers to nor cycles that are left about: Qt would still call a timer that was."""
+    assert gc.isenabled()
+    ends, collections, go_on = [], [], threading.Event()
+
+    def begin():
+        held = Traced(ends, cycle=False)
+
+        def work():
+            while not go_on.is_set():
+                list([held, number] for number in range(20_000))  # many times what Python collects cycles after
+                time.sleep(0.01)
+
+        return Worker(work)
+
+    def collected(phase, told):
+        collections.append(threading.current_thread())
+
+    gc.callbacks.append(collected)
+    try:
+        worker = begin()
+        Traced(ends, cycle=True)
+        person.until(lambda: ends, "the cycle to be collected", 10)
+        worker.cancel() if cancelled else go_on.set()
+        del worker  # the window has lost interest, as when a panel is closed
+        person.until(lambda: len(ends) == 2, "what the work refers to, to be deleted", 10)
+        person.until(gc.isenabled, "Python to collect by itself again", 10)
+    finally:
+        gc.callbacks.remove(collected)
+    assert set(ends) == set(collections) == {threading.main_thread()}
