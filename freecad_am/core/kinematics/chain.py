@@ -67,15 +67,16 @@ class Chain:
         return self._run(q)
 
     def links(self, q: ArrayLike) -> Array:
-        """The frames (axes + 1, 4, 4) of the links in base_link for one joint vector `q` (axes,), rad and mm: base_link
+        """The frames (..., axes + 1, 4, 4) of the links in base_link for joint values `q` (..., axes), rad and mm: base_link
         itself, then each joint's frame as the joint has moved it."""
-        result = np.empty((self.axes + 1, 4, 4))
-        result[0] = np.eye(4)
-        for joint, value in enumerate(np.asarray(q, float)):
-            direction = self.directions[joint]
-            moved = (np.eye(3), value * direction) if self.sliding[joint] else (
+        angles = np.asarray(q, float)
+        result = np.empty((*angles.shape[:-1], self.axes + 1, 4, 4))
+        result[..., 0, :, :] = np.eye(4)
+        for joint in range(self.axes):
+            direction, value = self.directions[joint], angles[..., joint]
+            moved = (np.eye(3), value[..., None] * direction) if self.sliding[joint] else (
                 frames.rotation_about(direction, value), np.zeros(3))
-            result[joint + 1] = result[joint] @ self.origins[joint] @ frames.pose(*moved)
+            result[..., joint + 1, :, :] = result[..., joint, :, :] @ self.origins[joint] @ frames.pose(*moved)
         return result
 
     def _run(self, q: ArrayLike) -> JointFrames:

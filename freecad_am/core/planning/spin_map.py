@@ -19,6 +19,7 @@ from ..geometry import frames
 from ..geometry.frustum import Frustum, beside_tip
 from ..geometry.obstacles import of_bodies
 from ..geometry.surroundings import Body, disc
+from ..kinematics.arm_contact import ArmContact
 from ..kinematics.cell import Cell
 from ..toolpath import Bead
 from .findings import ROUNDING
@@ -69,7 +70,8 @@ class SpinMap:
 @dataclass(frozen=True)
 class Picture:
     """One branch of a map. margin, condition: (R, C). threshold: (C,) smallest condition allowed. forbidden: (R, C) what is
-    outside of the rotations allowed or where the nozzle touches."""
+    outside of the rotations allowed or where the nozzle touches. arm: (R, C) where a link of the robot touches something,
+    None as long as nobody has looked."""
 
     branch: int
     margin: Array
@@ -77,6 +79,12 @@ class Picture:
     threshold: Array
     outside: Mask
     forbidden: Mask
+    arm: Mask | None = None
+
+    @property
+    def hatched(self) -> Mask:
+        """(R, C) cells in which a rotation is not allowed, or nozzle or robot touch something."""
+        return self.forbidden if self.arm is None else self.forbidden | self.arm
 
     @property
     def reachable(self) -> Mask:
@@ -154,6 +162,24 @@ def picture(task: Task, of: SpinMap, branch: int) -> Picture:
     return Picture(
         branch, of.margin[branch], condition, own.thresholds(points), of.outside, of.outside | of.touching,
     )
+
+
+def arm_touched(
+    task: Task, of: SpinMap, branch: int, arm: ArmContact, moment: Index, every: int = 1
+) -> Mask:
+    """(R, C) the cells of a branch in which a link of the robot touches nozzle, platform, a body or the deposit there is.
+
+    moment: (C,) how many points of the deposit are there at a column. every: one of so many rows is looked at and stands for
+    those about it. Cells past a limit, or not allowed for another reason, are not looked at.
+    """
+    count = len(of.values)
+    rows = np.arange(min(every // 2, count - 1), count, every)
+    own = dataclasses.replace(task, branch=branch)
+    joints = own.inverse(of.columns.points.frames.at(of.phi[rows]).reshape(-1, 4, 4))
+    looked = (of.margin[branch] >= -ROUNDING) & ~of.outside & ~of.touching
+    joints[~looked[rows].ravel()] = np.nan
+    found = arm.touches(joints, np.tile(moment, len(rows))).any.reshape(len(rows), -1)
+    return np.asarray(found[np.minimum(np.arange(count) // every, len(rows) - 1)] & looked)
 
 
 def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:

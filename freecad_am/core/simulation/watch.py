@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What to look at in a motion: rows that violate a limit or come near one, near a singularity, or are slower than asked."""
+"""What to look at in a motion: rows that violate a limit or come near one, near a singularity, where the robot touches
+something, or is slower than asked."""
 
 from __future__ import annotations
 
@@ -11,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..issues import NOTE, Issue
 from ..kinematics.cell import Cell
+from ..kinematics.arm_contact import NONE
 from ..motion import Motion
+from .arm import ArmTouches
 from .pace import Pace
 
 Array = NDArray[np.float64]
@@ -22,12 +25,13 @@ NEAR = 0.5
 _ROUNDING = 1e-6
 
 UNREACHABLE, LIMIT, NEAR_LIMIT, SINGULAR, SLOWED, ISSUE = "unreachable", "limit", "near limit", "singular", "slowed", "issue"
+TOUCHES = "touches"
 
 
 @dataclass(frozen=True)
 class Finding:
     """What is to be seen at a row, the first of a run of rows. kind: one of the words above. label: the limit or axis it
-    is about, or an issue's message. value, than: worst margin in degrees or mm and 0; condition and its threshold; speeds
+    is about, or an issue's message, or the axis that moves the link ('base' of the first) that touches `other`. value, than: worst margin in degrees or mm and 0; condition and its threshold; speeds
     achieved and asked, mm/s, of the run's worst row."""
 
     row: int
@@ -35,18 +39,22 @@ class Finding:
     label: str = ""
     value: float = 0.0
     than: float = 0.0
+    other: str = ""
 
 
 @dataclass(frozen=True)
 class Watch:
     """margin: (n,) the smallest to any limit, in degrees or mm, and `limit`, which of `Limits.labels`. condition,
-    threshold: (n,), NaN where not known. findings: in the order of rows."""
+    threshold: (n,), NaN where not known. findings: in the order of rows. touching: (n,) the link that touches something,
+    NONE where none does; arm_known: whether that was looked at."""
 
     margin: Array
     limit: NDArray[np.intp]
     condition: Array
     threshold: Array
     findings: tuple[Finding, ...]
+    touching: NDArray[np.int64]
+    arm_known: bool
 
 
 def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
@@ -58,10 +66,11 @@ def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
 
 
 def bad_links(
-    cell: Cell, margins: ArrayLike, ratios: ArrayLike, singular: bool, reachable: bool
+    cell: Cell, margins: ArrayLike, ratios: ArrayLike, singular: bool, reachable: bool, touching: int = NONE
 ) -> NDArray[np.bool_]:
     """(axes + 1,) links to be marked, base first: those whose axis is at or past a limit, near one, or asked to be faster
-    than it can be; those of a coupled limit; all that move where the machine is near a singularity or does not reach.
+    than it can be; those of a coupled limit; the one that is `touching` something; all that move where the machine is near a
+    singularity or does not reach.
 
     margins: (limits,) as of `shown_margins`. ratios: (axes,) shares of the largest speeds that are asked for.
     """
@@ -72,13 +81,17 @@ def bad_links(
     for coefficients in cell.limits.coefficients[close[axes:]]:
         bad[1:] |= coefficients != 0.0
     bad[1:] |= singular or not reachable
+    if touching != NONE:
+        bad[touching] = True
     return bad
 
 
 def watch(
-    motion: Motion, cell: Cell, kept: Pace, condition: Array, threshold: Array, issues: Sequence[Issue] = ()
+    motion: Motion, cell: Cell, kept: Pace, condition: Array, threshold: Array, issues: Sequence[Issue] = (),
+    arm: ArmTouches | None = None,
 ) -> Watch:
-    """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are no findings."""
+    """What is to be seen in a motion; condition, threshold: (n,), NaN where not known. Notes are no findings. arm: what the
+    links touch, None where nobody has looked."""
     margins = shown_margins(cell, motion.joints)
     limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)
     margin = np.take_along_axis(margins, limit[:, None], axis=1)[:, 0]
@@ -98,10 +111,21 @@ def watch(
         Finding(row, SLOWED, axes[kept.axis[worst]], float(kept.achieved[worst]), float(kept.asked[worst]))
         for row, worst in _runs(kept.slowed, share)
     ]
+    if arm is not None:
+        found += _touching(arm, axes)
     found += [Finding(_row_of(motion, issue), ISSUE, issue.message) for issue in issues
               if issue.level != NOTE and issue.layer is not None]
     found.sort(key=lambda finding: finding.row)
-    return Watch(margin, limit, condition, threshold, tuple(found))
+    touching = np.full(len(motion), NONE, dtype=np.int64) if arm is None else arm.link
+    return Watch(margin, limit, condition, threshold, tuple(found), touching, arm is not None)
+
+
+def _touching(arm: ArmTouches, axes: Sequence[str]) -> list[Finding]:
+    """A finding for every run of rows on which one link touches one thing."""
+    links = ("base", *axes)
+    pair = np.where(arm.link == NONE, -1, arm.link * len(arm.names) + arm.what)
+    starts = np.flatnonzero((pair != -1) & (np.diff(pair, prepend=-1) != 0))
+    return [Finding(int(row), TOUCHES, links[arm.link[row]], other=arm.names[arm.what[row]]) for row in starts]
 
 
 def _runs(mask: NDArray[np.bool_], values: Array) -> list[tuple[int, int]]:

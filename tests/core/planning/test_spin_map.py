@@ -6,15 +6,18 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.geometry import frames
+from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.arm_contact import ArmContact, deposit
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
 from freecad_am.core.planning import plan, spin_curve, spin_map
 from freecad_am.core.planning.points import TURN, gather
 from freecad_am.core.planning.task import Task
+from freecad_am.core.simulation import link_rods, robot_links
 from freecad_am.kdl.chain import KdlArm
 
 PART_ON_ROBOT = {}
@@ -331,3 +334,29 @@ def test_methods_side_by_side_are_those_of_the_planner(dome):
     assert by_layer.feasible
     assert by_layer.sums.displacement == pytest.approx(sum(one.objective for one in path.beads), rel=1e-6)
     assert by_layer.sums.displacement < 1.001 * min(one.sums.displacement for one in found[1:] if one.feasible)
+
+
+@pytest.mark.parametrize("setup", [PART_ON_ROBOT, TOOL_ON_ROBOT], ids=["part on robot", "tool on robot"])
+def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setup):
+    # a wall beside the part, in the way of one robot or the other
+    wall = disc(900.0, frames.pose(frames.about_y(np.pi / 2), (260.0, 0.0, 200.0)), "wall")
+    task, found, picture = seen(funnel, spin_map.ROTATION, setup=setup)
+    cell, at = task.cell, found.columns
+    rods = [link_rods.of_solids(link) for link in robot_links.solids(cell.machine.chain)]
+    beads = beads_of(funnel)[0]
+    starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads])])
+    moment = starts[at.bead] + at.point
+    points = np.concatenate([bead.points for bead in beads])
+    contact = ArmContact(cell, rods, [wall], deposit(points, 5.0))
+    touched = spin_map.arm_touched(task, found, FLIP, contact, moment)
+    looked = picture.reachable & ~picture.beyond & ~picture.outside & ~found.touching
+    assert 0 < touched.sum() < looked.sum() and not (touched & ~looked).any()
+    random = np.random.default_rng(2)
+    for row, column in zip(random.integers(0, touched.shape[0], 80), random.integers(0, touched.shape[1], 80)):
+        q = spin_map.joints_at(task, at, int(column), float(found.phi[row, column]))[FLIP]
+        one = contact.touches(q[None], moment[[column]]).any[0]
+        assert touched[row, column] == (bool(one) and looked[row, column])
+    shown = dataclasses.replace(picture, arm=touched)
+    assert (shown.hatched == (picture.forbidden | touched)).all() and (picture.hatched == picture.forbidden).all()
+    rough = spin_map.arm_touched(task, found, FLIP, contact, moment, 4)
+    assert (rough[2::4] == touched[2::4]).all() and (rough != touched).mean() < 0.1

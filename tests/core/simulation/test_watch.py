@@ -10,6 +10,7 @@ from freecad_am.core.issues import ERROR, NOTE, Issue
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import watch as watching
+from freecad_am.core.simulation.arm import ArmTouches
 from freecad_am.core.simulation.pace import pace
 from freecad_am.core.simulation.watch import bad_links, shown_margins, watch
 
@@ -84,3 +85,23 @@ def test_links_are_marked_for_their_own_axis(cell):
     for singular, reachable in ((True, True), (False, False)):
         marked = bad_links(cell, shown_margins(cell, 0.1 * np.ones(6)), none, singular, reachable)
         assert marked.tolist() == [False] + [True] * 6
+
+
+def test_runs_of_rows_on_which_a_link_touches_one_thing_are_one_finding(calm, cell):
+    n = len(calm)
+    link, what = np.full(n, -1), np.full(n, -1)
+    link[4:9], what[4:9] = 5, 1
+    link[9:11], what[9:11] = 5, 0
+    link[30], what[30] = 0, 2
+    arm = ArmTouches(link, what, ("nozzle", "platform", "fixture"), 0.01)
+    unknown = np.full(n, np.nan)
+    found = watch(calm, cell, pace(calm, cell.machine.max_speed), unknown, unknown, arm=arm)
+    assert [(one.row, one.kind, one.label, one.other) for one in found.findings] == [
+        (4, watching.TOUCHES, "q5", "platform"), (9, watching.TOUCHES, "q5", "nozzle"),
+        (30, watching.TOUCHES, "base", "fixture"),
+    ]
+    assert found.arm_known and (found.touching == link).all()
+    assert not seen(calm, cell).arm_known and (seen(calm, cell).touching == -1).all()
+    margins = shown_margins(cell, calm.joints[4])
+    assert np.flatnonzero(bad_links(cell, margins, np.zeros(6), False, True, 5)).tolist() == [5]
+    assert not bad_links(cell, margins, np.zeros(6), False, True).any()

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rods: round straight bodies with flat ends that hold everything of a shape, and perhaps a little more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+PIECES = 8  # a shape is cut into at most so many
+SHORT = 0.5  # pieces are no shorter than this share of the shape's width
+_ROUNDING = 1e-6  # mm
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A cylinder: the middles of its flat ends `start` and `end` (3,), its `radius`; mm."""
+
+    start: Array
+    end: Array
+    radius: float
+
+    @property
+    def length(self) -> float:
+        """From end to end, mm."""
+        return float(np.linalg.norm(self.end - self.start))
+
+    def holds(self, points: Array) -> NDArray[np.bool_]:
+        """(n,) whether points (n, 3) are in it, or on it."""
+        axis = (self.end - self.start) / self.length
+        offset = points - self.start
+        along = offset @ axis
+        away = np.linalg.norm(offset - along[:, None] * axis, axis=1)
+        held: NDArray[np.bool_] = (
+            (along >= -_ROUNDING) & (along <= self.length + _ROUNDING) & (away <= self.radius + _ROUNDING)
+        )
+        return held
+
+
+def about(points: Array) -> Rod:
+    """The rod about points (n, 3): of those along their three main directions the one with the least volume."""
+    middle = points.mean(axis=0)
+    offset = points - middle
+    directions = np.linalg.eigh(offset.T @ offset)[1].T
+    found: list[tuple[float, Rod]] = []
+    for k, axis in enumerate(directions):
+        along = offset @ axis
+        low, high = float(along.min()) - _ROUNDING, float(along.max()) + _ROUNDING
+        across = np.stack([directions[k - 1], directions[k - 2]])
+        flat = offset @ across.T
+        centre = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
+        radius = float(np.linalg.norm(flat - centre, axis=1).max())
+        foot = middle + centre @ across
+        found.append(((high - low) * radius**2, Rod(foot + low * axis, foot + high * axis, radius)))
+    return min(found, key=lambda one: one[0])[1]
+
+
+def row(points: Array, triangles: NDArray[np.int64]) -> list[Rod]:
+    """Rods in a row that together hold a shape of triangles (m, 3) of points (n, 3): its pieces along its longest direction,
+    each with its rod."""
+    used = points[np.unique(triangles)]
+    whole = about(used)
+    offset = used - used.mean(axis=0)
+    axis = np.linalg.eigh(offset.T @ offset)[1][:, -1]
+    height = points @ axis
+    low, high = float((used @ axis).min()), float((used @ axis).max())
+    across = float(np.linalg.norm(offset - (offset @ axis)[:, None] * axis, axis=1).max())
+    count = int(np.clip((high - low) / max(SHORT * across, _ROUNDING), 1, PIECES))
+    cuts = np.linspace(low, high, count + 1)
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    start, end = height[edges[:, 0]], height[edges[:, 1]]
+    # corners of the pieces are those of the shape, and where its edges cross the planes between
+    crossings = []
+    for cut in cuts[1:-1]:
+        over = (start - cut) * (end - cut) < 0.0
+        share = ((cut - start[over]) / (end[over] - start[over]))[:, None]
+        crossings.append(points[edges[over, 0]] * (1.0 - share) + points[edges[over, 1]] * share)
+    found = []
+    for k in range(count):
+        inside = used[(used @ axis >= cuts[k]) & (used @ axis <= cuts[k + 1])]
+        borders = [crossings[j] for j in (k - 1, k) if 0 <= j < len(crossings)]
+        piece = np.concatenate([inside, *borders])
+        if len(piece):
+            found.append(about(piece))
+    volume = sum(rod.length * rod.radius**2 for rod in found)
+    return found if volume < whole.length * whole.radius**2 else [whole]
+
+
+def needed(rods: Sequence[Rod], points: Sequence[Array]) -> list[Rod]:
+    """The rods about points (each (n, 3)) but those whose points are all in another rod that stays."""
+    order = sorted(range(len(rods)), key=lambda k: rods[k].length * rods[k].radius**2)
+    left = set(order)
+    for k in order:
+        if any(rods[j].holds(points[k]).all() for j in left - {k}):
+            left.remove(k)
+    return [rods[k] for k in sorted(left)]
