@@ -68,23 +68,23 @@ def of_one(pick: Pick) -> Guess | Callable[[], Guess]:
         try:
             find_wall(shape, faces, label=label)
         except InputError as error:
-            return _not_turned(pick, shape, faces, error)
+            return _not_turned(pick, label, shape, faces, error)
         told = tr("the faces picked turn about one axis") if faces else tr("{} turns about one axis").format(label)
         return Guess(REVOLUTION, told, (picking.with_faces(pick),))
 
     return work
 
 
-def _not_turned(pick: Pick, shape: Any, faces: Sequence[str], error: InputError) -> Guess:
-    """What a shape means that is not of revolution."""
+def _not_turned(pick: Pick, label: str, shape: Any, faces: Sequence[str], error: InputError) -> Guess:
+    """What a shape means that is not of revolution; the object itself is not asked, which may go meanwhile."""
     if error.code == "NO_AXIS":
         missing = tr("Use the tool Feature…: it takes an edge as the axis.")
         return Guess(REVOLUTION, translated(error.message), (pick,), None, missing)
     chosen = [shape.getElement(name) for name in faces]
     if chosen and shape.Solids and all(face.Surface.TypeId in _ROUND for face in chosen):
-        return Guess(DEVELOPABLE, tr("cylinders and cones of {} are picked as hub").format(pick.obj.Label),
+        return Guess(DEVELOPABLE, tr("cylinders and cones of {} are picked as hub").format(label),
                      (Pick(pick.obj),), pick)
-    return Guess(SURFACE, tr("{} is not of revolution, so it is a wall").format(pick.obj.Label),
+    return Guess(SURFACE, tr("{} is not of revolution, so it is a wall").format(label),
                  (picking.with_faces(pick),), None, tr("Select also, with Ctrl, the part that it grows on."))
 
 

@@ -119,7 +119,10 @@ class JobPanel:
         """A family was chosen."""
         self.asked = self.kind.currentData()
         if self.picks:
-            self._understand()
+            try:
+                self._understand()
+            except ReferenceError:
+                self.say(tr(CLOSED))
 
     def _understand(self) -> None:
         """Find out what the picks mean, beside the window where it may take long."""

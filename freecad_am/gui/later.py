@@ -13,6 +13,7 @@ from .worker import Worker
 
 WAIT = 300  # ms
 LOOK_EVERY = 30  # ms
+_GONE = (RuntimeError, ReferenceError)  # fields of a closed panel, objects of a closed document
 
 
 class Later:
@@ -36,7 +37,7 @@ class Later:
             self._act()
 
     def _act(self) -> None:
-        with contextlib.suppress(RuntimeError):  # FreeCAD has taken fields of a closed panel away before the timer
+        with contextlib.suppress(*_GONE):  # FreeCAD has taken fields of a closed panel away before the timer
             self.act()
 
 
@@ -74,5 +75,5 @@ class Background:
             return
         self.worker = None
         self.timer.stop()
-        with contextlib.suppress(RuntimeError):  # fields of a closed panel
+        with contextlib.suppress(*_GONE):
             self.show(worker)

@@ -4,6 +4,7 @@
 import json
 import os
 import shutil
+import threading
 from pathlib import Path
 
 import FreeCAD as App
@@ -11,6 +12,8 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics import machine as machines
+from freecad_am.gui import guess
+from freecad_am.gui.picking import Pick
 from freecad_am.objects.job_group import is_group
 
 TOOLS = ("NewJob", "Cell", "Feature", "WallOnPart", "SolidsOnHub", "Toolpath", "JointPath", "Program")
@@ -181,6 +184,31 @@ def test_a_document_closed_while_a_panel_is_open(person, job, command):
             person.press("Cancel")
     person.panel_closed()
     assert api.stages_of(App.getDocument("Other")) == []
+
+
+def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monkeypatch):
+    """What comes of it belongs to an object that is gone, and so does what is chosen afterwards."""
+    closed, found = threading.Event(), guess.Guess(guess.REVOLUTION, "", (Pick(hemisphere),))
+
+    def slowly():
+        closed.wait(20)
+        return found
+
+    monkeypatch.setattr(guess, "of_one", lambda pick: slowly)
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    App.newDocument("Other")
+    App.closeDocument(hemisphere.Document.Name)
+    closed.set()
+    person.idle(0.4)
+    kind = person.field(panel, "Kind")
+    kind.activated.emit(kind.currentIndex())
+    assert "gone" in person.panel_error(panel)
+    person.press("Ok")
+    assert "gone" in person.panel_error(panel)
+    person.press("Cancel")
+    person.panel_closed()
 
 
 def test_a_machine_file_that_is_gone(person, hemisphere, tmp_path, monkeypatch):
