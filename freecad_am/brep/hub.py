@@ -21,6 +21,7 @@ from .axis import from_normals
 from .sheet import tessellated
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
+CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
 SAME = 1e-6  # relative; surfaces of faces that differ less are one
 FITTED = 1e-3  # mm that a spline may be off the cylinder or cone it is taken for
 ALONG_EDGE = 361  # points of an edge, that may go round
@@ -38,7 +39,7 @@ class Bodies(NamedTuple):
 def bodies_of(source: Any, label: str, chord_error: float) -> Bodies:
     """The solids of a Part.Shape, or the pieces of a mesh (a Mesh.Mesh, or a Body), in part coordinates.
 
-    InputError NO_SOLID, and those of `mesh_repair.repaired`.
+    InputError NO_SOLID, SELF_CROSSING, and those of `mesh_repair.repaired`.
     """
     if isinstance(source, Body) or hasattr(source, "Topology"):
         if isinstance(source, Body):
@@ -61,6 +62,7 @@ def _meshed(solid: Any, chord_error: float, label: str) -> SolidMesh:
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
     mesh.refuse_unsound(label)
+    mesh.refuse_crossing(label, CROSSED * chord_error)
     return mesh
 
 

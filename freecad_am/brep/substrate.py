@@ -20,6 +20,7 @@ from .surface_patch import patch_of
 
 CHORD = 0.1  # mm between a solid and the triangles that stand for it
 SAME = 1e-5  # mm; vertices of a mesh that lie closer are one
+CROSSED = 0.01  # mm; a mesh that cuts itself by no more only touches itself
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Substrate:
 def substrate_of(source: Any, label: str) -> Substrate:
     """The substrate of a Part.Shape or of a mesh (a Body, or a Mesh.Mesh), in part coordinates.
 
-    Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD.
+    Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD, SELF_CROSSING.
     """
     if isinstance(source, Body) or hasattr(source, "Topology"):
         mesh = source if isinstance(source, Body) else tessellate.body(source, label)
@@ -77,7 +78,7 @@ def _as_one(shape: Any) -> Any:
 
 def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
     """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than SAME made one, triangles that then lack a
-    corner left out. Raises InputError NO_SOLID, OPEN_MESH, NON_MANIFOLD, INSIDE_OUT."""
+    corner left out. Raises InputError NO_SOLID, OPEN_MESH, NON_MANIFOLD, INSIDE_OUT, SELF_CROSSING."""
     if not len(triangles):
         raise InputError("NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part")
     if not np.isfinite(points).all():
@@ -87,5 +88,6 @@ def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
     )
     solid = SolidMesh(vertices, corners)
     solid.refuse_unsound(label)
+    solid.refuse_crossing(label, CROSSED)
     return solid
 

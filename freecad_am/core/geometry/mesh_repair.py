@@ -34,7 +34,7 @@ class Repaired(NamedTuple):
 def repaired(points: Array, triangles: Index, label: str) -> Repaired:
     """Points (n, 3) and triangles (m, 3) as solids.
 
-    InputError BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, NO_SOLID.
+    InputError BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, NO_SOLID, SELF_CROSSING.
     """
     if not len(triangles) or not np.isfinite(points).all():
         raise InputError("BAD_FILE", label, "the mesh has no triangles, or points that are no numbers; export it again")
@@ -52,6 +52,8 @@ def repaired(points: Array, triangles: Index, label: str) -> Repaired:
     solids = _apart(vertices, corners, edges, told)
     if not solids:
         raise InputError("NO_SOLID", label, "the mesh encloses nothing; export the solid again")
+    for solid in solids:
+        solid.refuse_crossing(label, WELDS[-1])
     if not told:
         return Repaired(solids, ())
     return Repaired(solids, (Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(told[:MOST_TOLD])}"),))

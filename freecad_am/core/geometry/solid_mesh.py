@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..issues import InputError
+from .crossing import crossings
 from .mesh import Index
 from .refined import Edges
 from .surface import dot
@@ -59,6 +60,17 @@ class SolidMesh:
             raise InputError(
                 "INSIDE_OUT", label, f"the solid is turned inside out (volume {self.volume:.4g} mm3, near "
                 f"{place(self.vertices.mean(axis=0))}); flip its normals (Mesh, Flip normals)",
+            )
+
+    def refuse_crossing(self, label: str, least: float) -> None:
+        """InputError SELF_CROSSING with a place where the mesh cuts itself by more than `least` mm."""
+        found = crossings(self.vertices, self.triangles, least)
+        if len(found.pairs):
+            where = place(found.places[found.length.argmax()])
+            raise InputError(
+                "SELF_CROSSING", label, f"it cuts itself: {len(found.pairs)} pairs of its triangles cross, for instance at "
+                f"{where}, so that what is inside is not known; fuse what overlaps where the part was drawn, or repair the "
+                "mesh (Mesh, Analyze, Self-intersections)",
             )
 
     def searched(self, edge: float) -> Search:
