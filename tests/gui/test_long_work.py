@@ -67,7 +67,7 @@ def joints(root):
     """A joint path of a hemisphere with thin layers."""
     document = App.newDocument("Long")
     cell = api.make_cell(document, limits="paper")
-    feature = api.make_feature(document, sphere(document), layer_height=0.8, chord_error=0.002)
+    feature = api.make_feature(document, sphere(document), layer_height=0.15, chord_error=0.002)
     toolpath = api.make_toolpath(document, feature, cell)
     return SimpleNamespace(document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell})
 
