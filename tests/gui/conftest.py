@@ -260,10 +260,17 @@ class Hand:
     def enter(self, panel, name, text):
         """Type over what a field holds, and leave it."""
         field = self.person.field(panel, name)
-        self.click(field)
         parts = [field, *field.findChildren(self.person.widgets.QWidget)]
-        # on a busy machine the click may be at work when the first key comes
-        self.person.until(lambda: any(part.hasFocus() for part in parts), f"{name} to have the keys", 5)
+        # on a busy machine the click may be at work when the first key comes, and what a preview tells in the panel may
+        # move the field away from under the pointer: a person then clicks again
+        for _ in range(3):
+            self.click(field)
+            end = time.monotonic() + 3.0
+            while time.monotonic() < end and not any(part.hasFocus() for part in parts):
+                self.person.idle(0.05)
+            if any(part.hasFocus() for part in parts):
+                break
+        assert any(part.hasFocus() for part in parts), f"{name} does not get the keys"
         self.do("key", "ctrl+a")
         self.do("type", "--delay", "20", text)
         self.do("key", "Tab")
