@@ -331,7 +331,7 @@ def test_nothing_of_the_window_is_deleted_in_the_thread_of_work(person, cancelle
 
         def work():
             while not go_on.is_set():
-                list([held, number] for number in range(20_000))  # many times what Python collects cycles after
+                len([[held, number] for number in range(20_000)])  # many times what Python collects cycles after
                 time.sleep(0.01)
 
         return Worker(work)
