@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..core.geometry.solid_mesh import Search, SolidMesh
 from ..core.issues import InputError
+from .kernel_process import beside
 
 Array = NDArray[np.float64]
 
@@ -36,9 +37,7 @@ def skin(shape: Any, label: str) -> Skin:
     if not shape.Faces:
         raise InputError("NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface")
     deflection = max(FINEST, SHARE * shape.BoundBox.DiagonalLength)
-    points, corners = shape.tessellate(deflection)
-    vertices, triangles = np.array([tuple(point) for point in points]), np.array(corners, dtype=np.intp)
-    face = np.repeat(np.arange(len(shape.Faces)), [len(one.tessellate(deflection)[1]) for one in shape.Faces])
+    vertices, triangles, face = beside(_by_face, shape, deflection)
     mesh = SolidMesh(vertices, triangles)
     search = mesh.searched(0.02 * float(np.ptp(vertices, axis=0).max()))
     closed = bool(shape.Solids)
@@ -48,6 +47,13 @@ def skin(shape: Any, label: str) -> Skin:
         return _exact(asked, faces, face, mesh, search, deflection, closed)
 
     return Skin(vertices, triangles, deflection, exact)
+
+
+def _by_face(shape: Any, deflection: float) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+    """Vertices (n, 3), triangles (m, 3), and the number of the face (m,) of each."""
+    points, corners = shape.tessellate(deflection)
+    face = np.repeat(np.arange(len(shape.Faces)), [len(one.tessellate(deflection)[1]) for one in shape.Faces])
+    return np.array([tuple(point) for point in points]), np.array(corners, dtype=np.intp), face
 
 
 def _exact(

@@ -18,6 +18,7 @@ from ..core.geometry.solid_mesh import Array, SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .axis import from_normals
+from .kernel_process import beside
 from .sheet import tessellated
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
@@ -58,7 +59,7 @@ def bodies_of(source: Any, label: str, chord_error: float) -> Bodies:
 
 
 def _meshed(solid: Any, chord_error: float, label: str) -> SolidMesh:
-    vertices, corners = tessellated(solid.copy(), SHARE * chord_error)[:2]
+    vertices, corners = beside(tessellated, solid.copy(), SHARE * chord_error)[:2]
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
     mesh.refuse_unsound(label)

@@ -21,6 +21,7 @@ from ..core.geometry.refined import Edges, count_halved, flipped, refined
 from ..core.geometry.surface import dot
 from ..core.issues import InputError
 from .kernel import refuse_bare
+from .kernel_process import beside
 from .sheet_places import Places
 from .surface_patch import patch_of
 
@@ -45,7 +46,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     names = [names[k] for k in order]
     faces = shape.Faces
     patches = [patch_of(face, f"{label} {name}") for name, face in zip(names, faces)]
-    (vertices, triangles, owner, nodes), about = _tessellated_for(shape, edge)
+    (vertices, triangles, owner, nodes), about = beside(tessellated_for, shape, edge)
     refuse_bare(list(zip(names, faces)), owner, label)
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
@@ -89,16 +90,15 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
         shape.sewShape(SEWN)
     if len(shape.Faces) != len(faces):
         shape = Part.Compound(faces)
+    given = [(face.CenterOfMass, face.Area) for face in faces]
     order = []
     for face in shape.Faces:
-        middle = face.CenterOfMass
-        order.append(min(range(len(faces)), key=lambda k: (
-            faces[k].CenterOfMass.distanceToPoint(middle) + abs(faces[k].Area - face.Area)
-        )))
+        middle, area = face.CenterOfMass, face.Area
+        order.append(min(range(len(faces)), key=lambda k: given[k][0].distanceToPoint(middle) + abs(given[k][1] - area)))
     return shape, order if len(set(order)) == len(order) else list(range(len(faces)))
 
 
-def _tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
+def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
     """Of some tessellations, the one of which the fewest triangles become by halving edges until none is longer than
     `edge`, and about how many: halves of what is a little too long are far too short."""
     made: list[tuple[float, Tessellation]] = []

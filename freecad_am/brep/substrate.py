@@ -15,6 +15,7 @@ from ..core.geometry.told import place
 from ..core.issues import InputError
 from . import tessellate
 from .kernel import refuse_bare
+from .kernel_process import beside
 from .sheet import facing, tessellated, welded
 from .surface_patch import patch_of
 
@@ -62,7 +63,7 @@ def substrate_of(source: Any, label: str) -> Substrate:
                 f"{solid.Volume:.4g} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)",
             )
     source = _as_one(source)
-    made = tessellated(source.copy(), CHORD)
+    made = beside(tessellated, source.copy(), CHORD)
     refuse_bare([(f"Face{number + 1}", face) for number, face in enumerate(source.Faces)], made.owner, label)
     return Substrate(label, source, SolidMesh(made.vertices, made.triangles), made.owner)
 

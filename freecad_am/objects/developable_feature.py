@@ -16,7 +16,8 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import DevelopableParameters
 from ..core.slicing.standing import hub_among, on_hub
 from .feature import source_of
-from .shapes import FIXTURES, Taken, bodies, fingerprint, fixtures_of, taken
+from .fingerprints import fingerprint
+from .shapes import FIXTURES, Taken, bodies, fixtures_of, taken
 from .stage import Link, Outcome, Section, Stage, Work
 
 

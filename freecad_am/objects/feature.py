@@ -12,7 +12,8 @@ from ..brep.revolution import find_wall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
-from .shapes import FIXTURES, bodies, digits, fingerprint, fixtures_of, global_shape, shape_fingerprint
+from .fingerprints import digits, fingerprint, shape_fingerprint
+from .shapes import FIXTURES, bodies, fixtures_of, global_shape
 from .stage import Link, Outcome, Section, Stage, Work
 
 
@@ -56,7 +57,7 @@ class RevolutionFeature(Stage):
         source, faces = source_of(obj)
         axis = axis_of(obj)
         return [
-            shape_fingerprint(global_shape(source)), " ".join(faces), "" if axis is None else digits(*axis),
+            shape_fingerprint(source), " ".join(faces), "" if axis is None else digits(*axis),
             *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]
 

@@ -17,8 +17,9 @@ from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError
 from ..core.parameters.inspection import InspectionParameters
 from . import progress
+from .fingerprints import fingerprint
 from .properties import HIDDEN, OUTPUT
-from .shapes import fingerprint, taken
+from .shapes import taken
 from .stage import Link, Outcome, Section, Stage, Work, checked, stage_of
 
 KINDS = ("feature", "toolpath")

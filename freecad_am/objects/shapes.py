@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes and meshes of a document: in its coordinates, as fingerprints, and as bodies that the nozzle is kept clear of."""
+"""Shapes and meshes of a document: in its coordinates, and as bodies that the nozzle is kept clear of."""
 
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import FreeCAD as App
 import numpy as np
 
 from ..brep import tessellate
@@ -24,15 +24,26 @@ FIXTURES = Link(
 
 def global_shape(source: Any) -> Any:
     """The shape of an object in the coordinates of the document, wherever it is nested. InputError 'NO_SHAPE'."""
+    shape, outer = shape_of(source), outer_placement(source)
+    if not outer.isIdentity():
+        shape = shape.copy()
+        shape.Placement = outer.multiply(shape.Placement)
+    return shape
+
+
+def shape_of(source: Any) -> Any:
+    """The shape of an object where it places itself. InputError 'NO_SHAPE'."""
     shape = getattr(source, "Shape", None)
     if shape is None or shape.isNull():
         raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
-    if hasattr(source, "getGlobalPlacement") and hasattr(source, "Placement"):
-        outer = source.getGlobalPlacement().multiply(source.Placement.inverse())
-        if not outer.isIdentity():
-            shape = shape.copy()
-            shape.Placement = outer.multiply(shape.Placement)
     return shape
+
+
+def outer_placement(source: Any) -> Any:
+    """What moves an object as it places itself to where it stands in the document: the placements of all it is nested in."""
+    if hasattr(source, "getGlobalPlacement") and hasattr(source, "Placement"):
+        return source.getGlobalPlacement().multiply(source.Placement.inverse())
+    return App.Placement()
 
 
 def body_of(source: Any) -> Body:
@@ -65,8 +76,8 @@ def taken(source: Any) -> Taken:
     if mesh is None:
         return Taken(source.Label, global_shape(source))
     # a mesh stands where its own placement puts it
-    outer = source.getGlobalPlacement().multiply(source.Placement.inverse()).toMatrix()
-    return Taken(source.Label, None, mesh.copy(), np.array(outer.A).reshape(4, 4))
+    frame = np.array(outer_placement(source).toMatrix().A).reshape(4, 4)
+    return Taken(source.Label, None, mesh.copy(), frame)
 
 
 def fixtures_of(obj: Any) -> tuple[Taken, ...]:
@@ -77,29 +88,3 @@ def fixtures_of(obj: Any) -> tuple[Taken, ...]:
 def bodies(fixtures: Sequence[Taken]) -> tuple[Body, ...]:
     """The triangles of each. InputError NO_FACES."""
     return tuple(fixture.body() for fixture in fixtures)
-
-
-def shape_fingerprint(shape: Any) -> str:
-    """A text that changes with the shape but not with the last digits that saving drops."""
-    lines = [f"{shape.ShapeType} {len(shape.Faces)} {len(shape.Edges)} {len(shape.Vertexes)}"]
-    for face in shape.Faces:
-        inertia = face.MatrixOfInertia
-        kind = f"{face.Surface.TypeId} {face.Orientation}"
-        lines.append(f"{kind} {face.Area:.8g} {digits(face.CenterOfMass)} {inertia.A11:.6g} {inertia.A33:.6g}")
-    lines += [f"{edge.Length:.8g}" for edge in shape.Edges]
-    lines += [digits(vertex.Point) for vertex in shape.Vertexes]
-    return "\n".join(lines)
-
-
-def digits(*vectors: Any) -> str:
-    """Numbers of vectors to six decimals."""
-    return " ".join(f"{round(number, 6) + 0.0:.6f}" for vector in vectors for number in vector)
-
-
-def fingerprint(source: Any) -> str:
-    """A text that changes with the solid or mesh but not with the last digits that saving drops."""
-    if getattr(source, "Mesh", None) is None:
-        return shape_fingerprint(global_shape(source))
-    body = body_of(source)
-    rounded = np.round(body.vertices, 4) + 0.0
-    return hashlib.sha256(rounded.tobytes() + body.triangles.tobytes()).hexdigest()

@@ -12,7 +12,8 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters
 from .feature import source_of
-from .shapes import FIXTURES, bodies, fingerprint, fixtures_of, global_shape, shape_fingerprint, taken
+from .fingerprints import fingerprint, shape_fingerprint
+from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .stage import Link, Outcome, Section, Stage, Work
 
 
@@ -66,7 +67,7 @@ class SurfaceFeature(Stage):
         source, faces = source_of(obj)
         substrate = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         fixtures = [fingerprint(fixture) for fixture in obj.Fixtures]
-        return [shape_fingerprint(global_shape(source)), *substrate, " ".join((*faces, *_start_edges(obj))), *fixtures]
+        return [shape_fingerprint(source), *substrate, " ".join((*faces, *_start_edges(obj))), *fixtures]
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A process that has the geometry kernel to itself, run as a script by `kernel_process`, which tells the protocol.
+
+It ends with the process that started it, and when it is asked nothing for a while.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pickle
+import sys
+import threading
+from typing import Any, BinaryIO
+
+IDLE = 300.0  # s
+
+
+def serve(asked: BinaryIO, told: BinaryIO) -> None:
+    """Answer until nothing is asked any more."""
+    for entry in pickle.load(asked):
+        if entry not in sys.path:
+            sys.path.append(entry)
+    import FreeCAD
+    import Part
+
+    _tell(told, tuple(FreeCAD.Version()[:3]))
+    while True:
+        leave = threading.Timer(IDLE, os._exit, (0,))
+        leave.daemon = True
+        leave.start()
+        module, function, path, rest = pickle.load(asked)
+        leave.cancel()
+        try:
+            shape = Part.Shape()
+            shape.importBinary(path)
+            answer = True, getattr(importlib.import_module(module), function)(shape, *rest)
+        except Exception as error:
+            answer = False, _portable(error)
+        _tell(told, answer)
+
+
+def _tell(told: BinaryIO, answer: Any) -> None:
+    pickle.dump(answer, told, protocol=pickle.HIGHEST_PROTOCOL)
+    told.flush()
+
+
+def _portable(error: Exception) -> Exception:
+    """The error, or its text where it cannot travel."""
+    try:
+        return error if isinstance(pickle.loads(pickle.dumps(error)), type(error)) else RuntimeError(str(error))
+    except Exception:
+        return RuntimeError(str(error))
+
+
+if __name__ == "__main__":
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what FreeCAD has to say is no answer
+    try:
+        serve(sys.stdin.buffer, answers)
+    finally:
+        os._exit(0)  # FreeCAD must not save preferences on its way out

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Long calls of the geometry kernel, made in a process of their own where a window would have to wait for them.
+
+Python's other threads stand still while the kernel makes the triangles of a shape, the window's too, and nothing can end
+such a call. So the threads that work beside a window have it made elsewhere; the main thread, which nobody waits for, makes
+it itself. Both come to the same numbers, bit by bit: shapes travel in the kernel's own binary form.
+
+Protocol: pickles both ways. First the module search path is sent, and the version of FreeCAD comes back. Then
+(module, function, file of the shape, further arguments) gives (True, value) or (False, error).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import queue
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeVar
+
+import FreeCAD
+import Part
+
+T = TypeVar("T")
+
+HOST = Path(__file__).with_name("kernel_host.py")
+LOOK_EVERY = 0.05  # s; how soon a thread that waits is ended
+START = 60.0  # s that a process may take to be there
+QUICK = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
+FEW = 24  # faces, of such surfaces alone: sooner divided than sent
+
+_idle: list[_Process] = []
+_unable = False
+
+
+def beside(function: Callable[..., T], shape: Any, *rest: Any) -> T:
+    """What `function(shape, *rest)` returns or raises; it must be a function of a module, and return no shapes.
+
+    Raises RuntimeError where the kernel crashes on the shape.
+    """
+    if _unable or threading.current_thread() is threading.main_thread() or _is_quick(shape):
+        return function(shape, *rest)
+    with _written(shape) as path:
+        for _ in range(2):
+            process = _idle.pop() if _idle else _started()
+            if process is None:
+                return function(shape, *rest)
+            try:
+                process.ask((function.__module__, function.__qualname__, path, rest))
+                sound, answer = process.answer()
+            except _Left:  # it had nothing to do for long
+                process.end()
+                continue
+            except BaseException:  # its answer would come to nobody
+                process.end()
+                raise
+            if _idle:
+                process.end()
+            else:
+                _idle.append(process)
+            if sound:
+                found: T = answer
+                return found
+            raise answer
+    return function(shape, *rest)
+
+
+def _is_quick(shape: Any) -> bool:
+    faces = shape.Faces
+    return len(faces) <= FEW and all(face.Surface.TypeId in QUICK for face in faces)
+
+
+@contextlib.contextmanager
+def _written(shape: Any) -> Iterator[str]:
+    """The path of a file of the shape, for as long as it is needed."""
+    handle, path = tempfile.mkstemp(suffix=".bin", prefix="shape_")
+    os.close(handle)
+    try:
+        shape.exportBinary(path)
+        yield path
+    finally:
+        with contextlib.suppress(OSError):
+            os.remove(path)
+
+
+class _Left(Exception):
+    """The process is not there any more, and was not at work."""
+
+
+class _Process:
+    """A Python that runs `kernel_host`; another thread listens to it, so that one who waits can be ended at any moment."""
+
+    def __init__(self, python: str) -> None:
+        self.popen: Any = subprocess.Popen(
+            [python, str(HOST)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        )
+        self.told: queue.Queue[Any] = queue.Queue()
+        threading.Thread(target=self._listen, name="Kernel process", daemon=True).start()
+
+    def _listen(self) -> None:
+        try:
+            while True:
+                self.told.put((pickle.load(self.popen.stdout),))
+        except Exception:  # it has ended, in the midst of an answer or between two
+            self.told.put(None)
+
+    def ask(self, question: Any) -> None:
+        """Send a question. Raises _Left where nobody is there."""
+        try:
+            pickle.dump(question, self.popen.stdin, protocol=pickle.HIGHEST_PROTOCOL)
+            self.popen.stdin.flush()
+        except OSError:
+            raise _Left from None
+
+    def answer(self, longest: float = float("inf")) -> Any:
+        """Wait for its answer. Raises _Left where it went before it was asked, RuntimeError where it crashed; queue.Empty
+        after `longest` s."""
+        waited = 0.0
+        while waited < longest:
+            try:
+                told = self.told.get(timeout=LOOK_EVERY)
+            except queue.Empty:
+                waited += LOOK_EVERY
+                continue
+            if told is not None:
+                return told[0]
+            if self.popen.wait() == 0:
+                raise _Left
+            raise RuntimeError("it crashed")
+        raise queue.Empty
+
+    def end(self) -> None:
+        """End it, whatever it is doing."""
+        with contextlib.suppress(OSError):
+            self.popen.kill()
+        for stream in (self.popen.stdin, self.popen.stdout):
+            with contextlib.suppress(OSError, ValueError):
+                stream.close()
+        self.popen.wait()
+
+
+def _started() -> _Process | None:
+    """A process that is ready to be asked; None where there can be none, which is not tried again."""
+    global _unable
+    for python in _pythons():
+        try:
+            process = _Process(python)
+        except OSError:
+            continue
+        try:
+            process.ask(_search_path())
+            if process.answer(START) == tuple(FreeCAD.Version()[:3]):
+                return process
+            process.end()
+        except (_Left, RuntimeError, queue.Empty):
+            process.end()
+        except BaseException:  # the thread is being ended
+            process.end()
+            raise
+    _unable = True
+    return None
+
+
+def _pythons() -> list[str]:
+    """Programs that may be a plain Python of this version, as FreeCAD's own program is none."""
+    version = "{}.{}".format(*sys.version_info)
+    home = FreeCAD.getHomePath()
+    places = [sys.executable or ""]
+    for folder in dict.fromkeys((sys.prefix, sys.base_prefix, home)):
+        places += [os.path.join(folder, "bin", name) for name in (f"python{version}", "python3", "python.exe", "python")]
+        places.append(os.path.join(folder, "python.exe"))
+    named = (one for one in places if os.path.basename(one).lower().startswith("python"))
+    return list(dict.fromkeys(one for one in named if os.access(one, os.X_OK) and os.path.isfile(one)))
+
+
+def _search_path() -> list[str]:
+    """Where the modules that this FreeCAD has loaded, and ours, are found."""
+    home = FreeCAD.getHomePath()
+    beside_part = os.path.dirname(os.path.abspath(Part.__file__))
+    return [*sys.path, str(HOST.parent.parent.parent), beside_part, *(os.path.join(home, name) for name in ("lib", "bin"))]

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kernel calls beside a window: the same numbers from another process, which can be ended, may crash, and may be missing."""
+
+import ctypes
+import os
+import threading
+import time
+from pathlib import Path
+
+import FreeCAD  # noqa: F401  before Part
+import numpy as np
+import Part
+import pytest
+
+from freecad_am.brep import distance, kernel_process, sheet, tessellate
+from freecad_am.core.issues import InputError
+
+EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
+PARTS = ("thruster/spindle.step", "hemisphere.step", "walls/spatial-pipe.step", "walls/branched-tube.step", "blade")
+
+
+# what the process is asked for here; it imports this file
+
+def pid_of(shape):
+    return os.getpid()
+
+
+def crash(shape):
+    os.abort()
+
+
+def fail(shape, error):
+    raise {"input": InputError("SOME", "where", "what"), "value": ValueError("no good")}[error]
+
+
+def linger(shape, path):
+    Path(path).write_text(str(os.getpid()), encoding="utf-8")
+    time.sleep(3600)
+
+
+def part(name):
+    if name == "blade":
+        return part("thruster/blades.brep").Solids[5]
+    shape = Part.Shape()
+    shape.read(str(EXAMPLES / name))
+    return shape
+
+
+def in_thread(function, *arguments):
+    """What a call beside the window returns or raises."""
+    found = []
+
+    def run():
+        try:
+            found.append(function(*arguments))
+        except BaseException as error:
+            found.append(error)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join(120)
+    assert found, "it did not come back"
+    if isinstance(found[0], BaseException):
+        raise found[0]
+    return found[0]
+
+
+def flat(value):
+    return [array for entry in value for array in (flat(entry) if isinstance(entry, (tuple, list)) else [entry])]
+
+
+@pytest.fixture(autouse=True)
+def fresh():
+    """No process from before, none left behind."""
+    assert not kernel_process._unable
+    yield
+    while kernel_process._idle:
+        kernel_process._idle.pop().end()
+
+
+@pytest.fixture
+def slow_part(monkeypatch):
+    """A part that is always sent, however quickly it is divided."""
+    monkeypatch.setattr(kernel_process, "FEW", 0)
+    return Part.makeBox(1, 2, 3)
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_both_come_to_the_same_numbers(name, monkeypatch):
+    monkeypatch.setattr(kernel_process, "FEW", 0)
+    shape = part(name)
+    for function, *rest in (
+        (sheet.tessellated, 0.05), (sheet.tessellated_for, 2.0), (tessellate.triangles_of, 0.1), (distance._by_face, 0.1),
+    ):
+        here = flat(function(shape.copy(), *rest))
+        elsewhere = flat(in_thread(kernel_process.beside, function, shape.copy(), *rest))
+        assert len(here) == len(elsewhere)
+        for one, other in zip(here, elsewhere, strict=True):
+            assert np.array_equal(one, other) and np.asarray(one).dtype == np.asarray(other).dtype
+    assert len(kernel_process._idle) == 1  # it was asked each time
+
+
+def test_one_process_serves_one_call_after_the_other_and_none_the_main_thread(slow_part):
+    first = in_thread(kernel_process.beside, pid_of, slow_part)
+    assert first != os.getpid() and in_thread(kernel_process.beside, pid_of, slow_part) == first
+    assert kernel_process.beside(pid_of, slow_part) == os.getpid()
+
+
+def test_what_is_divided_quickly_is_not_sent():
+    assert in_thread(kernel_process.beside, pid_of, Part.makeBox(1, 1, 1)) == os.getpid()
+    assert in_thread(kernel_process.beside, pid_of, Part.makeSphere(1)) != os.getpid()
+
+
+def test_a_crash_of_the_kernel_is_an_error_and_the_next_call_has_another_process(slow_part):
+    with pytest.raises(RuntimeError, match="crashed"):
+        in_thread(kernel_process.beside, crash, slow_part)
+    assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
+
+
+def test_a_process_that_has_left_is_replaced(slow_part):
+    first = in_thread(kernel_process.beside, pid_of, slow_part)
+    (process,) = kernel_process._idle
+    process.popen.terminate()
+    process.popen.wait(20)
+    assert in_thread(kernel_process.beside, pid_of, slow_part) not in (first, os.getpid())
+
+
+def test_errors_come_back(slow_part):
+    with pytest.raises(ValueError, match="no good"):
+        in_thread(kernel_process.beside, fail, slow_part, "value")
+    with pytest.raises(RuntimeError, match="where: what"):  # one that cannot travel keeps its text
+        in_thread(kernel_process.beside, fail, slow_part, "input")
+
+
+def test_without_another_python_the_call_is_made_here(slow_part, monkeypatch):
+    monkeypatch.setattr(kernel_process, "_pythons", lambda: ["/nowhere/python3"])
+    monkeypatch.setattr(kernel_process, "_unable", False)
+    assert in_thread(kernel_process.beside, pid_of, slow_part) == os.getpid()
+    assert kernel_process._unable
+
+
+def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
+    class Ended(BaseException):
+        pass
+
+    told, ended = tmp_path / "pid", []
+
+    def run():
+        try:
+            kernel_process.beside(linger, slow_part, str(told))
+        except Ended:
+            ended.append(True)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    patience = time.monotonic() + 60
+    while not (told.exists() and told.read_text(encoding="utf-8")):
+        assert time.monotonic() < patience
+        time.sleep(0.02)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(Ended))
+    thread.join(20)
+    assert ended and not thread.is_alive() and not kernel_process._idle
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(told.read_text(encoding="utf-8")), 0)
