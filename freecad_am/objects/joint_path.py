@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..core.issues import InputError
+from ..core.issues import AmError, InputError, Issue
 from ..core.kinematics import cell as cells
 from ..core.motion import Motion
 from ..core.parameters.cell import CellParameters
@@ -17,11 +18,13 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
+from ..core.planning.speeds import SLOWED
+from ..core.process import bead_table, predicted
 from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import progress, user_machines
-from .stage import Link, Outcome, Section, Stage, Work
+from .stage import Link, Outcome, Section, Stage, Work, stage_of
 
 JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves
 
@@ -69,7 +72,20 @@ class JointPath(Stage):
         ("DepositMass", "App::PropertyFloat", "Mass of the deposit (g)."),
     )
 
+    def look_ahead(self, obj: Any) -> None:
+        """Tell the programs of the joint path what makes them impossible, before long work for them begins."""
+        programs = [found for found in obj.InList if (stage := stage_of(found)) is not None and stage.kind == "program"]
+        toolpath, cell = obj.Toolpath, obj.Cell
+        if not programs or stage_of(toolpath) is None or stage_of(cell) is None:
+            return
+        with contextlib.suppress(AmError):  # what is wrong with these they say themselves
+            resolved = cells.resolve(cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders())
+            process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+            for program in programs:
+                program.Proxy.refuse_early(program, resolved, process)
+
     def prepare(self, obj: Any) -> Work:
+        self.look_ahead(obj)
         linked = self.linked(obj)
         toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
         toolpath = toolpath_object.Proxy.value(toolpath_object)
@@ -84,12 +100,21 @@ class JointPath(Stage):
             )
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(joint_path, cell, process, toolpath.surroundings)
+            issues = (*joint_path.issues, *rapid_issues, *_heights_as_run(joint_path, toolpath, process))
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
-            return Outcome(Planned(joint_path, motion), (*joint_path.issues, *rapid_issues),
+            return Outcome(Planned(joint_path, motion), issues,
                            (("SmallestCondition", smallest), *_sums(motion, process, toolpath)))
 
         return work
+
+
+def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters) -> list[Issue]:
+    """What a bead model predicts of the heights where beads are slowed, in place of what the toolpath told."""
+    if toolpath.law is None or not any(issue.code == SLOWED for issue in path.issues):
+        return []
+    beads = [one.bead for one in path.beads]
+    return [predicted.heights_told(beads, toolpath.layer_height, process, bead_table.load(process.bead_model), as_run=True)]
 
 
 def _sums(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> tuple[tuple[str, float], ...]:

@@ -16,7 +16,7 @@ from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
 from ..core.toolpath import Toolpath
-from ..posts import catalogue
+from ..posts import catalogue, refusals
 from . import progress, user_machines
 from .joint_path import Planned
 from .stage import Link, Outcome, Section, Stage, Work
@@ -55,16 +55,41 @@ class Program(Stage):
         toolpath = toolpath_object.Proxy.value(toolpath_object)
         settings, folders = cell_object.Proxy.value(cell_object), user_machines.folders()
         process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
+        cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+        refuse(cell, process, parameters)
         planned, name, label = joint_object.Proxy.value(joint_object), obj.ProgramName, obj.Label
 
         def work() -> Outcome:
-            cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
             return _written(planned, toolpath, cell, process, parameters, name, label)
 
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
+
+
+    def refuse_early(self, obj: Any, cell: cells.Cell, process: ProcessParameters) -> None:
+        """Say at once, before its joint path is planned, what makes the program impossible in the cell."""
+        try:
+            refuse(cell, process, self.parameters(obj, ProgramParameters))
+        except InputError as error:
+            self.say_failed(obj, error)
+
+
+def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramParameters) -> None:
+    """What can be refused before anything is planned: InputError WRONG_CONTROLLER, NO_WIRE_OUTPUT, UNSUPPORTED_FRAME and
+    others of the post. A cell resolved without the feature's frame will do; an origin that is given by numbers is then not
+    looked at."""
+    if parameters.post == "none":
+        return
+    post: Any = catalogue.load(parameters.post)
+    programs.check_controller(cell.machine, parameters.post)
+    post.refuse_setup(parameters.motion, cell.setup)
+    carried = programs.on_table(cell, parameters)
+    if parameters.post == "linuxcnc" and parameters.motion == "cartesian" and carried is not None:
+        post.refuse_tilt(carried)
+    if process.wire.feed_mode != "constant" and post.NO_WIRE and not parameters.dry_run:
+        raise refusals.wire_refused(post.NO_WIRE)
 
 
 def _written(
@@ -74,7 +99,6 @@ def _written(
     """The files of a joint path, written and read back. InputError; InfeasibleError NOT_VERIFIED naming `label`."""
     motion = planned.motion
     post = catalogue.load(parameters.post)
-    post.refuse_setup(parameters.motion, cell.setup)
     progress.report(0.1, "building moves and events")
     if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
         beads = [path.bead for path in planned.joint_path.beads]

@@ -258,6 +258,11 @@ class Stage:
         self._kept = (key, outcome.value)
         obj.Key = key  # last: views draw when it changes
 
+    def say_failed(self, obj: Any, error: AmError) -> None:
+        """Say why it will fail, before what it waits for is computed."""
+        with self._own_changes():
+            _say(obj, FAILED, str(error))
+
     # ---- called by FreeCAD
 
     def execute(self, obj: Any) -> None:

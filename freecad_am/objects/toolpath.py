@@ -44,6 +44,10 @@ class Toolpath(Stage):
     )
 
     def prepare(self, obj: Any) -> Work:
+        for following in obj.InList:
+            stage = stage_of(following)
+            if stage is not None and stage.kind == "joint path":
+                following.Proxy.look_ahead(following)
         linked = self.linked(obj)
         feature, cell = linked["Feature"], linked["Cell"]
         shape = stage_of(feature)

@@ -238,6 +238,21 @@ def test_predicted_heights_are_reported_and_drawn(fin, workshop):
     assert fin("30 mm", ("bead_model: csw, ", ""), (", feed_mode: proportional", ""))[1]["beads"] is None
 
 
+def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
+    """The message tells what the report's figures do, which are of the waypoints' speeds."""
+    fast = ("strategy:", "build_direction: {max_turn: inf}\nstrategy:"), ("chord_error", "deflection: 20 deg, chord_error")
+    _, report, rows, _ = fin("10 mm", *fast, ("proportional", "constant"))
+    assert "SLOWED" in {issue["code"] for issue in report["issues"]}
+    (told,) = (issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT")
+    low, high, mean = (float(value) for value in re.search(r"predicted (\S+) to (\S+) mm high, (\S+) mm", told).groups())
+    figures = report["beads"]["height_mm"]
+    assert (low, high, mean) == tuple(pytest.approx(figures[key], rel=6e-3) for key in ("min", "max", "mean"))
+    speed = min(float(row["speed_mm_s"]) for row in rows if row["kind"] == "deposit" and row["point"] != "0")
+    m, _, t = _fitted("height_mm")
+    assert speed < 4.0 and high > 1.05 * (m * (60.0 * 5.0) ** (-1.0 / 3.0) + t)  # slower than the table knows
+    assert told.startswith("run as fast as the axes can follow, ")
+
+
 def _fitted(column):
     """Coefficients of a column of the built-in table, by the normal equations."""
     path = bead_table.FOLDER / bead_table.BUILT_IN["csw"]

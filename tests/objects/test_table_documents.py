@@ -6,13 +6,14 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
+from freecad_am.objects import toolpath as toolpaths
 
 
 def test_a_cell_becomes_a_table_and_the_job_follows(job):
     job.cell.Machine, job.cell.Setup, job.cell.Limits = "table-xyzac", "rotary-table", "maker"
     with pytest.raises(InputError) as caught:  # the program is one for FANUC
         api.recompute(job.program)
-    assert caught.value.code == "UNSUPPORTED_SETUP" and "rotary-table" in caught.value.message
+    assert caught.value.code == "WRONG_CONTROLLER" and "does not read fanuc; use one of siemens" in caught.value.message
     job.program.Post = "siemens"
     api.recompute(job.program)
     planned = api.result(job.joint_path)
@@ -40,3 +41,35 @@ def test_a_table_is_there_after_reopening(job, tmp_path):
         assert api.result(program).files == files
     finally:
         FreeCAD.closeDocument(again.Name)
+
+
+@pytest.mark.parametrize("cell", [
+    {"Platform": "11 -7 60 0 20 35"}, {"Machine": "fanuc-arcmate120ic", "Setup": "tool-on-robot"},
+])
+def test_what_makes_a_program_impossible_is_told_before_anything_is_planned(job, cell, monkeypatch):
+    """As headless, where such a job is refused before it is begun."""
+    import FreeCAD
+
+    job.cell.Machine, job.cell.Setup, job.cell.Limits = "table-xyzac", "rotary-table", "maker"
+    job.program.Post, job.program.Motion = "linuxcnc", "cartesian"
+    api.recompute(job.program)
+    assert job.program.Status == "up to date"
+    told = []
+    planned = toolpaths.planned
+
+    def watched(*inputs):
+        told.append((job.program.Status, job.program.Message))
+        return planned(*inputs)
+
+    monkeypatch.setattr(toolpaths, "planned", watched)
+    for name, value in cell.items():
+        setattr(job.cell, name, value)
+    FreeCAD.ActiveDocument.recompute()
+    (early,) = told
+    reason = "cell.platform: [11, -7, 60, 0, 0, 35]" if "Platform" in cell else "does not read linuxcnc"
+    assert early[0] == "failed" and reason in early[1]
+    if job.joint_path.Status == "up to date":
+        assert early == (job.program.Status, job.program.Message)
+    job.cell.Machine, job.cell.Setup, job.cell.Platform = "table-xyzac", "rotary-table", "60"
+    FreeCAD.ActiveDocument.recompute()
+    assert job.program.Status == "up to date", job.program.Message

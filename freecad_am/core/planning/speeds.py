@@ -17,6 +17,7 @@ from .joint_path import BeadPath
 
 Array = NDArray[np.float64]
 
+SLOWED = "SLOWED"
 JUST = 1.0 - 1e-9  # of what an axis can do
 PILE = 1.0  # of the bead's width: so much too much may lie where the deposit is slowed
 FLAT = 2.0  # a bead's width in layer heights where no model tells it
@@ -44,7 +45,7 @@ def rings_slowed(
         return result, []
     slowest = min(float(path.bead.speed.min()) for path in slowed)
     return result, [Issue(
-        WARNING, "SLOWED",
+        WARNING, SLOWED,
         f"{len(slowed)} bead(s) where the wall closes are run at down to {slowest:.3g} mm/s: the axes turn no faster",
         slowed[0].layer, slowed[0].index,
     )]
@@ -84,7 +85,7 @@ def corners_slowed(
         return result, []
     worst = min(places, key=lambda place: place.speed)
     return result, [Issue(
-        WARNING, "SLOWED",
+        WARNING, SLOWED,
         f"at {len(places)} short places, {sum(place.length for place in places):.3g} mm in all, the deposit is slowed, here "
         f"to {worst.speed:.3g} mm/s, for the axes go no faster; up to {max(place.pile for place in places):.2g} mm of the "
         f"bead more than meant lie there{_growth(places, worst, law)}",

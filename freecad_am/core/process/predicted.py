@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a bead model predicts of a toolpath: speeds, widths and heights, over all and layer by layer."""
+"""What a bead model predicts of a toolpath: speeds, widths and heights, over all and layer by layer, and in words."""
 
 from __future__ import annotations
 
@@ -9,8 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ..issues import NOTE, WARNING, Issue
+from ..parameters.process import ProcessParameters
 from ..toolpath import Array, Bead, Toolpath
-from .bead_model import MINUTE
+from .bead_model import MINUTE, BeadModel
+
+HEIGHTS = "BEAD_HEIGHT"
+DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,36 @@ def beads(toolpath: Toolpath) -> dict[str, Any] | None:
         "wire_feed_mm_s": _spread(whole.wire, whole.length) if np.isfinite(whole.wire).all() else None,
         "layers": rows,
     }
+
+
+def heights_told(
+    beads: Sequence[Bead], layer_height: float, process: ProcessParameters, model: BeadModel, as_run: bool = False
+) -> Issue:
+    """How high beads of the model are predicted at their speeds, against the layers. as_run: axes can follow these."""
+    some = segments(beads)
+    height = _spread(some.height, some.length)
+    drift = abs(height["mean"] - layer_height) / layer_height
+    return Issue(
+        WARNING if drift > DRIFT else NOTE, HEIGHTS,
+        f"{'run as fast as the axes can follow, ' if as_run else ''}beads are predicted {height['min']:.3g} to "
+        f"{height['max']:.3g} mm high, {height['mean']:.3g} mm in the mean, at layers of {layer_height:g} mm"
+        + ("; set strategy.layer_height to what the beads make" if drift > DRIFT else "") + _sections(some, process, model),
+    )
+
+
+def _sections(some: Segments, process: ProcessParameters, model: BeadModel) -> str:
+    """What a wire feed in proportion to the speed is, or would be, where speeds vary."""
+    if np.isfinite(some.wire).all():
+        low, high = float(some.wire.min()), float(some.wire.max())
+        return f". The wire runs in proportion to the speed, at {low:.3g} to {high:.3g} mm/s, and keeps their section"
+    per_mm = process.wire.feed / model.straight_speed(process.bead_width)
+    slowest, fastest = (per_mm * float(value) / MINUTE for value in (some.speed.min(), some.speed.max()))
+    if fastest < 1.05 * slowest:
+        return ""
+    return (
+        ". At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at "
+        f"{slowest:.3g} to {fastest:.3g} mm/s of wire"
+    )
 
 
 def _spread(values: Array, length: Array) -> dict[str, float]:

@@ -11,10 +11,10 @@ from ..issues import NOTE, WARNING, Issue
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import DevelopableParameters
 from ..process.bead_model import MINUTE, BeadModel
+from ..process.predicted import heights_told
 from ..toolpath import Array, Layer
 from .hub_beads import Rolled
 
-DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
 CLAMPED = 0.05  # of the length
 
 
@@ -64,7 +64,6 @@ def _of_model(
 ) -> list[Issue]:
     length = np.concatenate([np.linalg.norm(np.diff(one.bead.points, axis=0), axis=1) for one in made])
     speed = np.concatenate([one.bead.speed[1:] for one in made]) * MINUTE
-    height = np.concatenate([one.bead.height[1:] for one in made if one.bead.height is not None])
     fit = model.width
     found = [Issue(
         NOTE, "BEAD_MODEL", f"w = {fit.m:.4g} v^(-1/3) + {fit.p:.4g} / r + {fit.t:.4g} with R2 = {fit.r_squared:.4f} "
@@ -72,15 +71,7 @@ def _of_model(
         f"{speed.max():.4g} mm/min",
     )]
     found += _outside(made, length, process.bead_width, model)
-    mean = float((height * length).sum() / length.sum())
-    drift = abs(mean - strategy.layer_height) / strategy.layer_height
-    found.append(Issue(
-        WARNING if drift > DRIFT else NOTE, "BEAD_HEIGHT",
-        f"beads are predicted {height.min():.3g} to {height.max():.3g} mm high, {mean:.3g} mm in the mean, at layers of "
-        f"{strategy.layer_height:g} mm"
-        + ("; set strategy.layer_height to what the beads make" if drift > DRIFT else "")
-        + _sections(made, speed, process, model),
-    ))
+    found.append(heights_told([one.bead for one in made], strategy.layer_height, process, model))
     if abs(process.wire.feed - model.wire_feed) > 0.01 * model.wire_feed:
         found.append(Issue(
             WARNING, "WIRE_FEED", f"the table was measured at a wire feed of {model.wire_feed:.4g} mm/s, the job has "
@@ -112,17 +103,3 @@ def _outside(made: Sequence[Rolled], length: Array, wanted: float, model: BeadMo
             f"{model.radii[0]:.4g} mm or more, and counts as bent like these; widths are only estimated there",
         ))
     return found
-
-
-def _sections(made: Sequence[Rolled], speed: Array, process: ProcessParameters, model: BeadModel) -> str:
-    """What a wire feed in proportion to the speed is, or would be, where speeds vary."""
-    per_mm = process.wire.feed / model.straight_speed(process.bead_width)
-    slowest, fastest = (per_mm * float(value) / MINUTE for value in (speed.min(), speed.max()))
-    if any(one.bead.wire_share is not None for one in made):
-        return f". The wire runs in proportion to the speed, at {slowest:.3g} to {fastest:.3g} mm/s, and keeps their section"
-    if fastest < 1.05 * slowest:
-        return ""
-    return (
-        ". At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at "
-        f"{slowest:.3g} to {fastest:.3g} mm/s of wire"
-    )
