@@ -3,18 +3,22 @@
 
 import FreeCADGui as Gui
 
+from freecad_am.gui import texts
 from freecad_am.objects import hooks
+
+texts.install()
 
 
 class RoboticAMWorkbench(Gui.Workbench):
     """Robotic AM: from a part to a checked robot program."""
 
     MenuText = "Robotic AM"
-    ToolTip = "Layers, joint paths and checked programs for robots that deposit material"
 
     def __init__(self):
         from freecad_am.gui import icons
+        from freecad_am.gui.texts import tr
 
+        self.__class__.ToolTip = tr("Layers, joint paths and checked programs for robots that deposit material")
         self.__class__.Icon = icons.path("workbench")
 
     def Initialize(self):

@@ -20,7 +20,7 @@ class Tool:
     lacks for it; `beside`: whether it acts beside a task panel that is open."""
 
     name = ""  # without prefix
-    told = ""
+    lacking = ""
 
     def __init__(
         self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
@@ -43,9 +43,8 @@ class Tool:
         """Whether it can act; the tooltip says what is missing when it cannot."""
         lacking = self.missing()
         help = tr(self.help)
-        told = tr("{}. {}").format(help, lacking) if lacking else help
-        if told != self.told and self._explain(told):
-            self.told = told
+        if lacking != self.lacking and self._explain(tr("{}. {}").format(help, lacking) if lacking else help):
+            self.lacking = lacking
         return not lacking
 
     def missing(self) -> str:

@@ -8,12 +8,19 @@ from functools import lru_cache
 from pathlib import Path
 
 import FreeCAD as App
+import FreeCADGui as Gui
 
 from ..core.issues import AmError
 from .phrases import Phrases
 
 CONTEXT = "RoboticAM"
 FOLDER = Path(__file__).resolve().parents[2] / "resources" / "translations"
+
+
+def install() -> None:
+    """Let FreeCAD find our translations, and use that of its language."""
+    Gui.addLanguagePath(str(FOLDER))
+    Gui.updateLocale()
 
 
 def tr(text: str) -> str:

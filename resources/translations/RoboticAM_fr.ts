@@ -1,0 +1,9360 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="fr">
+<context>
+    <name>App::Property</name>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>A contour is laid round lines and zigzags.</source>
+        <translation>Un contour est posé autour des lignes et des zigzags.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>A machine of the list, or the path of a machine file.</source>
+        <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>A region narrower than a bead gets a single bead, or the job is refused.</source>
+        <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
+        <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
+        <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Analogue output that tells the speed of the wire where it follows the travel speed.</source>
+        <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Angle between the nozzle&apos;s axis and its side.</source>
+        <translation>Angle entre l&apos;axe de la buse et son flanc.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Arrays of the result.</source>
+        <translation>Tableaux du résultat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
+        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>By how much the input&apos;s value in a program rises with a degree.</source>
+        <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Change of the objective and of the coefficients at which the optimiser stops.</source>
+        <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Clamps and other bodies around the part, which the nozzle is kept clear of.</source>
+        <translation>Brides et autres corps autour de la pièce, dont la buse est tenue éloignée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Closed beads layer by layer, or one continuous spiral.</source>
+        <translation>Cordons fermés couche par couche, ou une spirale continue.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Degree of the polynomial of a layer.</source>
+        <translation>Degré du polynôme d&apos;une couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Density of the deposit in g/cm³; tells its mass.</source>
+        <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Deposit switched off this long after a bead ends.</source>
+        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Deposit switched off this long after a bead ends. (s)</source>
+        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Deposit switched on this long before a bead starts.</source>
+        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Deposit switched on this long before a bead starts. (s)</source>
+        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Deviations up to this, outside or inside, are within tolerance.</source>
+        <translation>Les écarts jusqu&apos;à cette valeur, vers l&apos;extérieur ou l&apos;intérieur, sont dans la tolérance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Diameter of the nozzle&apos;s flat tip.</source>
+        <translation>Diamètre du bout plat de la buse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Diameter of the platform; counts in clearance.</source>
+        <translation>Diamètre du plateau ; compte dans le dégagement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Diameter of the wire.</source>
+        <translation>Diamètre du fil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Digital output that switches the deposit.</source>
+        <translation>Sortie logique qui commande le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Direction of closed beads seen against the build direction; open beads run as found unless alternate.</source>
+        <translation>Sens des cordons fermés vu contre la direction de dépôt ; les cordons ouverts courent tels que trouvés, sauf avec alternate.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Direction of lines and zigzags; 0 runs around the hub, 90 deg along it.</source>
+        <translation>Direction des lignes et des zigzags ; 0 court autour du moyeu, 90 deg le long de celui-ci.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Distance between neighbouring beads of a layer.</source>
+        <translation>Distance entre cordons voisins d&apos;une couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Distance between neighbouring layers.</source>
+        <translation>Distance entre couches voisines.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Divides the translation rows of the Jacobian.</source>
+        <translation>Divise les lignes de translation du jacobien.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>Draw beads as lines, or as tubes as wide and high as they are.</source>
+        <translation>Dessiner les cordons en lignes, ou en tubes aussi larges et hauts qu&apos;eux.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>Edges of the wall in which layers start, in place of where it leaves the substrate.</source>
+        <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>FANUC: CNT value of the moves within a bead.</source>
+        <translation>FANUC : valeur CNT des mouvements au sein d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Faces of the wall, from the platform up.</source>
+        <translation>Faces de la paroi, du plateau vers le haut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>Faces of the wall.</source>
+        <translation>Faces de la paroi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
+        <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Fewest points of a full turn, however small its radius.</source>
+        <translation>Nombre minimal de points d&apos;un tour entier, si petit que soit son rayon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Findings, as JSON.</source>
+        <translation>Remarques, en JSON.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Fingerprint of the inputs the result was made from.</source>
+        <translation>Empreinte des entrées dont le résultat a été fait.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>First bead of that layer.</source>
+        <translation>Premier cordon de cette couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>First layer to deposit.</source>
+        <translation>Première couche à déposer.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Four axes only: by how much the tool may miss the direction asked for.</source>
+        <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>From the base circle to the apex of the cone, along the axis; inf: a cylinder. (mm)</source>
+        <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it. (mm)</source>
+        <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Further methods planned for the comparison of the report.</source>
+        <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>Further solids or closed meshes to deposit on the same hub.</source>
+        <translation>Autres solides ou maillages fermés à déposer sur le même moyeu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Further spacings whose joint paths are planned for the comparison of the report.</source>
+        <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Heights above the part&apos;s base, in mm, at which circularity is told; none: a sixth, a half and five sixths of what was measured.</source>
+        <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far a closed bead runs on past its seam.</source>
+        <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
+        <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How far the direction of lines and zigzags turns from layer to layer.</source>
+        <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the start moves from layer to layer.</source>
+        <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the tool is withdrawn along its axis between beads.</source>
+        <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>How long computing took.</source>
+        <translation>Combien de temps a pris le calcul.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How long to wait between layers.</source>
+        <translation>Temps d&apos;attente entre les couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How long to wait between layers. (s)</source>
+        <translation>Temps d&apos;attente entre les couches. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
+        <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Iterations after which the optimiser gives up on a layer.</source>
+        <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Largest angle between the tool axis and the vertical of the part.</source>
+        <translation>Plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.</source>
+        <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, là où un modèle de cordon la règle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Largest deviation.</source>
+        <translation>Plus grand écart.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Largest distance between a bead and the straight segments that stand for it.</source>
+        <translation>Plus grande distance entre un cordon et les segments droits qui le représentent.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Largest error of the local distance of constant-distance layers.</source>
+        <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told. (deg/mm)</source>
+        <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante et sur les moyeux ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers alone.</source>
+        <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
+        <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layers equally spaced along the wall (arc-length) or along the axis (iso-height).</source>
+        <translation>Couches également espacées le long de la paroi (arc-length) ou le long de l&apos;axe (iso-height).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Lead times and waits between layers (s).</source>
+        <translation>Temps d&apos;avance et de retard et attentes entre les couches (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Least deviation.</source>
+        <translation>Plus petit écart.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
+        <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time between the end of a solid&apos;s layer and the start of its next. (s)</source>
+        <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Length of all beads.</source>
+        <translation>Longueur de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Length of the deposit as it is run.</source>
+        <translation>Longueur du dépôt tel que parcouru.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>Length of the lines that show build directions.</source>
+        <translation>Longueur des lignes qui montrent les directions de dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Length of the meridian.</source>
+        <translation>Longueur du méridien.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Length of the nozzle from its tip.</source>
+        <translation>Longueur de la buse à partir de son bout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone.</source>
+        <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>LinuxCNC: how far corners may be rounded (G64 P).</source>
+        <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be longer another zigzag begins. (%)</source>
+        <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>M or H word that switches the deposit off.</source>
+        <translation>Mot M ou H qui coupe le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.</source>
+        <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cell.py"/>
+        <source>Maker and model of the machine.</source>
+        <translation>Constructeur et modèle de la machine.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Mass of the deposit (g).</source>
+        <translation>Masse du dépôt (g).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Mean deviation, outside with a plus.</source>
+        <translation>Écart moyen, vers l&apos;extérieur avec un plus.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Method constant: the one RZ, or auto to search it. (deg)</source>
+        <translation>Méthode constant : le RZ unique, ou auto pour le chercher. (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other bead, in deg and deg per turn.</source>
+        <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
+        <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Most points of one program file; longer ones are chained.</source>
+        <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>Name of the program and of its files.</source>
+        <translation>Nom du programme et de ses fichiers.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Name of the program to call between layers, such as nozzle cleaning.</source>
+        <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Normal of the plane of symmetry-plane, as x y z in the part&apos;s coordinates; auto: the plane of a bend.</source>
+        <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Number of beads.</source>
+        <translation>Nombre de cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Number of layers.</source>
+        <translation>Nombre de couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Number of points of all beads.</source>
+        <translation>Nombre de points de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Number of points that count.</source>
+        <translation>Nombre de points qui comptent.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>Number of solids.</source>
+        <translation>Nombre de solides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the analogue input that the sensor is on.</source>
+        <translation>Numéro de l&apos;entrée analogique du capteur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the digital input to wait for between layers.</source>
+        <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Number of the tool frame named in the program.</source>
+        <translation>Numéro du repère outil nommé dans le programme.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Number of the user frame named in the program.</source>
+        <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>One polynomial per layer, one value per point, or one value for the whole job.</source>
+        <translation>Un polynôme par couche, une valeur par point, ou une valeur pour tout le travail.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing. (%)</source>
+        <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag.</source>
+        <translation>Contours parallèles, lignes parallèles, ou les uns ou les autres liés : spirale, zigzag.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned surface itself is the measured one.</source>
+        <translation>Épaisseur prévue de la paroi, une moitié de chaque côté de la surface prévue ; 0 : la surface prévue elle-même est celle mesurée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Points as joint values, or as positions of the tool.</source>
+        <translation>Points en valeurs articulaires, ou en positions de l&apos;outil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Points up to this far above or below such a height count there, slid along the planned surface.</source>
+        <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Radius of the base circle; auto: the face chosen, or the one that the solids stand on. (mm)</source>
+        <translation>Rayon du cercle de base ; auto : la face choisie, ou celle sur laquelle reposent les solides. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Radius of the probe&apos;s ball where its centre was measured; 0 where the points lie on the surface.</source>
+        <translation>Rayon de la bille du palpeur si son centre a été mesuré ; 0 si les points sont sur la surface.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: shoulder, elbow and wrist, or auto to search all eight.</source>
+        <translation>Robots : épaule, coude et poignet, ou auto pour chercher parmi les huit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. In the maker&apos;s base frame.</source>
+        <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).</source>
+        <translation>Plateau rotatif seulement : lequel des deux axes de rotation, comptés à partir de la torche, reste immobile (quatre axes).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>SINUMERIK: block compressor (COMPCAD) in beads whose feed is a speed.</source>
+        <translation>SINUMERIK : compresseur de blocs (COMPCAD) dans les cordons dont l&apos;avance est une vitesse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>SINUMERIK: rounding (G642), jerk limit (SOFT) and feed forward (FFWON).</source>
+        <translation>SINUMERIK : arrondi (G642), limitation du jerk (SOFT) et anticipation (FFWON).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
+        <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning. (%)</source>
+        <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Share of the points within tolerance (%).</source>
+        <translation>Part des points dans la tolérance (%).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Share of the points, those farthest off, that the fit leaves out. (%)</source>
+        <translation>Part des points, les plus écartés, que l&apos;ajustement laisse de côté. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Shielding gas; carried along.</source>
+        <translation>Gaz de protection ; transmis tel quel.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Shoulder, elbow and wrist of this joint path; cell: as the cell says.</source>
+        <translation>Épaule, coude et poignet de cette trajectoire articulaire ; cell : ce que dit la cellule.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/view.py"/>
+        <source>Show in the corner of the view what the colours mean.</source>
+        <translation>Montrer dans le coin de la vue ce que veulent dire les couleurs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>Show the build direction of every how many-th point.</source>
+        <translation>Montrer la direction de dépôt d&apos;un point sur combien.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>Show the build directions as short lines.</source>
+        <translation>Montrer les directions de dépôt par de courtes lignes.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_cell.py"/>
+        <source>Show the machine at rest, the nozzle upright on the highest point.</source>
+        <translation>Montrer la machine au repos, la buse droite sur le point le plus haut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <source>Show the rapid moves as thin dashed lines.</source>
+        <translation>Montrer les mouvements rapides par de fins tirets.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/view.py"/>
+        <source>Size of the points in pixels.</source>
+        <translation>Taille des points en pixels.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
+        <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Smallest condition of the Jacobian while depositing.</source>
+        <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed between beads.</source>
+        <translation>Vitesse entre les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the torch along the deposit while depositing.</source>
+        <translation>Vitesse de la torche le long du dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the wire.</source>
+        <translation>Vitesse du fil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
+        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Stand-off of the nozzle; carried along. (mm)</source>
+        <translation>Distance de la buse à la pièce ; transmise telle quelle. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Standard deviation of the deviations.</source>
+        <translation>Écart type des écarts.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the torch waits above where that begins.</source>
+        <translation>Température en degrés Celsius sous laquelle un solide, ou une paroi, doit être avant sa couche suivante ; la torche attend au-dessus de son départ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Temperature in degrees Celsius; carried along.</source>
+        <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>The cell that runs it.</source>
+        <translation>La cellule qui l&apos;exécute.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>The cell, for the clearance of nozzle and platform.</source>
+        <translation>La cellule, pour le dégagement de la buse et du plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The controller the program is written for, or none.</source>
+        <translation>La commande pour laquelle le programme est écrit, ou none.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>The controller&apos;s files; double-click to read and export them.</source>
+        <translation>Les fichiers de la commande ; double-cliquez pour les lire et les exporter.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The cylinders and cones of the hub to grow on; found when left out.</source>
+        <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>The feature to deposit.</source>
+        <translation>L&apos;élément à déposer.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>The feature, toolpath, or object with a shape or mesh that was measured.</source>
+        <translation>L&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>The file of measured points or of a scanned mesh.</source>
+        <translation>Le fichier des points mesurés ou d&apos;un maillage numérisé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The hub; none is needed where it is one of the solids, or the base is given by numbers.</source>
+        <translation>Le moyeu ; inutile s&apos;il est l&apos;un des solides, ou si la base est donnée par des nombres.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>The input&apos;s value in a program at 0 degrees Celsius.</source>
+        <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>The joint path to write.</source>
+        <translation>La trajectoire articulaire à écrire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
+        <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The same motion without deposit.</source>
+        <translation>Le même mouvement sans dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>The shape to deposit, or some of its faces.</source>
+        <translation>La forme à déposer, ou certaines de ses faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.</source>
+        <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The solids or closed meshes to deposit; or a part and the faces of its hub, where both are one solid.</source>
+        <translation>Les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The surfaces that solids stand on.</source>
+        <translation>Les surfaces sur lesquelles reposent les solides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>The toolpath to run.</source>
+        <translation>La trajectoire d&apos;outil à exécuter.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>The wall to deposit, or its faces.</source>
+        <translation>La paroi à déposer, ou ses faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Time of all moves (s).</source>
+        <translation>Temps de tous les mouvements (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Time of depositing moves (s).</source>
+        <translation>Temps des mouvements de dépôt (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Time of the whole job with lead times and waits between layers (s).</source>
+        <translation>Temps de tout le travail avec avances, retards et attentes entre les couches (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_hub.py"/>
+        <source>Tint the cylinders and cones that solids stand on.</source>
+        <translation>Teinter les cylindres et cônes sur lesquels reposent les solides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_feature.py"/>
+        <source>Tint the faces of a wall on a substrate.</source>
+        <translation>Teinter les faces d&apos;une paroi sur un substrat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Tool axis turned forward along the bead, from the build direction.</source>
+        <translation>Axe de l&apos;outil tourné vers l&apos;avant le long du cordon, à partir de la direction de dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Tool axis turned sideways, towards the outside of the wall, from the build direction.</source>
+        <translation>Axe de l&apos;outil tourné de côté, vers l&apos;extérieur de la paroi, à partir de la direction de dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.</source>
+        <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Torch turned outwards about the bead on outer contours.</source>
+        <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Turn of the bead within the wall that smooth layers stay below where the band allows. (deg/mm)</source>
+        <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet. (deg/mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Unit of the measured coordinates; auto: the one that the file names, else mm.</source>
+        <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Value of that output at 1 m/min of wire.</source>
+        <translation>Valeur de cette sortie à 1 m/min de fil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Version of these properties.</source>
+        <translation>Version de ces propriétés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Volume of the deposit, bead width times layer height (cm³).</source>
+        <translation>Volume du dépôt, largeur de cordon fois hauteur de couche (cm³).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>What a joint path is judged by.</source>
+        <translation>Ce qui juge une trajectoire articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>What is where in the arrays.</source>
+        <translation>Ce qui est où dans les tableaux.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>What is wrong, and what to do.</source>
+        <translation>Ce qui ne va pas, et que faire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <source>What the colours of the beads tell.</source>
+        <translation>Ce que disent les couleurs des cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>What the object is, should its proxy be lost.</source>
+        <translation>Ce qu&apos;est l&apos;objet, si son proxy était perdu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.</source>
+        <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>What the positions of Cartesian programs are relative to, in the part&apos;s coordinates: x y z mm, RX RY RZ deg; auto: the frame that sits on the platform.</source>
+        <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>What was in the file.</source>
+        <translation>Ce qui était dans le fichier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Where closed beads start.</source>
+        <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is looked for.</source>
+        <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Where the locked axis stands; auto: where the largest angle left is least. (deg)</source>
+        <translation>Là où se tient l&apos;axe bloqué ; auto : là où le plus grand angle restant est le plus petit. (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Whether the result fits.</source>
+        <translation>Si le résultat correspond.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Which frame sits on the platform: the feature&apos;s own, or that of the part file.</source>
+        <translation>Quel repère repose sur le plateau : celui de l&apos;élément à déposer, ou celui du fichier de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Which of part and tool the robot carries, or a machine with rotary axes.</source>
+        <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Which set of joint limits of the machine file holds.</source>
+        <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Which side of a wall was measured: that of its outer normals, the inner one, or both.</source>
+        <translation>Quel côté d&apos;une paroi a été mesuré : celui de ses normales extérieures, l&apos;intérieur, ou les deux.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Which wall of a solid is deposited; middle runs halfway between outer and inner.</source>
+        <translation>Quelle paroi d&apos;un solide est déposée ; middle court à mi-chemin entre l&apos;extérieure et l&apos;intérieure.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Widest gap that may stay open between beads, as a share of the bead spacing. (%)</source>
+        <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.</source>
+        <translation>Largeur du cordon ; tenue par le modèle de cordon. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>Width of the beads&apos; lines in pixels.</source>
+        <translation>Largeur des lignes des cordons en pixels.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Width of the narrowest zone between two circles, by height.</source>
+        <translation>Largeur de la zone la plus étroite entre deux cercles, par hauteur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Width of the narrowest zone between two spheres that holds all points.</source>
+        <translation>Largeur de la zone la plus étroite entre deux sphères qui contient tous les points.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>local: tangent to the wall at each point; layer: one direction per layer; fixed: the axis of the part.</source>
+        <translation>local : tangente à la paroi en chaque point ; layer : une direction par couche ; fixed : l&apos;axe de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.</source>
+        <translation>nozzle : pas plus d&apos;inclinaison qu&apos;il n&apos;en faut pour tenir la buse éloignée du dépôt et du plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>torus, cone (cylinders too) or table; patches for a wall of any connected faces.</source>
+        <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces jointes quelconques.</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM</name>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source> or </source>
+        <translation> ou </translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>(planned)</source>
+        <translation>(planifié)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>, and </source>
+        <translation>, et </translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <source>. At one wire feed faster stretches are lower; process.wire.feed_mode: proportional would keep the section, at {0} to {1} mm/s of wire</source>
+        <translation>. Au même dévidage les passages plus rapides sont plus bas ; process.wire.feed_mode: proportional garderait la section, à {0} à {1} mm/s de fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <source>. The wire runs in proportion to the speed, at {0} to {1} mm/s, and keeps their section</source>
+        <translation>. Le fil court en proportion de la vitesse, de {0} à {1} mm/s, et garde leur section</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <source>. Times {0} it would reach {1}: is its file in {2}? Then export it in mm</source>
+        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>0, or 1 where the joint slides along z: a machine with rotary axes has three of them</source>
+        <translation>0, ou 1 si l&apos;articulation glisse le long de z : une machine à axes rotatifs en a trois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>1 solid on {1} ({2})</source>
+        <translation>1 solide sur {1} ({2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>1, or -1 where the joint moves the other way</source>
+        <translation>1, ou -1 si l&apos;articulation va dans l&apos;autre sens</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>95 % of the amounts within</source>
+        <translation>95 % des écarts absolus sous</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>: it is up to {0} mm wider there and {1} mm higher, by the bead model</source>
+        <translation>: il y est jusqu&apos;à {0} mm plus large et {1} mm plus haut, d&apos;après le modèle de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>: it is up to {0} mm wider there and {1} mm higher, by the bead model; slower than {2} mm/s nothing was measured</source>
+        <translation>: il y est jusqu&apos;à {0} mm plus large et {1} mm plus haut, d&apos;après le modèle de cordon ; au-dessous de {2} mm/s rien n&apos;a été mesuré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>: it is up to {0} mm wider there, by the bead model</source>
+        <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>: it is up to {0} mm wider there, by the bead model; slower than {1} mm/s nothing was measured</source>
+        <translation>: il y est jusqu&apos;à {0} mm plus large, d&apos;après le modèle de cordon ; au-dessous de {1} mm/s rien n&apos;a été mesuré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>; between the edges of its triangles it runs smoothly, up to {0} mm off them, about as far as they are off what they stand for</source>
+        <translation>; entre les arêtes de ses triangles elle court régulièrement, à {0} mm d&apos;eux au plus, à peu près autant qu&apos;ils s&apos;écartent de ce qu&apos;ils représentent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>&lt;{0}&gt; has no &lt;{1}&gt;</source>
+        <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>&lt;{0}&gt; has no {1}</source>
+        <translation>&lt;{0}&gt; n&apos;a pas de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>&lt;{0}&gt; {1} has no &lt;{2}&gt;</source>
+        <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>A URDF file</source>
+        <translation>Un fichier URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>A contour is laid round lines and zigzags.</source>
+        <translation>Un contour est posé autour des lignes et des zigzags.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>A copy of another machine</source>
+        <translation>Une copie d&apos;une autre machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>A further folder of machine files, such as one that is shared; your own are in {} as well</source>
+        <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <source>A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse</source>
+        <translation>Une articulation devrait aller à {:.0f} % de sa vitesse : le planificateur la ralentira, ou refusera</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>A machine of the list, or the path of a machine file.</source>
+        <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>A part of revolution needs exact faces; {} is a mesh.</source>
+        <translation>Une pièce de révolution demande des faces exactes ; {} est un maillage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>A region narrower than a bead gets a single bead, or the job is refused.</source>
+        <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
+        <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>A table of Denavit and Hartenberg</source>
+        <translation>Un tableau de Denavit et Hartenberg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>AO[] between two moves of a FANUC is set when its line is read, ahead of the motion</source>
+        <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>Acceleration</source>
+        <translation>Accélération</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Adds a cell: machine, set-up, platform and nozzle</source>
+        <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>After</source>
+        <translation>Après</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>All beads together</source>
+        <translation>Tous les cordons ensemble</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>All files</source>
+        <translation>Tous les fichiers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <source>All points serve</source>
+        <translation>Tous les points conviennent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
+        <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>Allowed: {}.</source>
+        <translation>Permis : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Along the time of the job, or along its path</source>
+        <translation>Le long du temps du travail, ou le long de sa trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Analogue output that tells the speed of the wire where it follows the travel speed.</source>
+        <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Angle</source>
+        <translation>Angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Angle between the nozzle&apos;s axis and its side.</source>
+        <translation>Angle entre l&apos;axe de la buse et son flanc.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Angle that is added to the joint&apos;s, deg</source>
+        <translation>Angle ajouté à celui de l&apos;articulation, deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>Another task panel is open; close it first.</source>
+        <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <source>As planned</source>
+        <translation>Comme planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Axes on the pendant: -1 where it counts the other way; what it shows at zero</source>
+        <translation>Axes sur le pupitre : -1 là où il compte dans l&apos;autre sens ; ce qu&apos;il montre à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Axis</source>
+        <translation>Axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Axis 2 is a1 ahead of axis 1 and c1 above the base; c2 to axis 3; axis 4 is a2 from axis 3 (negative: above it), b to the side; c3 to the wrist centre, c4 to the flange. The angle of the arm is q · sign - offset; at zero it stretches straight up.</source>
+        <translation>L&apos;axe 2 est à a1 devant l&apos;axe 1 et à c1 au-dessus de la base ; c2 jusqu&apos;à l&apos;axe 3 ; l&apos;axe 4 est à a2 de l&apos;axe 3 (négatif : au-dessus de lui), b de côté ; c3 jusqu&apos;au centre du poignet, c4 jusqu&apos;à la bride. L&apos;angle du bras est q · signe - décalage ; à zéro il se tend droit vers le haut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Axis 3 is shown against link 2, as it is</source>
+        <translation>L&apos;axe 3 est montré par rapport au corps 2, tel qu&apos;il est</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Axis 3 is shown against the horizontal (FANUC, some of ABB)</source>
+        <translation>L&apos;axe 3 est montré par rapport à l&apos;horizontale (FANUC, certains ABB)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Back</source>
+        <translation>Retour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>Back to the start of the layer</source>
+        <translation>Retour au début de la couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Band</source>
+        <translation>Bande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Base</source>
+        <translation>Base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>Base faces</source>
+        <translation>Faces de base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Base: the maker&apos;s own base frame, in which the pendant tells positions, seen from the floor plate. FANUC&apos;s lies at the height of axis 2. Flange: in the last link, its Z out of the plate. Rotation: about X, then Y, then Z.</source>
+        <translation>Base : le repère de base du constructeur, dans lequel le pupitre dit les positions, vu de la plaque au sol. Celui de FANUC est à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, son Z hors de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Bead</source>
+        <translation>Cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Bead model</source>
+        <translation>Modèle de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Bead overlap</source>
+        <translation>Recouvrement des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Bead spacing</source>
+        <translation>Distance des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Bead turn</source>
+        <translation>Rotation par cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Bead width</source>
+        <translation>Largeur de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Beads that close gaps are made no shorter than this; others that are shorter are left out.</source>
+        <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Before</source>
+        <translation>Avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Below</source>
+        <translation>Au-dessous de</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Between layers</source>
+        <translation>Entre les couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Blend</source>
+        <translation>Lissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Branch</source>
+        <translation>Branche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Browse…</source>
+        <translation>Parcourir…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Build direction</source>
+        <translation>Direction de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Build directions</source>
+        <translation>Directions de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>By default: {}.</source>
+        <translation>Par défaut : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>By how much the input&apos;s value in a program rises with a degree.</source>
+        <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <source>CAM path</source>
+        <translation>trajectoire CAM</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>CAM path in this document</source>
+        <translation>Trajectoire CAM dans ce document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <source>Calibration table</source>
+        <translation>Tableau d&apos;étalonnage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Call</source>
+        <translation>Appel</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/busy.py"/>
+        <source>Cancel</source>
+        <translation>Annuler</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Cancelled: nothing was made.</source>
+        <translation>Annulé : rien n&apos;a été fait.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Cancelled: the document is as it was.</source>
+        <translation>Annulé : le document est tel qu&apos;il était.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>Cartesian motion with the part on the robot means remote TCP, and what the position records of such moves (RX RY RZ RW RP RR) stand for is not understood well enough to write them; use `motion: joint`</source>
+        <translation>le mouvement cartésien avec la pièce sur le robot veut dire TCP distant, et ce que représentent les enregistrements de position de tels mouvements (RX RY RZ RW RP RR) n&apos;est pas assez compris pour les écrire ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <source>Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or `motion: joint`</source>
+        <translation>les positions cartésiennes ne sont écrites que pour un bras tendu vers l&apos;avant ; utilisez `branch: [front, ...]` ou `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>Cell</source>
+        <translation>Cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Cell, feature, toolpath, joint path and program are made with their defaults; double-click one in the tree to change it.</source>
+        <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont faits avec leurs valeurs par défaut ; double-cliquez sur l&apos;un d&apos;eux dans l&apos;arbre pour le modifier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Cell…</source>
+        <translation>Cellule…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Change of the objective and of the coefficients at which the optimiser stops.</source>
+        <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>Changes the conventions so; poses stay as they were typed</source>
+        <translation>Change ainsi les conventions ; les poses restent telles que saisies</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Characteristic length</source>
+        <translation>Longueur caractéristique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>Check poses</source>
+        <translation>Poses de contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <source>Choose a table…</source>
+        <translation>Choisir un tableau…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Choose the file</source>
+        <translation>Choisir le fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Choose the file of the measured points.</source>
+        <translation>Choisissez le fichier des points mesurés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Choose…</source>
+        <translation>Choisir…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Chord error</source>
+        <translation>Erreur de corde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Circularity at {0}</source>
+        <translation>Circularité à {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Circularity defect at {0} mm</source>
+        <translation>Défaut de circularité à {0} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Circularity defect at {0} mm, least squares</source>
+        <translation>Défaut de circularité à {0} mm, moindres carrés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Clamps and other bodies around the part, which the nozzle is kept clear of.</source>
+        <translation>Brides et autres corps autour de la pièce, dont la buse est tenue éloignée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Clearance</source>
+        <translation>Dégagement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>Clears it</source>
+        <translation>Efface le choix</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>Click edges of one object.</source>
+        <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such.</source>
+        <translation>Cliquez sur ce qui est à déposer, dans l&apos;arbre ou la vue 3D ; puis avec Ctrl sur ce sur quoi cela croît, s&apos;il y a lieu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Close</source>
+        <translation>Fermer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Closed beads layer by layer, or one continuous spiral.</source>
+        <translation>Cordons fermés couche par couche, ou une spirale continue.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Closed form (mm): {}</source>
+        <translation>Forme explicite (mm) : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Closes this window</source>
+        <translation>Ferme cette fenêtre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Colour of machines</source>
+        <translation>Couleur des machines</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Colours</source>
+        <translation>Couleurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Colours of paths</source>
+        <translation>Couleurs des trajectoires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Compare</source>
+        <translation>Comparer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <source>Compare methods</source>
+        <translation>Comparer les méthodes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Compares measured points with what was planned</source>
+        <translation>Compare des points mesurés à ce qui était prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Compress</source>
+        <translation>Compression</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Compute again</source>
+        <translation>Recalculer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Computing…</source>
+        <translation>Calcul en cours…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Condition</source>
+        <translation>Condition</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Condition of the Jacobian (0 is singular)</source>
+        <translation>Condition du jacobien (0 est singulier)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Contour</source>
+        <translation>Contour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Cooling</source>
+        <translation>Refroidissement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Curve</source>
+        <translation>Courbe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Cuts a feature into layers and beads</source>
+        <translation>Découpe un élément en couches et en cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>DXF file of polylines</source>
+        <translation>Fichier DXF de polylignes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Defects are widths of the narrowest zone, as ISO 1101 has them</source>
+        <translation>Les défauts sont les largeurs de la zone la plus étroite, selon ISO 1101</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Deflection</source>
+        <translation>Flèche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Degree</source>
+        <translation>Degré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Degree of the polynomial of a layer.</source>
+        <translation>Degré du polynôme d&apos;une couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Degree of the polynomials</source>
+        <translation>Degré des polynômes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Density</source>
+        <translation>Masse volumique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/preferences.py"/>
+        <source>Density (g/cm³)</source>
+        <translation>Masse volumique (g/cm³)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Density of the deposit in g/cm³; tells its mass.</source>
+        <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Deposit</source>
+        <translation>Déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Deposit off</source>
+        <translation>Dépôt arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Deposit on</source>
+        <translation>Dépôt marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Deposit output</source>
+        <translation>Sortie de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Deposit rate</source>
+        <translation>Débit de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Deposit switched off this long after a bead ends.</source>
+        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Deposit switched on this long before a bead starts.</source>
+        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Deposited mass</source>
+        <translation>Masse déposée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Depositing</source>
+        <translation>Dépôt en cours</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Deposition point</source>
+        <translation>Point de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Deviations up to this, outside or inside, are within tolerance.</source>
+        <translation>Les écarts jusqu&apos;à cette valeur, vers l&apos;extérieur ou l&apos;intérieur, sont dans la tolérance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Diameter</source>
+        <translation>Diamètre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Diameter at {0}</source>
+        <translation>Diamètre à {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Diameter at {0} mm</source>
+        <translation>Diamètre à {0} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Diameter of the nozzle&apos;s flat tip.</source>
+        <translation>Diamètre du bout plat de la buse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Diameter of the platform; counts in clearance.</source>
+        <translation>Diamètre du plateau ; compte dans le dégagement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Diameter of the wire.</source>
+        <translation>Diamètre du fil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Digital output that switches the deposit.</source>
+        <translation>Sortie logique qui commande le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Direction</source>
+        <translation>Sens</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Direction of closed beads seen against the build direction; open beads run as found unless alternate.</source>
+        <translation>Sens des cordons fermés vu contre la direction de dépôt ; les cordons ouverts courent tels que trouvés, sauf avec alternate.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Direction of lines and zigzags; 0 runs around the hub, 90 deg along it.</source>
+        <translation>Direction des lignes et des zigzags ; 0 court autour du moyeu, 90 deg le long de celui-ci.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Distance between layers</source>
+        <translation>Distance entre les couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Distance between neighbouring beads of a layer.</source>
+        <translation>Distance entre cordons voisins d&apos;une couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Distance between neighbouring layers.</source>
+        <translation>Distance entre couches voisines.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/process.py"/>
+        <source>Distance to the layer before (asked: {0} mm)</source>
+        <translation>Distance à la couche précédente (demandée : {0} mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Divides the translation rows of the Jacobian.</source>
+        <translation>Divise les lignes de translation du jacobien.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>Document (*.pdf)</source>
+        <translation>Document (*.pdf)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Draw beads as lines, or as tubes of their width and layer height</source>
+        <translation>Dessiner les cordons en lignes, ou en tubes de leur largeur et hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>Drawing (*.svg)</source>
+        <translation>Dessin (*.svg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>Drawing…</source>
+        <translation>Dessin en cours…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>Driven by the expression {}</source>
+        <translation>Mené par l&apos;expression {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Dry run</source>
+        <translation>Marche à vide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <source>Each joint in its range, how far it is from the nearer limit, and the share of its largest speed that is asked of it</source>
+        <translation>Chaque articulation dans sa plage, sa distance à la limite la plus proche, et la part de sa plus grande vitesse qui lui est demandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Eccentricity at {0} mm</source>
+        <translation>Excentricité à {0} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>Edges of the wall in which layers start, in place of where it leaves the substrate.</source>
+        <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Edit parameters…</source>
+        <translation>Modifier les paramètres…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Edit…</source>
+        <translation>Modifier…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>End</source>
+        <translation>Fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/busy.py"/>
+        <source>Ends the computation; the document stays as it was before</source>
+        <translation>Arrête le calcul ; le document reste tel qu&apos;il était avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>Eq. 17</source>
+        <translation>Éq. 17</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Export Path…</source>
+        <translation>Exporter la trajectoire…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Export files…</source>
+        <translation>Exporter les fichiers…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Export path</source>
+        <translation>Exporter la trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Export program</source>
+        <translation>Exporter le programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Export…</source>
+        <translation>Exporter…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>FANUC: CNT value of the moves within a bead.</source>
+        <translation>FANUC : valeur CNT des mouvements au sein d&apos;un cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Faces of the wall, from the platform up.</source>
+        <translation>Faces de la paroi, du plateau vers le haut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>Faces of the wall.</source>
+        <translation>Faces de la paroi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Feature</source>
+        <translation>Élément</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Feature…</source>
+        <translation>Élément…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Feed</source>
+        <translation>Dévidage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Feed mode</source>
+        <translation>Mode de dévidage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
+        <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Fewest points of a full turn, however small its radius.</source>
+        <translation>Nombre minimal de points d&apos;un tour entier, si petit que soit son rayon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Figures of an arm with a spherical wrist (OPW)</source>
+        <translation>Cotes d&apos;un bras à poignet sphérique (OPW)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>File</source>
+        <translation>Fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Fill</source>
+        <translation>Remplissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Fill angle</source>
+        <translation>Angle de remplissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Fill angle step</source>
+        <translation>Pas de l&apos;angle de remplissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>First bead of that layer.</source>
+        <translation>Premier cordon de cette couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>First close the task panel that is open.</source>
+        <translation>Fermez d&apos;abord le panneau de tâche ouvert.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>First layer to deposit.</source>
+        <translation>Première couche à déposer.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>First layer: {}</source>
+        <translation>Première couche : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>First make a cell: Cell….</source>
+        <translation>Faites d&apos;abord une cellule : Cellule….</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>First make a feature: Feature…, Wall on Part… or Solids on Hub….</source>
+        <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce… ou Solides sur moyeu….</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>First make a joint path: Joint Path…, or all stages at once: New Job….</source>
+        <translation>Faites d&apos;abord une trajectoire articulaire : Trajectoire articulaire…, ou toutes les étapes à la fois : Nouveau travail….</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>First make a toolpath: Toolpath….</source>
+        <translation>Faites d&apos;abord une trajectoire d&apos;outil : Trajectoire d&apos;outil….</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>First open a part with faces, such as a STEP file; a mesh has none.</source>
+        <translation>Ouvrez d&apos;abord une pièce à faces, comme un fichier STEP ; un maillage n&apos;en a pas.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>First open a part, or import one into this document.</source>
+        <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>First open a part, or make a document.</source>
+        <translation>Ouvrez d&apos;abord une pièce, ou créez un document.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Fit</source>
+        <translation>Ajustement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Fit of the bead widths</source>
+        <translation>Ajustement des largeurs de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>Fixtures</source>
+        <translation>Montages</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Flange</source>
+        <translation>Bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Folders</source>
+        <translation>Dossiers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Four axes only: by how much the tool may miss the direction asked for.</source>
+        <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Frames (mm, deg): the maker&apos;s base on the floor, the flange in the last link</source>
+        <translation>Repères (mm, deg) : la base du constructeur sur le sol, la bride dans le dernier corps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Frames and conventions</source>
+        <translation>Repères et conventions</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Free Rotation Map…</source>
+        <translation>Carte de la rotation libre…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <source>Free rotation of {title}</source>
+        <translation>Rotation libre de {title}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>FreeCAD wrote no STEP file; see the report view, or write DXF instead</source>
+        <translation>FreeCAD n&apos;a pas écrit de fichier STEP ; voyez la vue rapport, ou écrivez DXF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>From</source>
+        <translation>De</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>From layer</source>
+        <translation>De la couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>From link</source>
+        <translation>Du corps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>From the base circle to the apex of the cone, along the axis; inf: a cylinder.</source>
+        <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it.</source>
+        <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>From where to where each joint goes on this curve; red past a limit</source>
+        <translation>D&apos;où à où va chaque articulation sur cette courbe ; rouge au-delà d&apos;une limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>Further</source>
+        <translation>Autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Further methods planned for the comparison of the report.</source>
+        <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>Further solids or closed meshes to deposit on the same hub.</source>
+        <translation>Autres solides ou maillages fermés à déposer sur le même moyeu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Further spacings whose joint paths are planned for the comparison of the report.</source>
+        <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Gain</source>
+        <translation>Gain</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Gap</source>
+        <translation>Jour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Gas</source>
+        <translation>Gaz</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>General</source>
+        <translation>Général</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Given</source>
+        <translation>Donnés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Go to {}</source>
+        <translation>Aller à {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Grows on</source>
+        <translation>Croît sur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>H words have address extensions to {0}, not {1}; use another output, or program.nc.deposit_on and deposit_off</source>
+        <translation>les mots H ont des extensions d&apos;adresse jusqu&apos;à {0}, et non {1} ; utilisez une autre sortie, ou program.nc.deposit_on et deposit_off</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Half angle</source>
+        <translation>Demi-angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>Height</source>
+        <translation>Hauteur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Heights</source>
+        <translation>Hauteurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Heights above the part&apos;s base, in mm, at which circularity is told; none: a sixth, a half and five sixths of what was measured.</source>
+        <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_cell.py"/>
+        <source>Hide machine</source>
+        <translation>Cacher la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far a closed bead runs on past its seam.</source>
+        <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How far the deposit stands out on all sides of the part, to be machined off.</source>
+        <translation>De combien le dépôt dépasse de tous les côtés de la pièce, pour être usiné.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How far the direction of lines and zigzags turns from layer to layer.</source>
+        <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the start moves from layer to layer.</source>
+        <translation>De combien le départ se déplace d&apos;une couche à l&apos;autre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How far the tool is withdrawn along its axis between beads.</source>
+        <translation>De combien l&apos;outil est retiré le long de son axe entre les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How long to wait between layers.</source>
+        <translation>Temps d&apos;attente entre les couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>How many points have what deviation; dashed: the tolerance</source>
+        <translation>Combien de points ont quel écart ; tirets : la tolérance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>How many points of the last layer are shown</source>
+        <translation>Combien de points de la dernière couche sont montrés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>How many seconds of the job pass in one</source>
+        <translation>Combien de secondes du travail passent en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>How the part is cut into layers; proposed from the selection</source>
+        <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
+        <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>Hub</source>
+        <translation>Moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>Image (*.png)</source>
+        <translation>Image (*.png)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>In a job file: {}; in macros: {}.</source>
+        <translation>Dans un fichier de travail : {} ; dans les macros : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>In tolerance</source>
+        <translation>Dans la tolérance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Input</source>
+        <translation>Entrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Inputs</source>
+        <translation>Entrées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Inspect</source>
+        <translation>Contrôler</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Inspection</source>
+        <translation>Contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Inspect…</source>
+        <translation>Contrôler…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>It may follow an expression: {}.</source>
+        <translation>Peut suivre une expression : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Iterations after which the optimiser gives up on a layer.</source>
+        <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Its controller reads</source>
+        <translation>Sa commande lit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Its limits as the data sheet has them; leave them empty where there are none. Those of the page before are against link 2.</source>
+        <translation>Ses limites telles que la fiche technique les donne ; laissez vide là où il n&apos;y en a pas. Celles de la page précédente sont par rapport au corps 2.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>J3 as shown</source>
+        <translation>J3 tel que montré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>Jog the machine to at least three poses in which every axis has moved, and type what the pendant shows: the joints, and the place of the tool frame in the base frame. The maker&apos;s simulator does as well; figures that were computed from this geometry prove nothing. A table can be pasted.</source>
+        <translation>Amenez la machine à au moins trois poses où chaque axe a bougé, et saisissez ce que montre le pupitre : les articulations, et la place du repère outil dans le repère de base. Le simulateur du constructeur convient aussi ; des chiffres calculés à partir de cette géométrie ne prouvent rien. Un tableau peut être collé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Joint Path…</source>
+        <translation>Trajectoire articulaire…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Joint accelerations</source>
+        <translation>Accélérations articulaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Joint angles</source>
+        <translation>Angles articulaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Joint jerks</source>
+        <translation>Jerks articulaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Joint path</source>
+        <translation>Trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Joint speeds</source>
+        <translation>Vitesses articulaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Joint speeds in %</source>
+        <translation>Vitesses articulaires en %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Joint speeds while depositing</source>
+        <translation>Vitesses articulaires pendant le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Joints</source>
+        <translation>Articulations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Kind</source>
+        <translation>Type</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Largest angle between the tool axis and the vertical of the part.</source>
+        <translation>Plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.</source>
+        <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, là où un modèle de cordon la règle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Largest deviation inside</source>
+        <translation>Plus grand écart vers l&apos;intérieur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Largest deviation outside</source>
+        <translation>Plus grand écart vers l&apos;extérieur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Largest deviation.</source>
+        <translation>Plus grand écart.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Largest distance between a bead and the straight segments that stand for it.</source>
+        <translation>Plus grande distance entre un cordon et les segments droits qui le représentent.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Largest error of the local distance of constant-distance layers.</source>
+        <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Largest thickness</source>
+        <translation>Plus grande épaisseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told.</source>
+        <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante et sur les moyeux ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Last layers trimmed flush with the wall&apos;s upper edge, or whole layers alone.</source>
+        <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Layer</source>
+        <translation>Couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layer height</source>
+        <translation>Hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Layer {layer} of {layers}, bead {bead}, point {point}</source>
+        <translation>Couche {layer} de {layers}, cordon {bead}, point {point}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>Layer {} (0 to {})</source>
+        <translation>Couche {} (0 à {})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <source>Layer {} bead {} point {}</source>
+        <translation>Couche {} cordon {} point {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Layers</source>
+        <translation>Couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layers at the layer height from the nearest point of the one below (constant-distance), within a band of it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
+        <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layers equally spaced along the wall (arc-length) or along the axis (iso-height).</source>
+        <translation>Couches également espacées le long de la paroi (arc-length) ou le long de l&apos;axe (iso-height).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Lead</source>
+        <translation>Angle d&apos;avance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Lead off</source>
+        <translation>Retard à l&apos;arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Lead on</source>
+        <translation>Avance au départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Lead times and waits between layers (s).</source>
+        <translation>Temps d&apos;avance et de retard et attentes entre les couches (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Least</source>
+        <translation>Minimum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Least deviation.</source>
+        <translation>Plus petit écart.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Least thickness</source>
+        <translation>Plus petite épaisseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
+        <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Length</source>
+        <translation>Longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Length along x, mm</source>
+        <translation>Longueur le long de x, mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Length of all beads.</source>
+        <translation>Longueur de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Length of the deposit as it is run.</source>
+        <translation>Longueur du dépôt tel que parcouru.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Length of the meridian.</source>
+        <translation>Longueur du méridien.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Length of the nozzle from its tip.</source>
+        <translation>Longueur de la buse à partir de son bout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Lengths are in mm, angles in degrees. Robots need six axes with a spherical wrist, machine tools three axes that slide and two that turn; whether yours is one is looked at when you go on.</source>
+        <translation>Les longueurs sont en mm, les angles en degrés. Les robots doivent avoir six axes et un poignet sphérique, les machines-outils trois axes de translation et deux de rotation ; on regarde si la vôtre en est une lorsque vous continuez.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/quantity.py"/>
+        <source>Let it follow an expression, such as {}Spreadsheet.height / 2</source>
+        <translation>Le faire suivre une expression, comme {}Spreadsheet.height / 2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Let the planner choose</source>
+        <translation>Laisser choisir</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Lift</source>
+        <translation>Dégagement vertical</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Limits</source>
+        <translation>Limites</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>Limits, speeds and accelerations</source>
+        <translation>Limites, vitesses et accélérations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone.</source>
+        <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>LinuxCNC: how far corners may be rounded (G64 P).</source>
+        <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Lock</source>
+        <translation>Blocage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Lock at</source>
+        <translation>Bloqué à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Longer by</source>
+        <translation>Plus long de</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Longest link</source>
+        <translation>Liaison maximale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Longest way from one line of a zigzag to the next, as a share of the bead spacing; where it would be longer another zigzag begins.</source>
+        <translation>Plus long chemin d&apos;une ligne d&apos;un zigzag à la suivante, en part de la distance des cordons ; là où il serait plus long un autre zigzag commence.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Look</source>
+        <translation>Aspect</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Looks</source>
+        <translation>Aspect</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>Lost</source>
+        <translation>Perdus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>M or H word that switches the deposit off.</source>
+        <translation>Mot M ou H qui coupe le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.</source>
+        <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Machine</source>
+        <translation>Machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Machine files</source>
+        <translation>Fichiers machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
+        <source>Machine {} is written: {}</source>
+        <translation>La machine {} est écrite : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Made from an earlier state; recompute the document.</source>
+        <translation>Fait à partir d&apos;un état antérieur ; recalculez le document.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Make</source>
+        <translation>Faire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Make the curve that of the joint path, and plan it again</source>
+        <translation>Faire de la courbe celle de la trajectoire articulaire, et la replanifier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Maker and model</source>
+        <translation>Constructeur et modèle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cell.py"/>
+        <source>Maker and model of the machine.</source>
+        <translation>Constructeur et modèle de la machine.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses</source>
+        <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Makes all stages for the selected shape, from cell to program</source>
+        <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Map of the free rotation…</source>
+        <translation>Carte de la rotation libre…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>Margin</source>
+        <translation>Marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Mass</source>
+        <translation>Masse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Mass of the deposit (g).</source>
+        <translation>Masse du dépôt (g).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Max iterations</source>
+        <translation>Itérations max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Max points</source>
+        <translation>Points max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Max residual</source>
+        <translation>Résidu max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Max tilt</source>
+        <translation>Inclinaison max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Max turn</source>
+        <translation>Rotation max</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Mean</source>
+        <translation>Moyenne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Mean deviation</source>
+        <translation>Écart moyen</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Mean deviation, outside with a plus.</source>
+        <translation>Écart moyen, vers l&apos;extérieur avec un plus.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Mean thickness</source>
+        <translation>Épaisseur moyenne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Measured points</source>
+        <translation>Points mesurés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Method</source>
+        <translation>Méthode</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Method constant: the one RZ, or auto to search it.</source>
+        <translation>Méthode constant : le RZ unique, ou auto pour le chercher.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other bead, in deg and deg per turn.</source>
+        <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
+        <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Min condition</source>
+        <translation>Condition min</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Min points</source>
+        <translation>Points min</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Mode</source>
+        <translation>Mode</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Modified (Craig): Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)</source>
+        <translation>Modifié (Craig) : Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Most</source>
+        <translation>Maximum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Most points of one program file; longer ones are chained.</source>
+        <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Motion</source>
+        <translation>Mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Mount</source>
+        <translation>Montage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>Name</source>
+        <translation>Nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Name and posts</source>
+        <translation>Nom et post-processeurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Name in jobs</source>
+        <translation>Nom dans les travaux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>Name of the program and of its files; the controller may refuse some</source>
+        <translation>Nom du programme et de ses fichiers ; la commande peut en refuser</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Name of the program to call between layers, such as nozzle cleaning.</source>
+        <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Nc</source>
+        <translation>CN</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Near a singularity: condition {value:.3f}, allowed are {than:.3f}</source>
+        <translation>Près d&apos;une singularité : condition {value:.3f}, permis {than:.3f}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>New Job…</source>
+        <translation>Nouveau travail…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>New Machine…</source>
+        <translation>Nouvelle machine…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>New job</source>
+        <translation>Nouveau travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>New jobs and cells</source>
+        <translation>Nouveaux travaux et cellules</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
+        <source>New machine</source>
+        <translation>Nouvelle machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>Next finding</source>
+        <translation>Remarque suivante</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>No choice for {}: the part lies on its table</source>
+        <translation>Pas de choix pour {} : la pièce repose sur sa table</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_panel.py"/>
+        <source>No preview: see the field marked.</source>
+        <translation>Pas d&apos;aperçu : voyez le champ marqué.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Normal of the plane of symmetry-plane, as x y z in the part&apos;s coordinates; auto: the plane of a bend.</source>
+        <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Nothing to be seen: no limit, singularity or speed comes near</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Nothing to be seen: no limit, singularity or speed comes near, and no link of the robot touches anything</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Nozzle</source>
+        <translation>Buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Number of beads.</source>
+        <translation>Nombre de cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Number of layers.</source>
+        <translation>Nombre de couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Number of points of all beads.</source>
+        <translation>Nombre de points de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Number of points that count.</source>
+        <translation>Nombre de points qui comptent.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>Number of solids.</source>
+        <translation>Nombre de solides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the analogue input that the sensor is on.</source>
+        <translation>Numéro de l&apos;entrée analogique du capteur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Number of the digital input to wait for between layers.</source>
+        <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Number of the tool frame named in the program.</source>
+        <translation>Numéro du repère outil nommé dans le programme.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Number of the user frame named in the program.</source>
+        <translation>Numéro du repère utilisateur nommé dans le programme.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Objective</source>
+        <translation>Objectif</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Of paths, from the least to the greatest; views show it once they are drawn anew</source>
+        <translation>Des trajectoires, de la plus petite à la plus grande valeur ; les vues les montrent une fois redessinées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Of speeds in fields and read-outs; what is typed may have any</source>
+        <translation>Des vitesses dans les champs et affichages ; ce qui est saisi peut en avoir une autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s and deg/s², sliding ones in mm, mm/s and mm/s². Leave both ends of a range empty for an axis that turns without end, speeds and accelerations where they are not known.</source>
+        <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s et deg/s², de translation en mm, mm/s et mm/s². Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses et accélérations là où elles ne sont pas connues.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>Of walls alone: solids on a hub grow along the normals of its surface</source>
+        <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Off axis at {0}</source>
+        <translation>Excentricité à {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Offset (deg)</source>
+        <translation>Décalage (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Offset along z, mm</source>
+        <translation>Décalage le long de z, mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>On to the next layer</source>
+        <translation>À la couche suivante</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/slider_row.py"/>
+        <source>One back</source>
+        <translation>Un en arrière</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>One layer alone</source>
+        <translation>Une seule couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>One more row</source>
+        <translation>Une ligne de plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/slider_row.py"/>
+        <source>One on</source>
+        <translation>Un en avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>One point back</source>
+        <translation>Un point en arrière</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>One point on</source>
+        <translation>Un point en avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>One polynomial per bead, or one RZ for the whole job</source>
+        <translation>Un polynôme par cordon, ou un RZ pour tout le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>One polynomial per layer, one value per point, or one value for the whole job.</source>
+        <translation>Un polynôme par couche, une valeur par point, ou une valeur pour tout le travail.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>One pose is that of the serial zeros, where the controller shows {}.</source>
+        <translation>Une pose est celle des zéros en série, où la commande montre {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Order</source>
+        <translation>Ordre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Origin</source>
+        <translation>Origine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Out of reach</source>
+        <translation>Hors d&apos;atteinte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Overlap</source>
+        <translation>Recouvrement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Overlap of neighbouring beads as a share of the bead width; takes the place of the bead spacing.</source>
+        <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Own branch</source>
+        <translation>Branche propre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>P[{0}] is not recorded</source>
+        <translation>P[{0}] n&apos;est pas enregistré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>P[{0}] is recorded in another U{1} than the one selected</source>
+        <translation>P[{0}] est enregistré dans un autre U{1} que celui qui est choisi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Pairs</source>
+        <translation>Paires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag.</source>
+        <translation>Contours parallèles, lignes parallèles, ou les uns ou les autres liés : spirale, zigzag.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Parameter</source>
+        <translation>Paramètre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Part of revolution</source>
+        <translation>Pièce de révolution</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Path</source>
+        <translation>Trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>Pick</source>
+        <translation>Choisir</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Plan constant, point-by-point and layer-by-layer on this branch, to look at</source>
+        <translation>Planifier constant, point par point et couche par couche sur cette branche, pour regarder</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Plan the joint path again layer by layer, without a curve that is given</source>
+        <translation>Replanifier la trajectoire articulaire couche par couche, sans courbe donnée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Plane</source>
+        <translation>Plan</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Planned</source>
+        <translation>Prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Planned is missing; it was deleted, choose another</source>
+        <translation>Planned manque ; il a été supprimé, choisissez-en un autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Planned thickness of the wall, half of it on each side of the planned surface; 0: the planned surface itself is the measured one.</source>
+        <translation>Épaisseur prévue de la paroi, une moitié de chaque côté de la surface prévue ; 0 : la surface prévue elle-même est celle mesurée.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/comparison.py"/>
+        <source>Planning</source>
+        <translation>Planification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plans the joint values of a toolpath in a cell</source>
+        <translation>Planifie les valeurs articulaires d&apos;une trajectoire d&apos;outil dans une cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Platform</source>
+        <translation>Plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Platform diameter</source>
+        <translation>Diamètre du plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>Play or pause</source>
+        <translation>Jouer ou suspendre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plays a joint path or program with its machine</source>
+        <translation>Joue une trajectoire articulaire ou un programme avec sa machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Plots</source>
+        <translation>Graphiques</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plots joints against limits, distances between layers and deposit rates</source>
+        <translation>Trace les articulations par rapport à leurs limites, les distances entre couches et les débits de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>Plots need matplotlib, which is not installed.</source>
+        <translation>Les graphiques demandent matplotlib, qui n&apos;est pas installé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plots…</source>
+        <translation>Graphiques…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Point</source>
+        <translation>Point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Points</source>
+        <translation>Points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>Points and meshes</source>
+        <translation>Points et maillages</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Points are left out as long as the path stays within this distance</source>
+        <translation>Des points sont laissés de côté tant que la trajectoire reste à cette distance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Points are left out as long as the tool axis stays within this angle</source>
+        <translation>Des points sont laissés de côté tant que l&apos;axe de l&apos;outil reste dans cet angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Points as joint values, or as positions of the tool.</source>
+        <translation>Points en valeurs articulaires, ou en positions de l&apos;outil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>Points that are unreachable, past a limit, near a singularity or not allowed</source>
+        <translation>Points hors d&apos;atteinte, au-delà d&apos;une limite, près d&apos;une singularité ou non permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Points up to this far above or below such a height count there, slid along the planned surface.</source>
+        <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>Pose {}</source>
+        <translation>Pose {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Poses before the first row and after the last, where the table has some</source>
+        <translation>Poses avant la première ligne et après la dernière, si le tableau en a</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Post</source>
+        <translation>Post-processeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Predicted height by layer</source>
+        <translation>Hauteur prévue par couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Predicted height of the bead</source>
+        <translation>Hauteur prévue du cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Predicted heights</source>
+        <translation>Hauteurs prévues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Predicted width of the bead</source>
+        <translation>Largeur prévue du cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Predicted widths and speeds</source>
+        <translation>Largeurs et vitesses prévues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Probe radius</source>
+        <translation>Rayon du palpeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Process</source>
+        <translation>Procédé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Process of new toolpaths</source>
+        <translation>Procédé des nouvelles trajectoires d&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Program</source>
+        <translation>Programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Programs</source>
+        <translation>Programmes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Program…</source>
+        <translation>Programme…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>PyKDL and the joint-frame chain disagree</source>
+        <translation>PyKDL et la chaîne des repères articulaires ne s&apos;accordent pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>PyKDL is not installed; the program was checked by one solver alone</source>
+        <translation>PyKDL n&apos;est pas installé ; le programme a été vérifié par un seul solveur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>RMS</source>
+        <translation>RMS</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>RZ</source>
+        <translation>RZ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>RZ as in Chalvin 2020, or the true rotation about the tool axis</source>
+        <translation>RZ comme dans Chalvin 2020, ou la vraie rotation autour de l&apos;axe de l&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Radius</source>
+        <translation>Rayon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Radius of the base circle; auto: the face chosen, or the one that the solids stand on.</source>
+        <translation>Rayon du cercle de base ; auto : la face choisie, ou celle sur laquelle reposent les solides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Radius of the probe&apos;s ball where its centre was measured; 0 where the points lie on the surface.</source>
+        <translation>Rayon de la bille du palpeur si son centre a été mesuré ; 0 si les points sont sur la surface.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Radius of the sphere</source>
+        <translation>Rayon de la sphère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Rapid moves</source>
+        <translation>Mouvements rapides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Rapid moves too</source>
+        <translation>Mouvements rapides aussi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Rapid speed</source>
+        <translation>Vitesse rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Remarks</source>
+        <translation>Remarques</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Renew</source>
+        <translation>Renouveler</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Result</source>
+        <translation>Résultat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Robot trajectory in this document</source>
+        <translation>Trajectoire Robot dans ce document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/busy.py"/>
+        <source>Robotic AM</source>
+        <translation>Robotic AM</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Robotic AM, preferences: {}</source>
+        <translation>Robotic AM, préférences : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: shoulder, elbow and wrist, or auto to search all eight.</source>
+        <translation>Robots : épaule, coude et poignet, ou auto pour chercher parmi les huit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: where the deposit comes out, its Z pointing to the tool; with the tool on the robot, the fixed platform. In the maker&apos;s base frame.</source>
+        <translation>Robots : là où sort le dépôt, son Z pointant vers l&apos;outil ; avec l&apos;outil sur le robot, le plateau fixe. Dans le repère de base du constructeur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Root mean square</source>
+        <translation>Moyenne quadratique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Rotary table only: which of the two turning axes, counted from the torch, stands still (four axes).</source>
+        <translation>Plateau rotatif seulement : lequel des deux axes de rotation, comptés à partir de la torche, reste immobile (quatre axes).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Rotation range</source>
+        <translation>Plage de rotation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Rotation range from</source>
+        <translation>Plage de rotation de</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Rotation range to</source>
+        <translation>Plage de rotation à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>SINUMERIK: block compressor (COMPCAD) in beads whose feed is a speed.</source>
+        <translation>SINUMERIK : compresseur de blocs (COMPCAD) dans les cordons dont l&apos;avance est une vitesse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>SINUMERIK: rounding (G642), jerk limit (SOFT) and feed forward (FFWON).</source>
+        <translation>SINUMERIK : arrondi (G642), limitation du jerk (SOFT) et anticipation (FFWON).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>STEP file of wires</source>
+        <translation>Fichier STEP de fils</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Save as an image (PNG, SVG, PDF), or the values (CSV)</source>
+        <translation>Enregistrer comme image (PNG, SVG, PDF), ou les valeurs (CSV)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Save figures</source>
+        <translation>Enregistrer les chiffres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Save figures…</source>
+        <translation>Enregistrer les chiffres…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>Save the plot</source>
+        <translation>Enregistrer le graphique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Save…</source>
+        <translation>Enregistrer…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Seam</source>
+        <translation>Couture</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>Select also, with Ctrl, the faces to deposit on {}.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, les faces à déposer sur {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>Select also, with Ctrl, the hub it grows on; or the faces of a wall that grows on it.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, le moyeu sur lequel il croît ; ou les faces d&apos;une paroi qui croît sur lui.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>Select also, with Ctrl, the hub: a cylinder or cone.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>Select also, with Ctrl, the part that it grows on.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>Select the shape to deposit, or its faces, and press Use selection.</source>
+        <translation>Sélectionnez la forme à déposer, ou ses faces, et cliquez sur Prendre la sélection.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
+        <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Setup</source>
+        <translation>Installation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning.</source>
+        <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Share of the points within tolerance (%).</source>
+        <translation>Part des points dans la tolérance (%).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Share of the points, those farthest off, that the fit leaves out.</source>
+        <translation>Part des points, les plus écartés, que l&apos;ajustement laisse de côté.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Shielding gas; carried along.</source>
+        <translation>Gaz de protection ; transmis tel quel.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Shortest</source>
+        <translation>Minimum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Shoulder, elbow and wrist of this joint path; cell: as the cell says.</source>
+        <translation>Épaule, coude et poignet de cette trajectoire articulaire ; cell : ce que dit la cellule.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Shoulder, elbow and wrist; behind it the share of the map that it reaches within its limits</source>
+        <translation>Épaule, coude et poignet ; derrière, la part de la carte qu&apos;elle atteint dans ses limites</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Show all</source>
+        <translation>Tout montrer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Show all there is; so does a double click</source>
+        <translation>Montrer tout ; un double-clic aussi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_cell.py"/>
+        <source>Show machine</source>
+        <translation>Montrer la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Show path layer by layer</source>
+        <translation>Montrer la trajectoire couche par couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Show this job alone</source>
+        <translation>Montrer ce travail seul</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>Shown on the map</source>
+        <translation>Montré sur la carte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Shows a toolpath or joint path layer by layer and point by point</source>
+        <translation>Montre une trajectoire d&apos;outil ou articulaire couche par couche et point par point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Shows at zero</source>
+        <translation>Montre à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Shows the path against the rotation about the tool; the curve can be drawn by hand</source>
+        <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Side</source>
+        <translation>Côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>Sign</source>
+        <translation>Signe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Simulate…</source>
+        <translation>Simuler…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <source>Simulation</source>
+        <translation>Simulation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>Simulation of {title}</source>
+        <translation>Simulation de {title}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
+        <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Smallest condition of the Jacobian while depositing.</source>
+        <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Smooth</source>
+        <translation>Lisser</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>Solids</source>
+        <translation>Solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Solids on Hub…</source>
+        <translation>Solides sur moyeu…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Solids on a hub</source>
+        <translation>Solides sur un moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>Solids on hub</source>
+        <translation>Solides sur moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Source</source>
+        <translation>Source</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>Source is missing; choose the shape to deposit, or some of its faces</source>
+        <translation>Source manque ; choisissez la forme à déposer, ou certaines de ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Spacing</source>
+        <translation>Espacement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>Speed</source>
+        <translation>Vitesse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Speed along the path</source>
+        <translation>Vitesse le long de la trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed between beads.</source>
+        <translation>Vitesse entre les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the torch along the deposit while depositing.</source>
+        <translation>Vitesse de la torche le long du dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the wire.</source>
+        <translation>Vitesse du fil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
+        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Spherical defect</source>
+        <translation>Défaut de sphéricité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Spherical defect, least squares</source>
+        <translation>Défaut de sphéricité, moindres carrés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Sphericity</source>
+        <translation>Sphéricité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Stand off</source>
+        <translation>Distance de buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Stand-off of the nozzle; carried along.</source>
+        <translation>Distance de la buse à la pièce ; transmise telle quelle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Standard deviation</source>
+        <translation>Écart type</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Standard deviation of the deviations.</source>
+        <translation>Écart type des écarts.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Standard deviation of the thickness</source>
+        <translation>Écart type de l&apos;épaisseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Standard: Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</source>
+        <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Start again from what was planned</source>
+        <translation>Repartir de ce qui était planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Start at</source>
+        <translation>Commencer à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>Start edges</source>
+        <translation>Arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>Status: {}</source>
+        <translation>État : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Status: {}.</source>
+        <translation>État : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Std. deviation</source>
+        <translation>Écart type</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Step</source>
+        <translation>Pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>Substrate</source>
+        <translation>Substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Sum of the heights, off the layers</source>
+        <translation>Somme des hauteurs, écart aux couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Switch kinematics</source>
+        <translation>Commuter la cinématique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <source>Tables</source>
+        <translation>Tableaux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <source>Takes the beads that were measured from a file of comma separated values</source>
+        <translation>Prend les cordons qui ont été mesurés dans un fichier de valeurs séparées par des virgules</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected faces as a wall to be deposited on the other object that is selected</source>
+        <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected shape of revolution to be deposited</source>
+        <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected solids to be deposited on the cylinder or cone that is selected last</source>
+        <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>Takes what is selected now. {}</source>
+        <translation>Prend ce qui est sélectionné maintenant. {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Temperature</source>
+        <translation>Température</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the torch waits above where that begins.</source>
+        <translation>Température en degrés Celsius sous laquelle un solide, ou une paroi, doit être avant sa couche suivante ; la torche attend au-dessus de son départ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Temperature in degrees Celsius; carried along.</source>
+        <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>The bead whose polynomial is shown; a click on the map chooses one</source>
+        <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>The cell that runs it.</source>
+        <translation>La cellule qui l&apos;exécute.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>The cell, for the clearance of nozzle and platform.</source>
+        <translation>La cellule, pour le dégagement de la buse et du plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The controller the program is written for, or none.</source>
+        <translation>La commande pour laquelle le programme est écrit, ou none.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>The controller&apos;s files; double-click to read and export them.</source>
+        <translation>Les fichiers de la commande ; double-cliquez pour les lire et les exporter.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.</source>
+        <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The cylinders and cones of the hub to grow on; found when left out.</source>
+        <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>The displacement of the joints (Chalvin 2020, eq. 17), and times that of the plan</source>
+        <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport à celui planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>The document is closed; open it again to export.</source>
+        <translation>Le document est fermé ; ouvrez-le de nouveau pour exporter.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>The document is closed; open it again to save its figures.</source>
+        <translation>Le document est fermé ; ouvrez-le de nouveau pour enregistrer ses chiffres.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>The document or object of this panel is gone; cancel and open the panel again.</source>
+        <translation>Le document ou l&apos;objet de ce panneau a disparu ; annulez et ouvrez le panneau de nouveau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>The feature to deposit.</source>
+        <translation>L&apos;élément à déposer.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>The feature, toolpath, or object with a shape or mesh that was measured.</source>
+        <translation>L&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>The file to write; its ending follows the kind</source>
+        <translation>Le fichier à écrire ; son extension suit le type</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>The first layer</source>
+        <translation>La première couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>The first layer that is shown</source>
+        <translation>La première couche montrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>The frame of the first row in that of the base, and the flange in that of the last row. mm and deg; about X first, then Y, then Z of the outer frame.</source>
+        <translation>Le repère de la première ligne dans celui de la base, et la bride dans celui de la dernière ligne. mm et deg ; d&apos;abord autour de X, puis Y, puis Z du repère extérieur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The hub; none is needed where it is one of the solids, or the base is given by numbers.</source>
+        <translation>Le moyeu ; inutile s&apos;il est l&apos;un des solides, ou si la base est donnée par des nombres.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>The input&apos;s value in a program at 0 degrees Celsius.</source>
+        <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.</source>
+        <translation>Le travail est prêt. Simuler… le joue ; double-cliquez sur le programme pour le lire, sur la cellule pour régler votre machine.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>The joint path is ready; there is no post for this machine&apos;s controller yet. Simulate… plays it.</source>
+        <translation>La trajectoire articulaire est prête ; il n&apos;y a pas encore de post-processeur pour la commande de cette machine. Simuler… la joue.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>The joint path to write.</source>
+        <translation>La trajectoire articulaire à écrire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>The largest share of a joint&apos;s greatest speed at the travel speed</source>
+        <translation>La plus grande part de la vitesse maximale d&apos;une articulation à la vitesse d&apos;avance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>The last layer</source>
+        <translation>La dernière couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>The last layer that is shown</source>
+        <translation>La dernière couche montrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>The layer that is looked at; -1 for all of them</source>
+        <translation>La couche regardée ; -1 pour toutes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>The least share of half a joint&apos;s range that is left to a limit</source>
+        <translation>La plus petite part de la demi-plage d&apos;une articulation qui reste jusqu&apos;à une limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>The least sigma_min / sigma_max of the Jacobian</source>
+        <translation>Le plus petit sigma_min / sigma_max du jacobien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The limits of J3 as it is shown can be given on the page before.</source>
+        <translation>Les limites de J3 tel qu&apos;il est montré peuvent être données à la page précédente.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>The link that stands still</source>
+        <translation>Le corps qui reste immobile</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial</source>
+        <translation>Le corps dont le repère est la bride, avec son Z hors d&apos;elle : tool0 dans les fichiers de ROS-Industrial</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The machine does not give these poses, and no sign, zero, coupling or frame alone explains it. Look for a slip of typing, the way angles are written, the tool frame, and lengths.</source>
+        <translation>La machine ne donne pas ces poses, et aucun signe, zéro, couplage ou repère seul ne l&apos;explique. Cherchez une faute de frappe, l&apos;écriture des angles, le repère outil, et les longueurs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The machine does not give these poses. It would if:</source>
+        <translation>La machine ne donne pas ces poses. Elle le ferait si :</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The machine does not give these poses; what is wrong can be told from three or more.</source>
+        <translation>La machine ne donne pas ces poses ; ce qui est faux peut se dire à partir de trois ou plus.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The machine gives all {} poses, within {} mm.</source>
+        <translation>La machine donne toutes les {} poses, à {} mm près.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>The machine is kept in the folder of your own machines; cells and jobs know it by its name.</source>
+        <translation>La machine est gardée dans le dossier de vos propres machines ; cellules et travaux la connaissent par son nom.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>The machine that deposits; the program is written for its controller</source>
+        <translation>La machine qui dépose ; le programme est écrit pour sa commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/canvas.py"/>
+        <source>The map is being computed…</source>
+        <translation>La carte est en cours de calcul…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <source>The map was closed: {why}</source>
+        <translation>La carte a été fermée : {why}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>The measured points, or a scanned mesh: {}</source>
+        <translation>Les points mesurés, ou un maillage numérisé : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>The next page compares this with poses of your controller, and tells what is likely wrong: leave what you do not know as it is.</source>
+        <translation>La page suivante compare ceci à des poses de votre commande, et dit ce qui est probablement faux : laissez tel quel ce que vous ne savez pas.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>The pendant&apos;s tool frame on the flange (mm, deg); zeros for the flange itself</source>
+        <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_panel.py"/>
+        <source>The preview is being computed.</source>
+        <translation>L&apos;aperçu est en cours de calcul.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
+        <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>The same motion without deposit.</source>
+        <translation>Le même mouvement sans dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>The shape to deposit, or some of its faces.</source>
+        <translation>La forme à déposer, ou certaines de ses faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>The simulation has ended: {why}.</source>
+        <translation>La simulation est terminée : {why}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.</source>
+        <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.</source>
+        <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The solids or closed meshes to deposit; or a part and the faces of its hub, where both are one solid.</source>
+        <translation>Les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>The surfaces that solids stand on.</source>
+        <translation>Les surfaces sur lesquelles reposent les solides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>The time of the job</source>
+        <translation>Le temps du travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>The toolpath or joint path to look at</source>
+        <translation>La trajectoire d&apos;outil ou articulaire à regarder</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>The toolpath to run.</source>
+        <translation>La trajectoire d&apos;outil à exécuter.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>The toolpath, joint path or program to export</source>
+        <translation>La trajectoire d&apos;outil, la trajectoire articulaire ou le programme à exporter</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>The toolpath, joint path or program to look at</source>
+        <translation>La trajectoire d&apos;outil, la trajectoire articulaire ou le programme à regarder</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>The wall to deposit, or its faces.</source>
+        <translation>La paroi à déposer, ou ses faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>The whole job</source>
+        <translation>Tout le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>Then click in the tree or the 3D view. {}</source>
+        <translation>Cliquez ensuite dans l&apos;arbre ou la vue 3D. {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <source>There is no 3D view to simulate in; open one.</source>
+        <translation>Il n&apos;y a pas de vue 3D où simuler ; ouvrez-en une.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/tool.py"/>
+        <source>There is no joint path to map; make one first.</source>
+        <translation>Il n&apos;y a pas de trajectoire articulaire à cartographier ; faites-en d&apos;abord une.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <source>There is no joint path to simulate; make one first.</source>
+        <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>There is no path to look at yet: make a toolpath or a joint path.</source>
+        <translation>Il n&apos;y a pas encore de trajectoire à regarder : faites une trajectoire d&apos;outil ou articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
+        <source>There is nothing to compare with in this document; open the part first.</source>
+        <translation>Il n&apos;y a rien à quoi comparer dans ce document ; ouvrez d&apos;abord la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>There is nothing to plot yet: make a toolpath or a joint path.</source>
+        <translation>Il n&apos;y a encore rien à tracer : faites une trajectoire d&apos;outil ou articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and macros never depend on them.</source>
+        <translation>Ce sont des propositions de la fenêtre pour ce qui est fait désormais, et son aspect. Les documents, travaux et macros existants n&apos;en dépendent jamais.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Thickness</source>
+        <translation>Épaisseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Thin</source>
+        <translation>Mince</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <source>This curve</source>
+        <translation>Cette courbe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>This is an earlier plan; recompute the document for the present one.</source>
+        <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>This text is of an earlier plan; do not run it.</source>
+        <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Three axes that slide and two that turn.</source>
+        <translation>Trois axes de translation et deux de rotation.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Tilt</source>
+        <translation>Inclinaison</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Time</source>
+        <translation>Temps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Time of all moves (s).</source>
+        <translation>Temps de tous les mouvements (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Time of depositing moves (s).</source>
+        <translation>Temps des mouvements de dépôt (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Time of the whole job with lead times and waits between layers (s).</source>
+        <translation>Temps de tout le travail avec avances, retards et attentes entre les couches (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>To</source>
+        <translation>À</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>To layer</source>
+        <translation>À la couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>To link</source>
+        <translation>Au corps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>To the next place where a limit, a singularity or a speed is to be looked at</source>
+        <translation>Au prochain endroit où une limite, une singularité ou une vitesse est à regarder</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Tolerance</source>
+        <translation>Tolérance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>Tool</source>
+        <translation>Outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Tool axis turned forward along the bead, from the build direction.</source>
+        <translation>Axe de l&apos;outil tourné vers l&apos;avant le long du cordon, à partir de la direction de dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Tool axis turned sideways, towards the outside of the wall, from the build direction.</source>
+        <translation>Axe de l&apos;outil tourné de côté, vers l&apos;extérieur de la paroi, à partir de la direction de dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Tool frame</source>
+        <translation>Repère outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.</source>
+        <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <source>Toolpath</source>
+        <translation>Trajectoire d&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Toolpath…</source>
+        <translation>Trajectoire d&apos;outil…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Torch turned outwards about the bead on outer contours.</source>
+        <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Travel speed</source>
+        <translation>Vitesse d&apos;avance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Trim</source>
+        <translation>Écrêtage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Turn</source>
+        <translation>Rotation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Turn of the bead within the wall that smooth layers stay below where the band allows.</source>
+        <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Twist about x, deg</source>
+        <translation>Torsion autour de x, deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>URDF file</source>
+        <translation>Fichier URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Unit</source>
+        <translation>Unité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Unit of speeds</source>
+        <translation>Unité des vitesses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Unit of the measured coordinates; auto: the one that the file names, else mm.</source>
+        <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>Upwards</source>
+        <translation>Vers le haut</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>Use selection</source>
+        <translation>Prendre la sélection</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>Use the tool Feature…: it takes an edge as the axis.</source>
+        <translation>Utilisez l&apos;outil Élément… : il prend une arête comme axe.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/form.py"/>
+        <source>Use this</source>
+        <translation>Utiliser</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>User frame</source>
+        <translation>Repère utilisateur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>VAL 3 sets outputs while the moves before are still in the queue</source>
+        <translation>VAL 3 règle les sorties pendant que les mouvements précédents sont encore dans la file</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>VAL 3 tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
+        <translation>VAL 3 dit la vitesse des mouvements articulaires en pour cent des plus grandes vitesses des axes, et le fichier machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Value of that output at 1 m/min of wire.</source>
+        <translation>Valeur de cette sortie à 1 m/min de fil.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>Values (*.csv)</source>
+        <translation>Valeurs (*.csv)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Volume</source>
+        <translation>Volume</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Volume of the deposit, bead width times layer height (cm³).</source>
+        <translation>Volume du dépôt, largeur de cordon fois hauteur de couche (cm³).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Wait</source>
+        <translation>Attente</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/preferences.py"/>
+        <source>Wait between layers</source>
+        <translation>Attente entre les couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>Waits</source>
+        <translation>Attentes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>Wall</source>
+        <translation>Paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Wall on Part…</source>
+        <translation>Paroi sur pièce…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Wall on a part</source>
+        <translation>Paroi sur une pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>Wall on part</source>
+        <translation>Paroi sur pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>What a joint path is judged by.</source>
+        <translation>Ce qui juge une trajectoire articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>What is changed of one bead is changed of all</source>
+        <translation>Ce qui est changé d&apos;un cordon l&apos;est de tous</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>What is deposited: click it in the tree or the 3D view</source>
+        <translation>Ce qui est déposé : cliquez dessus dans l&apos;arbre ou la vue 3D</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>What is drawn</source>
+        <translation>Ce qui est dessiné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>What is made of the path</source>
+        <translation>Ce qui est fait de la trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>What it grows on: click it with Ctrl in the tree or the 3D view</source>
+        <translation>Ce sur quoi cela croît : cliquez dessus avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>What the colours of the beads tell</source>
+        <translation>Ce que disent les couleurs des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>What the colours tell</source>
+        <translation>Ce que disent les couleurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.</source>
+        <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>What the positions of Cartesian programs are relative to, in the part&apos;s coordinates: x y z mm, RX RY RZ deg; auto: the frame that sits on the platform.</source>
+        <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Where closed beads start.</source>
+        <translation>Là où commencent les cordons fermés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>Where programs are written first; empty for the folder of last time, or beside the document</source>
+        <translation>Là où les programmes sont d&apos;abord écrits ; vide pour le dossier de la dernière fois, ou à côté du document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Where the check poses are from</source>
+        <translation>D&apos;où viennent les poses de contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Where the fit begins: three or more pairs of a measured point and the same point of the part, each x y z &gt; x y z in mm, with a semicolon between; empty: it is looked for.</source>
+        <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>Where the geometry comes from</source>
+        <translation>D&apos;où vient la géométrie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Where the locked axis stands; auto: where the largest angle left is least.</source>
+        <translation>Là où se tient l&apos;axe bloqué ; auto : là où le plus grand angle restant est le plus petit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Which frame sits on the platform: the feature&apos;s own, or that of the part file.</source>
+        <translation>Quel repère repose sur le plateau : celui de l&apos;élément à déposer, ou celui du fichier de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Which of part and tool the robot carries, or a machine with rotary axes.</source>
+        <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Which set of joint limits of the machine file holds.</source>
+        <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Which side of a wall was measured: that of its outer normals, the inner one, or both.</source>
+        <translation>Quel côté d&apos;une paroi a été mesuré : celui de ses normales extérieures, l&apos;intérieur, ou les deux.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Which wall of a solid is deposited; middle runs halfway between outer and inner.</source>
+        <translation>Quelle paroi d&apos;un solide est déposée ; middle court à mi-chemin entre l&apos;extérieure et l&apos;intérieure.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Whole</source>
+        <translation>Tout</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Widest gap that may stay open between beads, as a share of the bead spacing.</source>
+        <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>Width</source>
+        <translation>Largeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Width of beads</source>
+        <translation>Largeur des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.</source>
+        <translation>Largeur du cordon ; tenue par le modèle de cordon. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Width of the narrowest zone between two circles, by height.</source>
+        <translation>Largeur de la zone la plus étroite entre deux cercles, par hauteur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Width of the narrowest zone between two spheres that holds all points.</source>
+        <translation>Largeur de la zone la plus étroite entre deux sphères qui contient tous les points.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Wire</source>
+        <translation>Fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/preferences.py"/>
+        <source>Wire diameter</source>
+        <translation>Diamètre du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/preferences.py"/>
+        <source>Wire feed</source>
+        <translation>Dévidage du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Wire gain</source>
+        <translation>Gain du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Wire output</source>
+        <translation>Sortie du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Within tolerance</source>
+        <translation>Dans la tolérance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>Words: {}.</source>
+        <translation>Mots : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Write program…</source>
+        <translation>Écrire le programme…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>Write the moves between beads as well, on a layer of their own; toolpaths have none</source>
+        <translation>Écrire aussi les mouvements entre les cordons, sur un calque à eux ; les trajectoires d&apos;outil n&apos;en ont pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF, ou en fait une trajectoire CAM ou Robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Writes all files of the program into a folder</source>
+        <translation>Écrit tous les fichiers du programme dans un dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Writes the controller&apos;s program of a joint path</source>
+        <translation>Écrit le programme de la commande pour une trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Writes the figures and the deviation of every point into a folder</source>
+        <translation>Écrit les chiffres et l&apos;écart de chaque point dans un dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Zero</source>
+        <translation>Zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Zoom in; so does the wheel, with Ctrl up and down</source>
+        <translation>Agrandir ; la molette aussi, avec Ctrl vers le haut et le bas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Zoom into a rectangle that the mouse draws; else it moves the picture</source>
+        <translation>Agrandir un rectangle tracé à la souris ; sinon elle déplace l&apos;image</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>Zoom out</source>
+        <translation>Réduire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
+        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
+        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} of them in corners, first layer {5}, by up to {6} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
+        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, dont {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>a band of {0} % does not suffice: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} of them in corners, first layer {5}, by up to {6} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
+        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, dont {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/smooth_spacing.py"/>
+        <source>a band of {0} % is too narrow for {1} points around: use more of them</source>
+        <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>a bead model sets the travel speed of solids on a hub alone; use none</source>
+        <translation>un modèle de cordon ne règle la vitesse d&apos;avance que des solides sur moyeu ; utilisez none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
+        <source>a build direction of {0} is normal to its plane of symmetry; use local</source>
+        <translation>une direction de dépôt de {0} est normale à son plan de symétrie ; utilisez local</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>a comment that may be carried out, or a line that is too long</source>
+        <translation>un commentaire qui peut être exécuté, ou une ligne trop longue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>a coordinate of its vertices is no number; export it again</source>
+        <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>a gap of {0} mm between faces of {1} is bridged</source>
+        <translation>un jour de {0} mm entre des faces de {1} est comblé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>a height alone is no cone; give the radius of its base circle too, or base: auto</source>
+        <translation>une hauteur seule n&apos;est pas un cône ; donnez aussi le rayon de son cercle de base, ou base: auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <source>a layer all the way round the hub is filled with {0}; strategy.fill = {1} is for regions with an end</source>
+        <translation>une couche sur tout le tour du moyeu est remplie de {0} ; strategy.fill = {1} est pour les régions qui ont une fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/iso_parameter.py"/>
+        <source>a layer height of {0} mm is more than the wall&apos;s bend allows</source>
+        <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>a length such as 1 mm</source>
+        <translation>une longueur comme 1 mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>a mesh has no cylinders and cones; give strategy.base, or a solid part as substrate</source>
+        <translation>un maillage n&apos;a ni cylindres ni cônes ; donnez strategy.base, ou une pièce solide comme substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>a mesh has no exact surfaces; a part of revolution needs a boundary representation: STEP, IGES or BREP</source>
+        <translation>un maillage n&apos;a pas de surfaces exactes ; une pièce de révolution demande une représentation par les frontières : STEP, IGES ou BREP</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>a move before G1, G21, G90 and a work offset are said</source>
+        <translation>un mouvement avant que G1, G21, G90 et un décalage d&apos;origine soient dits</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>a move before G1, G90 and G710 are said</source>
+        <translation>un mouvement avant que G1, G90 et G710 soient dits</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
+        <source>a move of {0} s cannot be written; moves take {1} to {2} s: use another speed or a larger chord error</source>
+        <translation>un mouvement de {0} s ne peut pas être écrit ; les mouvements prennent de {1} à {2} s : utilisez une autre vitesse ou une plus grande erreur de corde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <source>a move of {0} s is longer than {1} s; raise the speed or add points</source>
+        <translation>un mouvement de {0} s est plus long que {1} s ; augmentez la vitesse ou ajoutez des points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>a move without a feed of its own</source>
+        <translation>un mouvement sans avance à lui</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_numbers.py"/>
+        <source>a move would need {0} % of the largest joint speed, which cannot be written; use another speed, so that it is {1} to 100 %</source>
+        <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, ce qui ne peut pas être écrit ; utilisez une autre vitesse, pour qu&apos;il soit de {1} à 100 %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>a part is loaded without stopping where it cannot be</source>
+        <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>a position is moved to in another way than it is recorded</source>
+        <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>a position is recorded twice</source>
+        <translation>une position est enregistrée deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>a position needs X Y Z, and a move in axes before it</source>
+        <translation>une position demande X Y Z, et un mouvement des axes avant elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>a position on the part needs G94 and a work offset of its own</source>
+        <translation>une position sur la pièce demande G94 et un décalage d&apos;origine à elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>a position on the part needs X Y Z and all rotary axes</source>
+        <translation>une position sur la pièce demande X Y Z et tous les axes rotatifs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>a program&apos;s name</source>
+        <translation>le nom d&apos;un programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>a quantity in {}</source>
+        <translation>une grandeur en {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>a quaternion is not all zeros</source>
+        <translation>un quaternion n&apos;est pas tout à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/filling/strips.py"/>
+        <source>a region round the hub is nowhere as wide as a bead ({0} mm); choose thin = single, a narrower bead or a margin</source>
+        <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>a second analogue output is set</source>
+        <translation>une seconde sortie analogique est réglée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>a second output is switched</source>
+        <translation>une seconde sortie est commandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>a speed such as 6 mm/s or 360 mm/min</source>
+        <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/room.py"/>
+        <source>a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with an endless axis</source>
+        <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>a temperature is waited for otherwise</source>
+        <translation>une température est attendue autrement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>a time such as 2 s</source>
+        <translation>un temps comme 2 s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>a toolpath has no joints yet; choose a joint path</source>
+        <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>a turn per length such as 10 deg/mm</source>
+        <translation>une rotation par longueur comme 10 deg/mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>a value is no plain number</source>
+        <translation>une valeur n&apos;est pas un nombre simple</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>a whole ring has no end to start from; cut it where it stands on the substrate</source>
+        <translation>un anneau entier n&apos;a pas d&apos;extrémité d&apos;où partir ; coupez-le là où il repose sur le substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>a wire or sketch needs an axis to turn about; give one</source>
+        <translation>un fil ou une esquisse demande un axe de rotation ; donnez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>a work offset of LinuxCNC turns about Z alone, and the part leans on the table by RX {0} and RY {1} deg; enter an upright origin, as cell.platform: [{2}, {3}, {4}, 0, 0, {5}], or use `motion: joint`</source>
+        <translation>un décalage d&apos;origine de LinuxCNC ne tourne qu&apos;autour de Z, et la pièce penche sur la table de RX {0} et RY {1} deg ; entrez une origine droite, comme cell.platform: [{2}, {3}, {4}, 0, 0, {5}], ou utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>a {0} in {1} has a value that is no number ({2})</source>
+        <translation>un élément {0} de {1} a une valeur qui n&apos;est pas un nombre ({2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>a {0} in {1} lacks {2}</source>
+        <translation>il manque {2} à un élément {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>acceleration</source>
+        <translation>accélération</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>against link 2</source>
+        <translation>par rapport au corps 2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>against the horizontal</source>
+        <translation>par rapport à l&apos;horizontale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>all</source>
+        <translation>toutes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/turn.py"/>
+        <source>all around</source>
+        <translation>sur tout le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>all beads have the {0} {1} {2}</source>
+        <translation>tous les cordons ont : {0} {1} {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>all its faces are flat; choose a part, or faces, of revolution</source>
+        <translation>toutes ses faces sont planes ; choisissez une pièce, ou des faces, de révolution</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>all points lie in one line, which no circle fits; measure further round</source>
+        <translation>tous les points sont sur une ligne, à laquelle aucun cercle ne convient ; mesurez plus loin sur le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>all points lie in one line, which no sphere fits; measure further round</source>
+        <translation>tous les points sont sur une ligne, à laquelle aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>all points lie in one plane, which no circle fits; measure further round</source>
+        <translation>tous les points sont dans un plan, auquel aucun cercle ne convient ; mesurez plus loin sur le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>all points lie in one plane, which no sphere fits; measure further round</source>
+        <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>alternate</source>
+        <translation>alterné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>an acceleration</source>
+        <translation>une accélération</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>an angle such as 90 deg</source>
+        <translation>un angle comme 90 deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>an axis that slides has two ends</source>
+        <translation>un axe de translation a deux bouts</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel.py"/>
+        <source>an edge of the face crosses itself at {0}; draw it without crossings, or divide it there and deposit its parts one after the other</source>
+        <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>analogue inputs are whole numbers, not {0}; change below, gain or zero so that it is one</source>
+        <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>and {} more</source>
+        <translation>et {} autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>angle</source>
+        <translation>angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>another analogue input is read than the one that is waited for</source>
+        <translation>une autre entrée analogique est lue que celle qui est attendue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>another program is called within a bead</source>
+        <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>arc-length</source>
+        <translation>longueur d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>around-axis</source>
+        <translation>autour de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>as found</source>
+        <translation>tel que trouvé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>as the axes can</source>
+        <translation>selon les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>as you chose</source>
+        <translation>comme vous l&apos;avez choisi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/surface_patch.py"/>
+        <source>at ({0}) it is {1} mm off the spline that stands for it, more than {2} mm; rebuild the face, for instance as a loft or a sweep</source>
+        <translation>en ({0}) elle est à {1} mm de la spline qui la représente, plus que {2} mm ; reconstruisez la face, par exemple par lissage ou balayage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/surface_patch.py"/>
+        <source>at ({0}) the face has an edge within itself, of {1} deg; round it, or divide the face there and deposit its parts one after the other</source>
+        <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>at least {0}</source>
+        <translation>au moins {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>at least {0} and at most {1}</source>
+        <translation>au moins {0} et au plus {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>at {0} short places, {1} mm in all, the deposit is slowed, here to {2} mm/s, for the axes go no faster; up to {3} mm of the bead more than meant lie there{4}</source>
+        <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>auto</source>
+        <translation>auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>axes 2 and 3 are not parallel, but {0} deg apart</source>
+        <translation>les axes 2 et 3 ne sont pas parallèles, mais à {0} deg l&apos;un de l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>axes 2 and 3 are the same line</source>
+        <translation>les axes 2 et 3 sont la même droite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>axes are moved in another frame than that of the machine</source>
+        <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>axes {0} and {1} are {2} deg apart, not 90 deg</source>
+        <translation>les axes {0} et {1} sont à {2} deg l&apos;un de l&apos;autre, et non à 90 deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>axis</source>
+        <translation>axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>axis 1 is not the Z of the base frame</source>
+        <translation>l&apos;axe 1 n&apos;est pas le Z du repère de base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>axis 3 is shown {}</source>
+        <translation>l&apos;axe 3 est montré {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>axis {0} has no limits, but joint values of VAL 3 count every turn up to a limit; use limits that have one for axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de VAL 3 comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>axis {0} is up to {1} {2} from the planned value</source>
+        <translation>l&apos;axe {0} est jusqu&apos;à {1} {2} de la valeur planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <source>axis {0} stands at {1} deg and its turn cannot be told reliably in a Cartesian position; use `motion: joint`</source>
+        <translation>l&apos;axe {0} se tient à {1} deg et son tour ne peut pas être dit sûrement dans une position cartésienne ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/table.py"/>
+        <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for</source>
+        <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/table.py"/>
+        <source>axis {0} stands at {1} deg; the tool is up to {2} deg off the direction asked for, more than joints.max_residual allows ({3} deg); lock the other axis, elsewhere or none</source>
+        <translation>l&apos;axe {0} se tient à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, ailleurs ou aucun</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/turns.py"/>
+        <source>axis {0} turns back {1} times between beads, first before layer {2}</source>
+        <translation>l&apos;axe {0} revient en arrière {1} fois entre les cordons, d&apos;abord avant la couche {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>axis {0} turns {1} deg in one move; an axis of continuous turn goes less than 180 deg per move: add points, or limit the axis</source>
+        <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe à rotation continue fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>axis {0} turns {1} deg in one move; an axis without end goes less than 180 deg per move: add points, or limit the axis</source>
+        <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe sans fin fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>axis {0} would move at {1} {2}/s, it can do {3}; {4}</source>
+        <translation>l&apos;axe {0} irait à {1} {2}/s, il peut {3} ; {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>back-down-flip</source>
+        <translation>arrière-bas-retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>back-down-noflip</source>
+        <translation>arrière-bas-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>back-up-flip</source>
+        <translation>arrière-haut-retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>back-up-noflip</source>
+        <translation>arrière-haut-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/table.py"/>
+        <source>bead {0} of {1}</source>
+        <translation>cordon {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>bead {} of {}, {}</source>
+        <translation>cordon {} de {}, {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
+        <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
+        <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>beads get wider with speed (m = {0}); check the table&apos;s columns</source>
+        <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <source>beads leave {0} gap(s) open, the widest of {1} mm at {2}; strategy.gap allows {3} mm</source>
+        <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <source>beads {0} mm wide (process.bead_width), {1} mm apart, leave stripes of {2} mm open between them; use {3} mm or less, or wider beads</source>
+        <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/motion.py"/>
+        <source>before {0} beads the tool is withdrawn by up to {1} mm instead of {2} mm to pass clear</source>
+        <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>best</source>
+        <translation>meilleur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>beyond a limit</source>
+        <translation>au-delà d&apos;une limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>block numbers do not rise</source>
+        <translation>les numéros de bloc ne montent pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>blocks that tell a time are compressed into one, which would take the time of the last</source>
+        <translation>des blocs qui disent un temps sont comprimés en un seul, qui prendrait le temps du dernier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>blue to yellow</source>
+        <translation>bleu à jaune</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>both</source>
+        <translation>les deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>both ends of the wall lie in {0}; a wall starts on it and ends outside of it</source>
+        <translation>les deux extrémités de la paroi sont dans {0} ; une paroi y commence et finit en dehors</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>both sides of a wall have a thickness between; give it</source>
+        <translation>entre les deux côtés d&apos;une paroi il y a une épaisseur ; donnez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <source>build directions</source>
+        <translation>directions de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
+        <source>build directions cannot be brought below {0} deg/mm on a bead of {1} mm: allow a faster turn, or use the mode fixed</source>
+        <translation>les directions de dépôt ne peuvent pas être ramenées sous {0} deg/mm sur un cordon de {1} mm : permettez une rotation plus rapide, ou utilisez le mode fixed</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>build directions of {0} layers, keeping the nozzle clear</source>
+        <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <source>build_direction.max_turn ({0} deg/mm)</source>
+        <translation>build_direction.max_turn ({0} deg/mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>building moves and events</source>
+        <translation>construction des mouvements et événements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>cannot be read as a machine file: {0}</source>
+        <translation>ne peut pas être lu comme un fichier machine : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>cannot be read: {0}</source>
+        <translation>ne peut pas être lu : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>cartesian</source>
+        <translation>cartésien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cell.py"/>
+        <source>cell</source>
+        <translation>cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>choose a URDF file</source>
+        <translation>choisissez un fichier URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>click an object</source>
+        <translation>cliquez sur un objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>click edges</source>
+        <translation>cliquez sur des arêtes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>click faces or an object</source>
+        <translation>cliquez sur des faces ou un objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>click it</source>
+        <translation>cliquez dessus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>click it with Ctrl</source>
+        <translation>cliquez avec Ctrl</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>click objects</source>
+        <translation>cliquez sur des objets</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>clockwise</source>
+        <translation>sens horaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>closed</source>
+        <translation>fermé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>closed, {:.1f} mm</source>
+        <translation>fermée, {:.1f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>closes a gap</source>
+        <translation>comble un jour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>cm</source>
+        <translation>cm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>commas stand between columns and before decimals alike; export it with points as decimal signs, or semicolons between columns</source>
+        <translation>des virgules séparent à la fois les colonnes et les décimales ; exportez-le avec des points décimaux, ou des points-virgules entre les colonnes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>condition</source>
+        <translation>condition</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>condition {0} is below the {1} asked for: too near a singularity</source>
+        <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <source>condition {:.4f}, least {:.4f}</source>
+        <translation>condition {:.4f}, minimum {:.4f}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>cone, R {:.4g} mm, half angle {:.4g}°</source>
+        <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>constant</source>
+        <translation>constante</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>constant RZ</source>
+        <translation>RZ constant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>constant-distance</source>
+        <translation>distance constante</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>contour</source>
+        <translation>contour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>contour, or closed</source>
+        <translation>contour, ou fermé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>contours</source>
+        <translation>contours</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/region.py"/>
+        <source>contours that cross or touch were mended; {0} mm^2 changed</source>
+        <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>counter-clockwise</source>
+        <translation>sens antihoraire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>cutting layers</source>
+        <translation>découpe des couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>cylinder, R {:.4g} mm</source>
+        <translation>cylindre, R {:.4g} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>cylinders and cones of {} are picked as hub</source>
+        <translation>des cylindres et cônes de {} sont choisis comme moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>deposit</source>
+        <translation>dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>deposits</source>
+        <translation>dépose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/view.py"/>
+        <source>deviation</source>
+        <translation>écart</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/histogram.py"/>
+        <source>deviation, mm (most: {} points)</source>
+        <translation>écart, mm (maximum : {} points)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>did you mean {0}?</source>
+        <translation>vouliez-vous dire {0} ?</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}</source>
+        <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}</source>
+        <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>displacement</source>
+        <translation>déplacement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>drift</source>
+        <translation>dérive</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts.py"/>
+        <source>en</source>
+        <translation>fr</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>entities such as {0} are not read</source>
+        <translation>les entités comme {0} ne sont pas lues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>error</source>
+        <translation>erreur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh.py"/>
+        <source>faces of the wall&apos;s mesh turn opposite ways: orient the faces alike</source>
+        <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>faces of {} are picked</source>
+        <translation>des faces de {} sont choisies</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>failed</source>
+        <translation>échoué</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>faster than it can</source>
+        <translation>plus vite qu&apos;elle ne peut</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>feature</source>
+        <translation>élément à déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>fill holes (Mesh, Close holes) or export it again</source>
+        <translation>bouchez les trous (Mesh, Fermer les trous) ou exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>fill, or open</source>
+        <translation>remplissage, ou ouvert</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/fronts.py"/>
+        <source>finding layer {0}</source>
+        <translation>recherche de la couche {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <source>finding layers</source>
+        <translation>recherche des couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>first</source>
+        <translation>premier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>first layer</source>
+        <translation>première couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>first layer: {} contours, {:.1f} mm</source>
+        <translation>première couche : {} contours, {:.1f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>fixed</source>
+        <translation>fixe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/constant.py"/>
+        <source>following the beads</source>
+        <translation>suivi des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <source>from layer {0} on, directions are tilted back to keep the nozzle clear, by up to {1} deg in layer {2}</source>
+        <translation>à partir de la couche {0}, les directions sont redressées pour tenir la buse éloignée, jusqu&apos;à {1} deg dans la couche {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <source>from layer {0} on, max_tilt holds directions within {1} deg</source>
+        <translation>à partir de la couche {0}, max_tilt tient les directions à {1} deg au plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/turn.py"/>
+        <source>from {0} to {1} deg</source>
+        <translation>de {0} à {1} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>front-down-flip</source>
+        <translation>avant-bas-retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>front-down-noflip</source>
+        <translation>avant-bas-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>front-up-flip</source>
+        <translation>avant-haut-retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>front-up-noflip</source>
+        <translation>avant-haut-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/quantity.py"/>
+        <source>give a quantity in {0}</source>
+        <translation>donnez une grandeur en {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>give both ends of its range, or none for an endless axis</source>
+        <translation>donnez les deux bouts de sa plage, ou aucun pour un axe sans fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>give the lower end first, or leave both empty</source>
+        <translation>donnez d&apos;abord la valeur basse, ou laissez les deux vides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/point_by_point.py"/>
+        <source>going from point to point</source>
+        <translation>passage de point en point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>grey</source>
+        <translation>gris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>has sliding axes</source>
+        <translation>a des axes de translation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>height</source>
+        <translation>hauteur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>highest</source>
+        <translation>la plus haute</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <source>however far it is tilted back, the nozzle touches deposit or platform in {0} layer(s), from layer {1} on; use a slimmer nozzle or another wall</source>
+        <translation>si fort qu&apos;elle soit redressée, la buse touche le dépôt ou le plateau dans {0} couche(s), à partir de la couche {1} ; utilisez une buse plus fine ou une autre paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <source>however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}; use a slimmer nozzle, a larger build_direction.max_tilt or another place for what is in the way</source>
+        <translation>de quelque façon que l&apos;outil soit incliné, la buse touche substrat, montage, plateau ou dépôt en {0} point(s) des couches {1} à {2} ; utilisez une buse plus fine, un plus grand build_direction.max_tilt ou une autre place pour ce qui gêne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <source>in layer {0}, tool axes are tilted back to keep the nozzle clear, by up to {1} deg</source>
+        <translation>dans la couche {0}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {1} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <source>in layers {0} to {1}, tool axes are tilted back to keep the nozzle clear, by up to {2} deg</source>
+        <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>in the middle</source>
+        <translation>au milieu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>inch</source>
+        <translation>pouce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>infeasible</source>
+        <translation>infaisable</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>inner</source>
+        <translation>intérieure</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>inspection</source>
+        <translation>contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>is a robot</source>
+        <translation>est un robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>iso-height</source>
+        <translation>hauteur constante</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>iso-parameter</source>
+        <translation>paramètre constant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/overlap.py"/>
+        <source>it and {0} fill the same place, as at {1}, which would be deposited twice; fuse them into one solid, or move one</source>
+        <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it builds more than holds itself; simplify it</source>
+        <translation>il construit plus que ce qui se contient soi-même ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it builds more than is not in it; simplify it</source>
+        <translation>il construit plus que ce qui n&apos;y est pas ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it builds more than {0} objects, or objects nested {1} times; simplify it</source>
+        <translation>il construit plus de {0} objets, ou des objets imbriqués {1} fois ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it builds more than {0} triangles; simplify it</source>
+        <translation>il construit plus de {0} triangles ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it builds no triangles; export the part again</source>
+        <translation>il ne construit pas de triangles ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>it calls itself</source>
+        <translation>il s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/part_file.py"/>
+        <source>it cannot be read as a FreeCAD document; save it again</source>
+        <translation>il ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it cannot be read: {0}</source>
+        <translation>il ne peut pas être lu : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/user_machines.py"/>
+        <source>it cannot be written: {0}</source>
+        <translation>il ne peut pas être écrit : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/settings.py"/>
+        <source>it cannot follow an expression; give a plain value</source>
+        <translation>il ne peut pas suivre une expression ; donnez une valeur simple</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>it closes on itself both ways; choose a tube that is closed around</source>
+        <translation>elle se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>it could at {0} mm/s, but the bead model asks for {1} mm/s and too much would pile up: turn the torch more slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead (process.bead_width), which is laid more slowly</source>
+        <translation>il le pourrait à {0} mm/s, mais le modèle de cordon demande {1} mm/s et trop s&apos;y amasserait : tournez la torche plus lentement (build_direction.max_turn), penchez-la moins, montez la pièce autrement, ou demandez un cordon plus large (process.bead_width), qui est posé plus lentement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wire.py"/>
+        <source>it crosses the axis by {0} mm; keep it on one side</source>
+        <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>it cuts itself: {0} pairs of its triangles cross, for instance at {1}, so that what is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, Self-intersections)</source>
+        <translation>il se coupe lui-même : {0} paires de ses triangles se croisent, par exemple en {1}, de sorte que l&apos;intérieur n&apos;est pas connu ; fusionnez ce qui se recouvre là où la pièce a été dessinée, ou réparez le maillage (Mesh, Analyser, Auto-intersections)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>it declares a document type, which no controller writes</source>
+        <translation>il déclare un type de document, ce qu&apos;aucune commande n&apos;écrit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>it does not end with M17, or calls itself</source>
+        <translation>il ne finit pas par M17, ou s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>it does not end with M30, or calls itself</source>
+        <translation>il ne finit pas par M30, ou s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>it does not hold the code of a program {0}</source>
+        <translation>il ne contient pas le code d&apos;un programme {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <source>it does not stand on the hub: it begins {0} mm outside of {1}, at {2}; move it, or choose its base{3}</source>
+        <translation>il ne repose pas sur le moyeu : il commence à {0} mm en dehors de {1}, en {2} ; déplacez-le, ou choisissez sa base{3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <source>it does not stand on the hub: it lies inside of the hub; move it, or choose its base{0}</source>
+        <translation>il ne repose pas sur le moyeu : il est à l&apos;intérieur du moyeu ; déplacez-le, ou choisissez sa base{0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <source>it does not stand on the hub: it passes {0} beside the face, near {1}; move it, or choose its base{2}</source>
+        <translation>il ne repose pas sur le moyeu : il passe à {0} à côté de la face, près de {1} ; déplacez-le, ou choisissez sa base{2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>it ends before the last move does</source>
+        <translation>il finit avant le dernier mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>it ends with the deposit on</source>
+        <translation>il finit avec le dépôt en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>it ends with the deposit on, or within a loop</source>
+        <translation>il finit avec le dépôt en marche, ou dans une boucle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>it ends within a loop</source>
+        <translation>il finit dans une boucle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>it has 1 row; measure at least {0} beads</source>
+        <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it has a document type, which 3MF does not allow</source>
+        <translation>il a un type de document, ce que 3MF ne permet pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>it has an edge along its seam; walls with edges cannot be deposited yet</source>
+        <translation>elle a une arête le long de sa couture ; les parois à arêtes ne peuvent pas encore être déposées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>it has an edge that is neither straight across the tube at its end nor below the first layer; walls with openings or slanted ends cannot be deposited yet</source>
+        <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche ; les parois à ouvertures ou à extrémités obliques ne peuvent pas encore être déposées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>it has more than {0} characters</source>
+        <translation>il a plus de {0} caractères</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>it has more values than there are columns; write decimals with a point</source>
+        <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>it has neither faces nor edges; choose another object</source>
+        <translation>il n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>it has no closed direction; choose a tube that is closed around</source>
+        <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>it has no column {0}; its first line names {1}</source>
+        <translation>il n&apos;a pas de colonne {0} ; sa première ligne nomme {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>it has no face of any width; choose another object</source>
+        <translation>il n&apos;a aucune face de quelque largeur ; choisissez un autre objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>it has no face that turns about the axis; name the faces of the wall</source>
+        <translation>aucune de ses faces ne tourne autour de l&apos;axe ; nommez les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/distance.py"/>
+        <source>it has no faces to compare points with; choose a solid or a surface</source>
+        <translation>il n&apos;a pas de face à laquelle comparer les points ; choisissez un solide ou une surface</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/tessellate.py"/>
+        <source>it has no faces to keep the nozzle clear of; choose a solid or a mesh</source>
+        <translation>il n&apos;a pas de face dont tenir la buse éloignée ; choisissez un solide ou un maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>it has no faces; choose a part with the faces of the wall</source>
+        <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/source.py"/>
+        <source>it has no path; choose a toolpath, joint path or program</source>
+        <translation>il n&apos;a pas de trajectoire ; choisissez une trajectoire d&apos;outil, une trajectoire articulaire ou un programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/run.py"/>
+        <source>it has no points; there is nothing to play</source>
+        <translation>il n&apos;a pas de points ; il n&apos;y a rien à jouer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes.py"/>
+        <source>it has no shape; choose an object with a shape</source>
+        <translation>il n&apos;a pas de forme ; choisissez un objet qui a une forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>it has no solid; choose solids or closed meshes to deposit</source>
+        <translation>il n&apos;a pas de solide ; choisissez des solides ou des maillages fermés à déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/start_edges.py"/>
+        <source>it has no {0}; its edges are Edge1 to Edge{1}</source>
+        <translation>il n&apos;a pas de {0} ; ses arêtes vont de Edge1 à Edge{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>it has no {0}; its faces are Face1 to Face{1}</source>
+        <translation>il n&apos;a pas de {0} ; ses faces vont de Face1 à Face{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>it has only flat faces across the axis; name the faces of the wall</source>
+        <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>it has {0} axes, {1} of which slide; a robot has six that turn</source>
+        <translation>il a {0} axes, dont {1} de translation ; un robot en a six qui tournent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>it has {0} faces that are not flat; name the wall&apos;s in part.faces</source>
+        <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>it has {0} rows; measure at least {1} beads</source>
+        <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it holds no shape; export the part again</source>
+        <translation>il ne contient pas de forme ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it holds no triangles; export the part again</source>
+        <translation>il ne contient pas de triangles ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it is a folder; name the file of the part</source>
+        <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>it is a reserved word</source>
+        <translation>c&apos;est un mot réservé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_on.py"/>
+        <source>it is a solid whose faces that are not flat ({0}) are not one wall; name the faces of the wall: part.faces of a job, or select them</source>
+        <translation>c&apos;est un solide dont les faces non planes ({0}) ne sont pas une seule paroi ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it is compressed in a way that 3MF does not allow</source>
+        <translation>il est comprimé d&apos;une façon que 3MF ne permet pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>it is cut short after {0} of {1} vertices; export it again</source>
+        <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it is damaged or not what its ending says; export the part again</source>
+        <translation>il est endommagé ou n&apos;est pas ce que dit son extension ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>it is empty</source>
+        <translation>il est vide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it is empty; export the part again</source>
+        <translation>il est vide ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>it is empty; export the points again</source>
+        <translation>il est vide ; exportez les points de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
+        <source>it is empty; give a number</source>
+        <translation>c&apos;est vide ; donnez un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/quantity.py"/>
+        <source>it is empty; give a quantity in {0}</source>
+        <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <source>it is empty; give maker and model</source>
+        <translation>il est vide ; donnez le constructeur et le modèle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it is encrypted; export it without protection</source>
+        <translation>il est chiffré ; exportez-le sans protection</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it is encrypted; export plain triangles</source>
+        <translation>il est chiffré ; exportez des triangles simples</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/run.py"/>
+        <source>it is neither a joint path nor a program; select one of them</source>
+        <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>it is no PLY file that begins with its vertices; export it again</source>
+        <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>it is no cylinder and no cone; choose another face, or give strategy.base</source>
+        <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/source.py"/>
+        <source>it is no joint path; select one</source>
+        <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>it is no program that ends with M2</source>
+        <translation>ce n&apos;est pas un programme qui finit par M2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>it is no solid; choose a solid part for the wall to grow on</source>
+        <translation>ce n&apos;est pas un solide ; choisissez une pièce solide sur laquelle la paroi doit croître</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/substrate.py"/>
+        <source>it is no solid; choose a solid part or a closed mesh for the wall to grow on</source>
+        <translation>ce n&apos;est pas un solide ; choisissez une pièce solide ou un maillage fermé sur lequel la paroi doit croître</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it is no sound zip file ({0})</source>
+        <translation>ce n&apos;est pas un fichier zip sain ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>it is no stage of this workbench; choose one</source>
+        <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>it is no table: it holds bytes that are no text in UTF-8; save it as CSV in UTF-8</source>
+        <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <source>it is none of signs and a coupling of axes 2 and 3; copy the file itself</source>
+        <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
+        <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>it is not a project in millimetres</source>
+        <translation>ce n&apos;est pas un projet en millimètres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>it is not on the surface of {0} ({1} mm off); walls of several surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone</source>
+        <translation>elle n&apos;est pas sur la surface de {0} (écart de {1} mm) ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>it is not said which axes the feed is the speed of</source>
+        <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>it is not well-formed XML ({0})</source>
+        <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>it is solid and has no {0} wall; use wall: outer</source>
+        <translation>il est plein et n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>it is the inside of a bore; solids grow on the outside of a hub</source>
+        <translation>c&apos;est l&apos;intérieur d&apos;un alésage ; les solides croissent à l&apos;extérieur d&apos;un moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>it is the same in all poses, which proves nothing; add another pose</source>
+        <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>it is waited for an analogue input within a bead, or twice</source>
+        <translation>une entrée analogique est attendue au sein d&apos;un cordon, ou deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wire.py"/>
+        <source>it is {0} mm off the plane of the wire and its axis; draw the wire in a plane that holds the axis</source>
+        <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>it may hold only the letters A to Z, digits and underscores</source>
+        <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>it must start with {0}</source>
+        <translation>il doit commencer par {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it needs an extension that is not read ({0}); export plain triangles</source>
+        <translation>il demande une extension qui n&apos;est pas lue ({0}) ; exportez des triangles simples</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/laid_flat.py"/>
+        <source>it winds {0} times about the cone and would lie on itself when laid flat; divide it into shorter solids</source>
+        <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois mis à plat ; divisez-le en solides plus courts</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>its XML is damaged ({0})</source>
+        <translation>son XML est endommagé ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/surfaces.py"/>
+        <source>its beads fill solids, most are inside; compare the points with the feature</source>
+        <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>its beads were laid at wire feeds from {0} to {1} m/min; the model is of one: keep the rows of one</source>
+        <translation>ses cordons ont été posés à des dévidages de {0} à {1} m/min ; le modèle vaut pour un seul : gardez les lignes de l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <source>its cell is gone</source>
+        <translation>sa cellule a disparu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>its closed form is {0} mm and {1} (entries of the rotation) off; give the geometry with more digits</source>
+        <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation) ; donnez la géométrie avec plus de chiffres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>its code does not run from begin to end</source>
+        <translation>son code ne va pas de begin à end</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wire.py"/>
+        <source>its edges lie on the axis; choose another axis</source>
+        <translation>ses arêtes sont sur l&apos;axe ; choisissez un autre axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_fronts.py"/>
+        <source>its end cuts the first layer off; make it longer</source>
+        <translation>son extrémité coupe la première couche ; allongez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <source>its end does not lie above the substrate all around; make it longer</source>
+        <translation>son extrémité n&apos;est pas au-dessus du substrat sur tout le tour ; allongez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_on.py"/>
+        <source>its faces that are not flat run on smoothly into {0}, which is; name the faces of the wall: part.faces of a job, or select them</source>
+        <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/source.py"/>
+        <source>its joint path is gone; choose a joint path</source>
+        <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/source.py"/>
+        <source>its machine has two rotary axes, which leave no rotation about the tool to choose; a map is for robots</source>
+        <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>its speed is limited, or its tool fixed, in a way that is not understood</source>
+        <translation>sa vitesse est limitée, ou son outil fixé, d&apos;une façon qui n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/surface_patch.py"/>
+        <source>its surface ({0}) cannot be told as a spline; rebuild the face, for instance as a loft</source>
+        <translation>sa surface ({0}) ne peut pas être dite par une spline ; reconstruisez la face, par exemple par lissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <source>its toolpath is gone; choose another, or delete the joint path too</source>
+        <translation>sa trajectoire d&apos;outil a disparu ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>its unit {0} is none of {1}</source>
+        <translation>son unité {0} n&apos;est aucune de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
+        <source>its vertices have no plain x, y and z; export it again</source>
+        <translation>ses sommets n&apos;ont pas de x, y et z simples ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>its view was closed</source>
+        <translation>sa vue a été fermée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>its {0} is missing; choose one and recompute</source>
+        <translation>son {0} manque ; choisissez-en un et recalculez</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>jerk</source>
+        <translation>jerk</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>joining the beads by rapid moves</source>
+        <translation>liaison des cordons par des mouvements rapides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>joint</source>
+        <translation>articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>joint and Cartesian positions are mixed</source>
+        <translation>positions articulaires et cartésiennes sont mêlées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>joint margin</source>
+        <translation>marge articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/straight.py"/>
+        <source>joint motion leaves the bead between two points however many are added: near a singularity</source>
+        <translation>le mouvement articulaire quitte le cordon entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>joint path</source>
+        <translation>trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>joint speed</source>
+        <translation>vitesse articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/given.py"/>
+        <source>joints.given is of no effect on the method {0}; use {1}, or take it out</source>
+        <translation>joints.given est sans effet sur la méthode {0} ; utilisez {1}, ou retirez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/given.py"/>
+        <source>joints.given names beads that are not there: {0}; take them out</source>
+        <translation>joints.given nomme des cordons qui n&apos;existent pas : {0} ; retirez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>keeping the nozzle clear</source>
+        <translation>maintien de la buse à distance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>kind of bead</source>
+        <translation>type de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>known are {0}</source>
+        <translation>sont connus {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>layer</source>
+        <translation>couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>layer height</source>
+        <translation>hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
+        <source>layer {0} bead {1}</source>
+        <translation>couche {0} cordon {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/reading.py"/>
+        <source>layer {}</source>
+        <translation>couche {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>layer-by-layer</source>
+        <translation>couche par couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>layers</source>
+        <translation>couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/board.py"/>
+        <source>layers ({} of {} beads)</source>
+        <translation>couches ({} de {} cordons)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>layers of {0} mm are higher than the wall&apos;s smallest radius of curvature, {1} mm at {2}; use lower layers, or a larger radius there</source>
+        <translation>des couches de {0} mm sont plus hautes que le plus petit rayon de courbure de la paroi, {1} mm en {2} ; prenez des couches plus basses, ou un plus grand rayon à cet endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>laying the points onto the part</source>
+        <translation>pose des points sur la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/tilt.py"/>
+        <source>lead and tilt alone lean the tool by more than max_tilt ({0} deg); make them smaller or the cap larger</source>
+        <translation>l&apos;angle d&apos;avance et l&apos;inclinaison seuls penchent l&apos;outil de plus que max_tilt ({0} deg) ; diminuez-les ou augmentez le maximum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>least allowed</source>
+        <translation>minimum permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>limits-fournier</source>
+        <translation>limites (Fournier)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>limits-klein</source>
+        <translation>limites (Klein)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>limits-liegeois</source>
+        <translation>limites (Liégeois)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>line</source>
+        <translation>ligne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>lines</source>
+        <translation>lignes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>local</source>
+        <translation>locale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>local distance</source>
+        <translation>distance locale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>local: tangent to the wall at each point; layer: one direction per layer; fixed: the axis of the part.</source>
+        <translation>local : tangente à la paroi en chaque point ; layer : une direction par couche ; fixed : l&apos;axe de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>looking at the shape</source>
+        <translation>examen de la forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>lower the travel speed to {0} mm/s</source>
+        <translation>diminuez la vitesse d&apos;avance à {0} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>lowest</source>
+        <translation>la plus basse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>m</source>
+        <translation>m</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>manipulability</source>
+        <translation>manipulabilité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <source>margin</source>
+        <translation>marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <source>margin {:.1f} % ({})</source>
+        <translation>marge {:.1f} % ({})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>mass</source>
+        <translation>masse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>mean</source>
+        <translation>moyenne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <source>measuring {0} layers</source>
+        <translation>mesure de {0} couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>meshes have no exact faces for a wall</source>
+        <translation>les maillages n&apos;ont pas de faces exactes pour une paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>middle</source>
+        <translation>milieu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>more than two faces meet in one edge at {0}; a wall branches by smooth faces with openings: leave one of them out</source>
+        <translation>plus de deux faces se rencontrent en une arête en {0} ; une paroi se ramifie par des faces lisses à ouvertures : laissez l&apos;une d&apos;elles de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>more than {0}</source>
+        <translation>plus de {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>more than {0} and at most {1}</source>
+        <translation>plus de {0} et au plus {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/constant_distance.py"/>
+        <source>more than {0} layers of {1} mm: use a larger layer height</source>
+        <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/picture.py"/>
+        <source>near a singularity</source>
+        <translation>près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>neighbouring triangles face opposite ways, for instance at {0}; turn them alike (Mesh, Harmonize normals)</source>
+        <translation>des triangles voisins regardent en sens opposés, par exemple en {0} ; tournez-les pareillement (Mesh, Harmoniser les normales)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>no access</source>
+        <translation>pas d&apos;accès</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>no axis was found that its faces turn about; give it, or name the faces</source>
+        <translation>aucun axe de rotation de ses faces n&apos;a été trouvé ; donnez-le, ou nommez les faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>no bead model</source>
+        <translation>pas de modèle de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>no bead model sets the speeds (process.bead_model)</source>
+        <translation>aucun modèle de cordon ne règle les vitesses (process.bead_model)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/developable.py"/>
+        <source>no bead of {0} mm or more finds room in any layer; use a smaller bead spacing, or thin = single</source>
+        <translation>aucun cordon de {0} mm ou plus ne trouve place dans aucune couche ; prenez une plus petite distance des cordons, ou thin = single</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>no ending</source>
+        <translation>aucune extension</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>no file of measured points is given; choose one</source>
+        <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>no joint moves {0} against {1}; choose another link</source>
+        <translation>aucune articulation ne déplace {0} par rapport à {1} ; choisissez un autre corps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>no layer has a corner; within the wall they turn by up to {0} deg/mm</source>
+        <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi elles tournent jusqu&apos;à {0} deg/mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>no line of it has three numbers; give rows of x y z</source>
+        <translation>aucune ligne n&apos;a trois nombres ; donnez des lignes de x y z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>no link is carried by {}</source>
+        <translation>aucun corps n&apos;est porté par {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/constant_distance.py"/>
+        <source>no point of the wall at v = {0} lies {1} mm from the layer below: the layer height must stay below the wall&apos;s smallest radius of curvature</source>
+        <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous : la hauteur de couche doit rester au-dessous du plus petit rayon de courbure de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>no program fits its inputs ({0})</source>
+        <translation>aucun programme ne convient à ses entrées ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>none</source>
+        <translation>aucun</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <source>none of its solids stands on a cylinder or cone of another; name the hub as substrate, choose a face of it, or give strategy.base</source>
+        <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre ; nommez le moyeu comme substrat, choisissez une de ses faces, ou donnez strategy.base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>none of its {0} solids is of revolution; name the faces of the wall</source>
+        <translation>aucun de ses {0} solides n&apos;est de révolution ; nommez les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>none of these layers lies on another</source>
+        <translation>aucune de ces couches ne repose sur une autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/constant.py"/>
+        <source>none of {0} values of RZ serves for the whole job; the nearest to it is {1} deg</source>
+        <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/painting.py"/>
+        <source>not allowed, or touching</source>
+        <translation>non permis, ou contact</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>note</source>
+        <translation>remarque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/dock.py"/>
+        <source>nothing forbids it</source>
+        <translation>rien ne l&apos;interdit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>nozzle</source>
+        <translation>buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.</source>
+        <translation>nozzle : pas plus d&apos;inclinaison qu&apos;il n&apos;en faut pour tenir la buse éloignée du dépôt et du plateau.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>object {0} of {1} has triangles with points that it has not</source>
+        <translation>l&apos;objet {0} de {1} a des triangles dont il n&apos;a pas les points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>object {0} of {1} holds itself</source>
+        <translation>l&apos;objet {0} de {1} se contient lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>object {0} of {1} is moved by a matrix that flattens it</source>
+        <translation>l&apos;objet {0} de {1} est déplacé par une matrice qui l&apos;aplatit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>object {0} of {1} is not in it</source>
+        <translation>l&apos;objet {0} de {1} n&apos;y est pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>object {0} of {1} {2} objects, or objects nested {3} times</source>
+        <translation>objet {0} de {1} : {2} objets, ou objets imbriqués {3} fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>of the shape</source>
+        <translation>de la forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>off</source>
+        <translation>écart</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapids.py"/>
+        <source>on its way from the bead before the nozzle would meet {0}; raise process.between_layers.lift</source>
+        <translation>en venant du cordon précédent la buse rencontrerait {0} ; augmentez process.between_layers.lift</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm</source>
+        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <source>on {0} of {1} beads in layer {2} bends follow one another too closely to turn the torch round them at {3}: it leans by {4} to {5} deg there instead of {6} deg; lean less, or allow a faster turn</source>
+        <translation>sur {0} de {1} cordons de la couche {2} des courbes se suivent de trop près pour que la torche tourne à {3} : elle y penche de {4} à {5} deg au lieu de {6} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <source>on {0} of {1} beads in {2} layers from {3} to {4} bends follow one another too closely to turn the torch round them at {5}: it leans by {6} to {7} deg there instead of {8} deg; lean less, or allow a faster turn</source>
+        <translation>sur {0} de {1} cordons dans {2} couches de {3} à {4} des courbes se suivent de trop près pour que la torche tourne à {5} : elle y penche de {6} à {7} deg au lieu de {8} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <source>on {0} of {1} beads the hub&apos;s normals alone turn by up to {2} deg/mm, faster than {3}; the torch follows them all the same</source>
+        <translation>sur {0} de {1} cordons les normales du moyeu seules tournent jusqu&apos;à {2} deg/mm, plus vite que {3} ; la torche les suit malgré tout</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <source>on {0} of {1} beads, {2} mm in all, the torch begins to turn ahead of corners, by up to {3} deg from what is asked, to turn no faster than {4}</source>
+        <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les angles, jusqu&apos;à {3} deg de ce qui est demandé, pour ne pas tourner plus vite que {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/part_file.py"/>
+        <source>one object that nothing else is made from</source>
+        <translation>un objet dont rien d&apos;autre n&apos;est fait</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>only a loop over one move is understood</source>
+        <translation>seule une boucle sur un mouvement est comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>open</source>
+        <translation>ouvert</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>open, {:.1f} mm</source>
+        <translation>ouverte, {:.1f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>out of reach</source>
+        <translation>hors d&apos;atteinte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <source>out of reach with this branch</source>
+        <translation>hors d&apos;atteinte avec cette branche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>outer</source>
+        <translation>extérieure</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>over</source>
+        <translation>selon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>part</source>
+        <translation>pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>part-on-robot</source>
+        <translation>pièce sur le robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/view.py"/>
+        <source>past the edges</source>
+        <translation>au-delà des bords</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>path</source>
+        <translation>trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>pick</source>
+        <translation>choisir</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>place</source>
+        <translation>position</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>point {} of {} at {:.2f}, {:.2f}, {:.2f} mm</source>
+        <translation>point {} de {} en {:.2f}, {:.2f}, {:.2f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>point-by-point</source>
+        <translation>point par point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/board.py"/>
+        <source>points of layer {}</source>
+        <translation>points de la couche {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>polynomials</source>
+        <translation>polynômes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>positions of more than one frame are mixed</source>
+        <translation>des positions de plus d&apos;un repère sont mêlées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>positions on the part need the kinematics that M428 chooses; set it to true, or use `motion: joint`</source>
+        <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>program</source>
+        <translation>programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>proportional</source>
+        <translation>proportionnelle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/fit.py"/>
+        <source>r {0} mm, measured</source>
+        <translation>r {0} mm, mesuré</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/bars.py"/>
+        <source>range</source>
+        <translation>plage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>rapid</source>
+        <translation>rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>rapid move</source>
+        <translation>mouvement rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>rate</source>
+        <translation>débit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>reading back and checking</source>
+        <translation>relecture et vérification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>reading the points</source>
+        <translation>lecture des points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>reading the program back does not give the planned path</source>
+        <translation>la relecture du programme ne donne pas la trajectoire planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>recompute it</source>
+        <translation>recalculez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/layer_by_layer.py"/>
+        <source>refining layers</source>
+        <translation>affinage des couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>refuse</source>
+        <translation>refuser</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>repair the mesh (Mesh, Analyze)</source>
+        <translation>réparez le maillage (Mesh, Analyser)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <source>robots need all their axes; only machines with rotary axes can do with four; use none</source>
+        <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>rotary-table</source>
+        <translation>plateau rotatif</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>rotation</source>
+        <translation>rotation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <source>rotation not allowed</source>
+        <translation>rotation non permise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
+        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/predicted.py"/>
+        <source>run as fast as the axes can follow, beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm{4}</source>
+        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>rz</source>
+        <translation>RZ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/room.py"/>
+        <source>seam moved for a limited axis</source>
+        <translation>couture déplacée pour un axe limité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/constant.py"/>
+        <source>searching one RZ for all</source>
+        <translation>recherche d&apos;un RZ pour tous</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/layer_by_layer.py"/>
+        <source>searching rotations</source>
+        <translation>recherche des rotations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>second</source>
+        <translation>second</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>select</source>
+        <translation>sélectionner</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>several objects are selected; they grow on the one with faces picked, else on the last one</source>
+        <translation>plusieurs objets sont sélectionnés ; ils croissent sur celui dont des faces sont choisies, sinon sur le dernier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>share of the length</source>
+        <translation>part de la longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>share of the limit</source>
+        <translation>part de la limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>share of the points</source>
+        <translation>part des points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>shift</source>
+        <translation>translation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>sign</source>
+        <translation>signe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>signs and zeros of {} are others</source>
+        <translation>les signes et zéros de {} sont autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>single</source>
+        <translation>simple</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>slides</source>
+        <translation>glisse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/region.py"/>
+        <source>slivers of {0} mm^2 were dropped</source>
+        <translation>des éclats de {0} mm^2 ont été écartés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>smooth</source>
+        <translation>lisse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/region.py"/>
+        <source>solids are filled with the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
+        <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>some points have no joint values; a program needs all of them</source>
+        <translation>certains points n&apos;ont pas de valeurs articulaires ; un programme les demande toutes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>something else is being computed; wait until that is done, or cancel it</source>
+        <translation>autre chose est en cours de calcul ; attendez que ce soit fini, ou annulez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>speed</source>
+        <translation>vitesse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>speed and acceleration are more than 0, or left empty</source>
+        <translation>vitesse et accélération sont supérieures à 0, ou laissées vides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>speeds and radii vary only together</source>
+        <translation>vitesses et rayons ne varient qu&apos;ensemble</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>sphericity and circularity</source>
+        <translation>sphéricité et circularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>spiral</source>
+        <translation>spirale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/room.py"/>
+        <source>split for a limited axis</source>
+        <translation>divisé pour un axe limité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <source>spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
+        <translation>étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>stale</source>
+        <translation>périmé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>such as: pendant of R-30iB, 21 November; or a simulator with its version</source>
+        <translation>par exemple : pupitre du R-30iB, 21 novembre ; ou un simulateur avec sa version</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>symmetry-plane</source>
+        <translation>plan de symétrie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>symmetry-plane is not for parts of revolution; use local, layer or fixed</source>
+        <translation>symmetry-plane n&apos;est pas pour les pièces de révolution ; utilisez local, layer ou fixed</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <source>table, row {0}</source>
+        <translation>tableau, ligne {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>tell it; a machine is only as good</source>
+        <translation>dites-le ; une machine ne vaut pas mieux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange</source>
+        <translation>le Z de la bride n&apos;est pas le long de l&apos;axe 6 ; prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>the analogue output stops the machine within a bead</source>
+        <translation>la sortie analogique arrête la machine au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>the analogue output stops the machine within a bead, or its compressor</source>
+        <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/table.py"/>
+        <source>the axes leave the bead by {0} mm, its direction by {1} deg between two points however many are added: near a pole; tilt away from it</source>
+        <translation>les axes quittent le cordon de {0} mm, sa direction de {1} deg entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;un pôle ; inclinez pour vous en éloigner</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the axis of {0} has no direction</source>
+        <translation>l&apos;axe de {0} n&apos;a pas de direction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>the axis of {0} is {1} deg off the normal of the platform</source>
+        <translation>l&apos;axe de {0} est à {1} deg de la normale du plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>the axis of {0} is {1} mm off the middle of the platform and misses it</source>
+        <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>the base frame</source>
+        <translation>le repère de base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>the base of {0} has a diameter of {1} mm and reaches over the platform; check cell.platform_diameter (0 for none)</source>
+        <translation>la base de {0} a un diamètre de {1} mm et dépasse du plateau ; vérifiez cell.platform_diameter (0 pour aucun)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>the base of {0} is {1} mm below the platform</source>
+        <translation>la base de {0} est à {1} mm au-dessous du plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/touching.py"/>
+        <source>the base touches {what}</source>
+        <translation>la base touche {what}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>the calibration table cannot be read ({0}); give none, csw or the path of one</source>
+        <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
+        <source>the circle at {0} mm was not measured all round: {1} deg between neighbours</source>
+        <translation>le cercle à {0} mm n&apos;a pas été mesuré sur tout le tour : {1} deg entre voisins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>the closed form is for six joints, there are {0}</source>
+        <translation>la forme explicite est pour six articulations, il y en a {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>the controller of {0} does not read {1}; there is no post for it yet; leave program out</source>
+        <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle ; retirez program</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>the controller of {0} does not read {1}; use one of {2}</source>
+        <translation>la commande de {0} ne lit pas {1} ; utilisez l&apos;un de {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller&apos;s program reads analogue inputs 1 to {0}, not {1}; use one of these</source>
+        <translation>le programme de la commande lit les entrées analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>the controller&apos;s program reads inputs 1 to {0}, not {1}; use one of these</source>
+        <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <source>the controller&apos;s program sets analogue outputs 1 to {0}, not {1}; use one of these</source>
+        <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/touching.py"/>
+        <source>the deposit</source>
+        <translation>le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the deposit is switched otherwise than planned</source>
+        <translation>le dépôt est commandé autrement que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>the document was closed</source>
+        <translation>le document a été fermé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/start_edges.py"/>
+        <source>the edge is {0} mm off the wall at {1}; choose edges of the wall&apos;s own faces</source>
+        <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>the face folds back and cuts itself at {0}; a bend must have a larger radius than the tube</source>
+        <translation>la face se replie et se coupe elle-même en {0} ; un coude doit avoir un plus grand rayon que le tube</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>the faces form {0} separate pieces: {1} and {2} are {3} mm apart at {4}; choose connected faces, edges meeting within {5} mm</source>
+        <translation>les faces forment {0} morceaux séparés : {1} et {2} sont à {3} mm l&apos;une de l&apos;autre en {4} ; choisissez des faces jointes, dont les arêtes se rencontrent à {5} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>the faces of the wall do not close around; walls that are open (half shells) cannot be deposited yet: choose a full tube</source>
+        <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>the faces picked turn about one axis</source>
+        <translation>les faces choisies tournent autour d&apos;un même axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>the file is missing</source>
+        <translation>le fichier manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the first column is a running number</source>
+        <translation>la première colonne est un numéro courant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/first_layer.py"/>
+        <source>the first layer does not run once around the wall: choose one closed loop of edges that crosses each line up the wall once</source>
+        <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>the first layer lies on the wall and on {0}</source>
+        <translation>la première couche repose sur la paroi et sur {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>the first layer lies on the wall and on {0} within {1} mm</source>
+        <translation>la première couche repose sur la paroi et sur {0} à {1} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>the flange</source>
+        <translation>la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the flange&apos;s origin does not lie on axis 6</source>
+        <translation>l&apos;origine de la bride n&apos;est pas sur l&apos;axe 6</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel.py"/>
+        <source>the geometry kernel cannot divide this face into triangles; repair it (Part, Check geometry), or draw it anew</source>
+        <translation>le noyau géométrique ne peut pas diviser cette face en triangles ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel.py"/>
+        <source>the geometry kernel cannot work with this shape ({0}); repair it (Part, Check geometry), or draw its faces anew</source>
+        <translation>le noyau géométrique ne peut pas traiter cette forme ({0}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/standing.py"/>
+        <source>the hub has no cylinder and no cone on its outside; choose a face of it, or give strategy.base</source>
+        <translation>le moyeu n&apos;a ni cylindre ni cône à son extérieur ; choisissez une de ses faces, ou donnez strategy.base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>the hub is not known; choose it as substrate, choose faces of it, or give strategy.base</source>
+        <translation>le moyeu n&apos;est pas connu ; choisissez-le comme substrat, choisissez ses faces, ou donnez strategy.base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>the instruction {0} is not understood</source>
+        <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the joint {0} follows another one, which a serial chain cannot</source>
+        <translation>l&apos;articulation {0} en suit une autre, ce qu&apos;une chaîne en série ne peut pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the joint {0} has no &lt;limit&gt;; one that turns without end is continuous</source>
+        <translation>l&apos;articulation {0} n&apos;a pas de &lt;limit&gt; ; une qui tourne sans fin est continuous</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the joint {0} is {1}; only {2} and fixed ones are read</source>
+        <translation>l&apos;articulation {0} est {1} ; seules {2} et fixed sont lues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>the key {0} is missing</source>
+        <translation>la clé {0} manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>the key {0} is not known; use {1}</source>
+        <translation>la clé {0} n&apos;est pas connue ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>the kinematics changes while the deposit is on</source>
+        <translation>la cinématique change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/motion.py"/>
+        <source>the lifted points before or after the bead cannot be reached; lower process.between_layers.lift</source>
+        <translation>les points levés avant ou après le cordon ne peuvent pas être atteints ; diminuez process.between_layers.lift</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the limits of {0} run from {1} to {2}; give the lower one first</source>
+        <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la plus basse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/touching.py"/>
+        <source>the link of {axis} touches {what}</source>
+        <translation>le corps de {axis} touche {what}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the link {0} carries itself</source>
+        <translation>le corps {0} se porte lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the link {0} does not carry {1}; choose others</source>
+        <translation>le corps {0} ne porte pas {1} ; choisissez-en d&apos;autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the link {0} is moved by {1} already</source>
+        <translation>le corps {0} est déjà mû par {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>the links of analogue inputs differ from controller to controller, and the post staubli knows none</source>
+        <translation>les liens des entrées analogiques diffèrent d&apos;une commande à l&apos;autre, et le post-processeur staubli n&apos;en connaît aucun</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>the local distance between layers is {0} to {1} mm</source>
+        <translation>la distance locale entre les couches est de {0} à {1} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; a larger strategy.tolerance says that this will do</source>
+        <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; un strategy.tolerance plus grand dit que cela suffit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; spacing: constant-distance is even</source>
+        <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; spacing: constant-distance est égal</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>the machine does not give them; see the deviations</source>
+        <translation>la machine ne les donne pas ; voyez les écarts</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no solid is returned to sooner than after {4} s</source>
+        <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>the matrix has no inverse</source>
+        <translation>la matrice n&apos;a pas d&apos;inverse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the measured points cannot be read ({0}); check the path</source>
+        <translation>les points mesurés ne peuvent pas être lus ({0}) ; vérifiez le chemin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>the measured points do not settle on the part; give pairs of points to begin with</source>
+        <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh encloses nothing; export the solid again</source>
+        <translation>le maillage n&apos;enferme rien ; exportez le solide de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has a hole</source>
+        <translation>le maillage a un trou</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has no inside, as at {0}; model the solid again</source>
+        <translation>le maillage n&apos;a pas d&apos;intérieur, comme en {0} ; modélisez le solide de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has no triangles, or points that are no numbers; export it again</source>
+        <translation>le maillage n&apos;a pas de triangles, ou des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/substrate.py"/>
+        <source>the mesh has no triangles; choose a closed mesh or a solid part</source>
+        <translation>le maillage n&apos;a pas de triangles ; choisissez un maillage fermé ou une pièce solide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/substrate.py"/>
+        <source>the mesh has points that are no numbers; export it again</source>
+        <translation>le maillage a des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>the move is not told in the axes of the first one</source>
+        <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/touching.py"/>
+        <source>the nozzle</source>
+        <translation>la buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/readout.py"/>
+        <source>the nozzle touches platform or part</source>
+        <translation>la buse touche le plateau ou la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_clearance.py"/>
+        <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle</source>
+        <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>the pairs of points lie in one line, about which the part can turn; choose others</source>
+        <translation>les paires de points sont sur une ligne, autour de laquelle la pièce peut tourner ; choisissez-en d&apos;autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the path between two points leaves the straight line by {0} mm, more than the chord error</source>
+        <translation>la trajectoire entre deux points quitte la droite de {0} mm, plus que l&apos;erreur de corde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/normal_layers.py"/>
+        <source>the planes normal to its centreline do not cut it in one curve each; such layers are not for this wall</source>
+        <translation>les plans normaux à sa ligne moyenne ne la coupent pas chacun en une courbe ; de telles couches ne sont pas pour cette paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/touching.py"/>
+        <source>the platform</source>
+        <translation>le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>the points of {0} are not all in one frame</source>
+        <translation>les points de {0} ne sont pas tous dans un repère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>the pose at all zeros is missing</source>
+        <translation>la pose à zéro de tous les axes manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>the pose at the serial zeros is missing</source>
+        <translation>la pose aux zéros en série manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>the post fanuc cannot write {0}</source>
+        <translation>le post-processeur fanuc ne peut pas écrire {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>the post staubli cannot write {0} ({1} motion)</source>
+        <translation>le post-processeur staubli ne peut pas écrire {0} (mouvement {1})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <source>the post {0} cannot write {1} ({2} motion), only rotary-table</source>
+        <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}), seulement rotary-table</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <source>the post {0} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {1}: name its joints mx my mz and a, b or c</source>
+        <translation>le post-processeur {0} écrit des axes linéaires X Y Z et des axes rotatifs parmi A B C, un de chaque ; la machine a {1} : nommez ses articulations mx my mz et a, b ou c</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the post {0} writes {1} axes; use another post</source>
+        <translation>le post-processeur {0} écrit {1} axes ; utilisez un autre post-processeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <source>the program has no arm configurations; use `motion: joint`</source>
+        <translation>le programme n&apos;a pas de configurations de bras ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>the program has no name; give one</source>
+        <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>the program has no positions; use `motion: joint`</source>
+        <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the program holds no moves; check where it starts</source>
+        <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>the record of P[{0}] is not understood</source>
+        <translation>l&apos;enregistrement de P[{0}] n&apos;est pas compris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/filling/centre.py"/>
+        <source>the region at {0} is {1} mm wide, less than a bead ({2} mm); choose thin = single, a narrower bead or a margin</source>
+        <translation>la région en {0} est large de {1} mm, moins qu&apos;un cordon ({2} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>the rotation about the tool axis would be {0} deg, outside the range allowed</source>
+        <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/turns.py"/>
+        <source>the seams of {0} beads were moved to keep an axis within its limits</source>
+        <translation>les coutures de {0} cordons ont été déplacées pour garder un axe dans ses limites</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>the set {0} is missing</source>
+        <translation>le jeu {0} manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>the shape is empty; choose an object with a shape</source>
+        <translation>la forme est vide ; choisissez un objet qui a une forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/substrate.py"/>
+        <source>the solid around {0} is turned inside out (volume {1} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)</source>
+        <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>the solid is turned inside out (volume {0} mm3, near {1}); flip its normals (Mesh, Flip normals)</source>
+        <translation>le solide est retourné (volume {0} mm3, près de {1}) ; inversez ses normales (Mesh, Inverser les normales)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>the solid is turned inside out; repair it (Part, Check geometry)</source>
+        <translation>le solide est retourné ; réparez-le (Part, Vérifier la géométrie)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_layers.py"/>
+        <source>the solid reaches over the end of the hub&apos;s axis, at {0}, where equidistant surfaces have an apex or an end; let it end beside the axis</source>
+        <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the speed in the text is not the planned one</source>
+        <translation>la vitesse dans le texte n&apos;est pas celle planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the speed of the wire in the text is not the planned one</source>
+        <translation>la vitesse du fil dans le texte n&apos;est pas celle planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/store.py"/>
+        <source>the stored result cannot be read ({0}); recompute it</source>
+        <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed, or measure a table at it</source>
+        <translation>le tableau a été mesuré à un dévidage de {0} mm/s, le travail a {1} mm/s ; réglez process.wire.feed, ou mesurez un tableau à ce dévidage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the text has {0} moves, planned are {1}</source>
+        <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the text leads up to {0} mm away from the planned point, more than its digits explain</source>
+        <translation>le texte mène jusqu&apos;à {0} mm du point planifié, plus que ses chiffres n&apos;expliquent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the time in the text does not give the planned speed</source>
+        <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the times of a bead do not add up to the planned one</source>
+        <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the tool is tilted by up to {0} deg, more than the digits explain</source>
+        <translation>l&apos;outil est incliné jusqu&apos;à {0} deg, plus que les chiffres n&apos;expliquent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the tool is turned otherwise than planned</source>
+        <translation>l&apos;outil est tourné autrement que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>the tools of {0} are not all on one tool</source>
+        <translation>les outils de {0} ne sont pas tous sur un outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>the transformation changes while the deposit is on</source>
+        <translation>la transformation change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>the values of {0} are not those from 0 to its size, each once</source>
+        <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the vertices of a mesh are taken as points</source>
+        <translation>les sommets d&apos;un maillage sont pris comme points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>the wall bends too sharply: {0} mm off between {1} x {2} samples; smooth it, or cut it where it has an edge</source>
+        <translation>la paroi se courbe trop fort : {0} mm d&apos;écart entre {1} x {2} échantillons ; lissez-la, ou coupez-la là où elle a une arête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>the wall cuts itself at {0} ({1}); a bend must have a larger radius than the tube, and faces must not cross</source>
+        <translation>la paroi se coupe elle-même en {0} ({1}) ; un coude doit avoir un plus grand rayon que le tube, et les faces ne doivent pas se croiser</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/first_layer.py"/>
+        <source>the wall does not come out of the substrate everywhere (at v = {0}, for instance): let it reach into the substrate all around, or choose the edges it starts from</source>
+        <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) : faites-la pénétrer dans le substrat sur tout le tour, ou choisissez les arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>the wall does not meet {0} in a closed curve (nearest {1} mm); let it reach into it all around</source>
+        <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; faites-la pénétrer sur tout le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>the wall does not touch {0}: it comes nearest at {1}, {2} mm away; move it so that it reaches in, at most {3} mm may be missing</source>
+        <translation>la paroi ne touche pas {0} : elle en est au plus près en {1}, à {2} mm ; déplacez-la pour qu&apos;elle y pénètre, il peut manquer {3} mm au plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/smooth_spacing.py"/>
+        <source>the wall has no point at {0} mm from the layer below: use a smaller layer height or a narrower band</source>
+        <translation>la paroi n&apos;a pas de point à {0} mm de la couche du dessous : prenez une plus petite hauteur de couche ou une bande plus étroite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>the wall lies wholly in {0} (at {1} it is {2} mm deep, and nowhere less); a wall starts on the substrate and ends outside of it</source>
+        <translation>la paroi est tout entière dans {0} (en {1} à {2} mm de profondeur, et nulle part moins) ; une paroi commence sur le substrat et finit en dehors</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>the wall meets {0} in no curve that a layer can start from (shorter than a few {1} mm); let it reach in all around, or choose the edges to start from</source>
+        <translation>la paroi ne rencontre {0} en aucune courbe d&apos;où une couche puisse partir (plus courte que quelques fois {1} mm) ; faites-la pénétrer sur tout le tour, ou choisissez les arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>the way of the move, and so its time, is not known</source>
+        <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the wrist centre lies above axis 3, without a forearm along axis 4</source>
+        <translation>le centre du poignet est au-dessus de l&apos;axe 3, sans avant-bras le long de l&apos;axe 4</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 4 and 5 meet</source>
+        <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 4 et 5 se rencontrent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 5 and 6 meet</source>
+        <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 5 et 6 se rencontrent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_files.py"/>
+        <source>there are files that belong to no project, or to two</source>
+        <translation>il y a des fichiers qui n&apos;appartiennent à aucun projet, ou à deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>there are no moves</source>
+        <translation>il n&apos;y a pas de mouvements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>there are no points in it; give rows of x y z</source>
+        <translation>il n&apos;y a pas de points dedans ; donnez des lignes de x y z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>there are {0} applications, expected one with its parts</source>
+        <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>there are {0} main programs, expected one with its parts</source>
+        <translation>il y a {0} programmes principaux, un seul attendu avec ses parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>there are {0} programs that are no subs, expected one</source>
+        <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>there are {0}; a machine needs at least 3 joint vectors with their flange poses</source>
+        <translation>il y en a {0} ; une machine demande au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>there are {}; at least {} are needed, for a machine without them is not loaded</source>
+        <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/user_machines.py"/>
+        <source>there is a machine {0} already; choose another name</source>
+        <translation>il y a déjà une machine {0} ; choisissez un autre nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>there is a {0} {1} already, in line {2}</source>
+        <translation>il y a déjà un {0} {1}, à la ligne {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>there is no &lt;{0}&gt;</source>
+        <translation>il n&apos;y a pas de &lt;{0}&gt;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>there is no bead {0} in a layer {1}; the job has layers 0 to {2}</source>
+        <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; le travail a les couches 0 à {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>there is no folder {}</source>
+        <translation>il n&apos;y a pas de dossier {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>there is no joint</source>
+        <translation>il n&apos;y a pas d&apos;articulation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>there is no joint path yet; recompute the document</source>
+        <translation>il n&apos;y a pas encore de trajectoire articulaire ; recalculez le document</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>there is no link {0}</source>
+        <translation>il n&apos;y a pas de corps {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>there is no machine file {0}</source>
+        <translation>il n&apos;y a pas de fichier machine {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>there is no model in it ({0})</source>
+        <translation>il n&apos;y a pas de modèle dedans ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/filling/fill.py"/>
+        <source>there is no pattern {0}; use one of {1}</source>
+        <translation>il n&apos;y a pas de motif {0} ; utilisez l&apos;un de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>there is no result yet; recompute it</source>
+        <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <source>there is no row; give one per joint</source>
+        <translation>il n&apos;y a pas de ligne ; donnez-en une par articulation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>there is no such file; check the name and the folder</source>
+        <translation>il n&apos;y a pas de tel fichier ; vérifiez le nom et le dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/part_file.py"/>
+        <source>there is no such file; check the path</source>
+        <translation>il n&apos;y a pas de tel fichier ; vérifiez le chemin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>there is no {0}; mend the row, or leave it out</source>
+        <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>there is nothing to be seen in these layers</source>
+        <translation>il n&apos;y a rien à voir dans ces couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>there is nothing to grow on; choose a substrate, or the edges to start from</source>
+        <translation>il n&apos;y a rien sur quoi croître ; choisissez un substrat, ou les arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <source>theta, d, a and alpha must be numbers</source>
+        <translation>theta, d, a et alpha doivent être des nombres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <source>this FreeCAD has no CAM (Path) workbench; install it or write STEP or DXF instead</source>
+        <translation>ce FreeCAD n&apos;a pas d&apos;atelier CAM (Path) ; installez-le, ou écrivez STEP ou DXF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/robot_trajectory.py"/>
+        <source>this FreeCAD has no Robot workbench; install it or make a CAM path instead</source>
+        <translation>ce FreeCAD n&apos;a pas d&apos;atelier Robot ; installez-le, ou faites une trajectoire CAM</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/step_wires.py"/>
+        <source>this FreeCAD has no module Import; write DXF instead</source>
+        <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>this and most other lines are no points; give rows of x y z</source>
+        <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>this cannot be planned for: {0}</source>
+        <translation>on ne peut pas planifier pour cela : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF</source>
+        <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>this is not XML: {0}</source>
+        <translation>ce n&apos;est pas du XML : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>this is xacro; make a URDF of it first, with the program xacro of ROS</source>
+        <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>this machine has no condition</source>
+        <translation>cette machine n&apos;a pas de condition</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_fronts.py"/>
+        <source>this wall has no closed parameter whose lines layers could follow (several faces, openings, a side or a slanted end); use constant-distance or smooth</source>
+        <translation>cette paroi n&apos;a pas de paramètre fermé dont les lignes puissent guider des couches (plusieurs faces, ouvertures, un côté ou une extrémité oblique) ; utilisez constant-distance ou smooth</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>three or more triangles share an edge</source>
+        <translation>trois triangles ou plus partagent une arête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>tilt</source>
+        <translation>inclinaison</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>time</source>
+        <translation>temps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>to</source>
+        <translation>à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
+        <source>to keep the nozzle clear, tool axes turn by up to {0} deg/mm, faster than build_direction.max_turn ({1} deg/mm); use a slimmer nozzle or allow a faster turn</source>
+        <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <source>tool axes are {0}</source>
+        <translation>les axes de l&apos;outil sont {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>tool-on-robot</source>
+        <translation>outil sur le robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>tool-on-robot+positioner</source>
+        <translation>outil sur le robot + positionneur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>toolpath</source>
+        <translation>trajectoire d&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>torus, cone (cylinders too) or table; patches for a wall of any connected faces.</source>
+        <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces jointes quelconques.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>travel speed</source>
+        <translation>vitesse d&apos;avance</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>trim</source>
+        <translation>coupée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/path_view.py"/>
+        <source>tubes</source>
+        <translation>tubes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/controls.py"/>
+        <source>turn</source>
+        <translation>tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <source>turned back by up to {0} deg to stay within build_direction.max_tilt</source>
+        <translation>ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>turning it about the centre of the sphere</source>
+        <translation>une rotation autour du centre de la sphère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>two files hold a program of the same name</source>
+        <translation>deux fichiers contiennent un programme du même nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>um</source>
+        <translation>um</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>unreachable</source>
+        <translation>hors d&apos;atteinte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>up to date</source>
+        <translation>à jour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface.py"/>
+        <source>up to {0} mm of the wall are left above the last whole layer</source>
+        <translation>jusqu&apos;à {0} mm de la paroi restent au-dessus de la dernière couche entière</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <source>use 0 or 1</source>
+        <translation>utilisez 0 ou 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
+        <source>use 1 or -1</source>
+        <translation>utilisez 1 ou -1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>use mount: feature</source>
+        <translation>utilisez mount: feature</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>use mount: feature, or move the part</source>
+        <translation>utilisez mount: feature, ou déplacez la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>v in mm/min; R² {:.4f}, RMSE {:.3f} mm</source>
+        <translation>v en mm/min ; R² {:.4f}, RMSE {:.3f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>violet to orange</source>
+        <translation>violet à orange</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
+        <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>waits</source>
+        <translation>attend</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>waits for {0}: {1}</source>
+        <translation>attend {0} : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>waits, deposit on</source>
+        <translation>attend, dépôt en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>warning</source>
+        <translation>avertissement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>way</source>
+        <translation>parcours</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <source>what the machine&apos;s controller reads</source>
+        <translation>ce que lit la commande de la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>whole</source>
+        <translation>entière</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>width</source>
+        <translation>largeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>wire feed {0} m/min is not a positive number; mend the row, or leave it out</source>
+        <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>wires are written as .step or .dxf; end the name with one of them</source>
+        <translation>les fils sont écrits en .step ou .dxf ; terminez le nom par l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>with TRAORI a move needs X Y Z A3 B3 C3 F, G94, ORIWKS and a work offset</source>
+        <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, ORIWKS et un décalage d&apos;origine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>with axis 5 at zero the wrist is bent by {0} deg; add the difference to its zero (theta of row 5), and to the zero that the controller shows</source>
+        <translation>avec l&apos;axe 5 à zéro le poignet est plié de {0} deg ; ajoutez la différence à son zéro (theta de la ligne 5), et au zéro que montre la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/sheet.py"/>
+        <source>with edges of {0} mm, by layer height and smallest radius, the mesh of the wall has more than {1} triangles, about {2}; use a larger layer height, round sharp bends more, or deposit the wall in parts</source>
+        <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>with the {0} digits of its parts it has more than {1} characters</source>
+        <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>within {0} mm</source>
+        <translation>à {0} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>without a bead model the travel speed does not vary, and the wire has nothing to follow; use constant, or a process.bead_model</source>
+        <translation>sans modèle de cordon la vitesse d&apos;avance ne varie pas, et le fil n&apos;a rien à suivre ; utilisez constant, ou un process.bead_model</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>work offset {0} is not there for the part; use 1 to {1} (G54 to G59.2; the ninth, {2}, is set to zero for moves of the axes)</source>
+        <translation>le décalage d&apos;origine {0} n&apos;existe pas pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/quantity.py"/>
+        <source>write decimals with &apos;{0}&apos;, as in 1{1}5 {2}, and do not group digits</source>
+        <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>x, y and z by their headings</source>
+        <translation>x, y et z d&apos;après leurs titres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>zigzag</source>
+        <translation>zigzag</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
+        <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>{0} (and {1} layers of solids more)</source>
+        <translation>{0} (et {1} couches de solides de plus)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} a flange {1} mm and {2} (largest entry of the rotation) from it; correct the geometry or the pose</source>
+        <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>{0} all have a wall; name the faces of the one to deposit</source>
+        <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>{0} and {1} are {2} mm apart at {3}; close the gap: edges must meet within {4} mm</source>
+        <translation>{0} et {1} sont à {2} mm l&apos;une de l&apos;autre en {3} ; fermez le jour : les arêtes doivent se rencontrer à {4} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <source>{0} and {1} meet at an angle of {2} deg at {3}; a wall&apos;s faces must run on smoothly, within {4} deg: round the edge, or deposit the faces one after the other</source>
+        <translation>{0} et {1} se rencontrent sous un angle de {2} deg en {3} ; les faces d&apos;une paroi doivent se prolonger sans cassure, à {4} deg près : arrondissez l&apos;arête, ou déposez les faces l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <source>{0} at layer {1}</source>
+        <translation>{0} à la couche {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <source>{0} bead(s) alone in regions narrower than a bead of {1} mm stand out of them, by up to {2} mm at {3}</source>
+        <translation>{0} cordon(s) seuls dans des régions plus étroites qu&apos;un cordon de {1} mm en dépassent, jusqu&apos;à {2} mm en {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>{0} bead(s) at the end shorter than half a layer height are left out</source>
+        <translation>{0} cordon(s) à la fin plus courts qu&apos;une demi-hauteur de couche sont laissés de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_fronts.py"/>
+        <source>{0} bead(s) close gaps between fronts that meet, nearer to them than a layer height; the first in layer {1}</source>
+        <translation>{0} cordon(s) comblent les jours entre des fronts qui se rencontrent, à moins d&apos;une hauteur de couche d&apos;eux ; le premier dans la couche {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>{0} bead(s) of a radius of no more than the chord error ({1} mm) are left out</source>
+        <translation>{0} cordon(s) d&apos;un rayon ne dépassant pas l&apos;erreur de corde ({1} mm) sont laissés de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/speeds.py"/>
+        <source>{0} bead(s) where the wall closes are run at down to {1} mm/s: the axes turn no faster</source>
+        <translation>{0} cordon(s) là où la paroi se ferme sont parcourus jusqu&apos;à {1} mm/s seulement : les axes ne tournent pas plus vite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/turns.py"/>
+        <source>{0} beads were split because an axis has not the stroke for a whole bead</source>
+        <translation>{0} cordons ont été divisés parce qu&apos;un axe n&apos;a pas la course d&apos;un cordon entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} cannot be carried out: {1}</source>
+        <translation>{0} ne peut pas être exécuté : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0} cannot be planned yet; use {1}, {2} or {3}</source>
+        <translation>{0} ne peut pas encore être planifié ; utilisez {1}, {2} ou {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>{0} cannot be read ({1}); choose the file again</source>
+        <translation>{0} ne peut pas être lu ({1}) ; choisissez le fichier de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <source>{0} cannot be the name of a machine; use a to z, digits and -</source>
+        <translation>{0} ne peut pas être le nom d&apos;une machine ; utilisez a à z, chiffres et -</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/sheet.py"/>
+        <source>{0} cannot be turned to one side (a twisted band has no outside); divide the band, or leave one of its faces out</source>
+        <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/names.py"/>
+        <source>{0} cannot be {1} on the controller: {2}; use {3}</source>
+        <translation>{0} ne peut pas être {1} sur la commande : {2} ; utilisez {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <source>{0} cannot switch both on and off; give two different words</source>
+        <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} changes no deviation: the points do not tell it</source>
+        <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>{0} do not join to one wall; name the faces of the wall, or deposit them one by one</source>
+        <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} does not wait for the moves before it</source>
+        <translation>{0} n&apos;attend pas les mouvements qui le précèdent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/equidistant.py"/>
+        <source>{0} edges have not two faces, one at ({1}, {2}, {3}) mm from the hub&apos;s base; close the mesh</source>
+        <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/expressions.py"/>
+        <source>{0} gives {1}, which is no number</source>
+        <translation>{0} donne {1}, qui n&apos;est pas un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>{0} has another dimension; give {1}{2}</source>
+        <translation>{0} a une autre dimension ; donnez {1}{2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} has no limits {1}; use {2}</source>
+        <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0} has no spherical wrist; choose a robot that has one (see `freecad-am machines`)</source>
+        <translation>{0} n&apos;a pas de poignet sphérique ; choisissez un robot qui en a un (voir `freecad-am machines`)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <source>{0} has other axes than the joint path</source>
+        <translation>{0} a d&apos;autres axes que la trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>{0} has {1} points with its approach, and loading another part within a bead would stop the robot while it deposits; use at least {2}</source>
+        <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>{0} in a loop that waits for an input</source>
+        <translation>{0} dans une boucle qui attend une entrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>{0} in or about a loop that waits for an analogue input</source>
+        <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>{0} is a program of this very job; call another one, or rename the job</source>
+        <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>{0} is a surface: it has no {1} wall, and is taken as it is</source>
+        <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is called before it is loaded</source>
+        <translation>{0} est appelé avant d&apos;être chargé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} is known to {1} mm, by triangles</source>
+        <translation>{0} est connu à {1} mm près, par des triangles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is loaded while depositing, is not there, or {1} is no library</source>
+        <translation>{0} est chargé pendant le dépôt, n&apos;existe pas, ou {1} n&apos;est pas une bibliothèque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>{0} is missing in it</source>
+        <translation>il y manque {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>{0} is missing in this document. Make it first: button {0} in the toolbar.</source>
+        <translation>{0} manque dans ce document. Faites-le d&apos;abord : bouton {0} de la barre d&apos;outils.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} is missing; choose {1}{2}</source>
+        <translation>{0} manque ; choisissez {1}{2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is more than the rounding of a display leaves; give 0 to {1}</source>
+        <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>{0} is neither a length nor six numbers</source>
+        <translation>{0} n&apos;est ni une longueur ni six nombres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>{0} is no axis; give a point and a direction such as [[0, 0, 0], [0, 0, 1]]</source>
+        <translation>{0} n&apos;est pas un axe ; donnez un point et une direction comme [[0, 0, 0], [0, 0, 1]]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
+        <source>{0} is no bend of a torus, so its plane of symmetry is not known; give its normal as build_direction.plane, or use local, layer or fixed</source>
+        <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
+        <source>{0} is no colour; give red, green and blue from 0 to 1</source>
+        <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is no digital input of the project</source>
+        <translation>{0} n&apos;est pas une entrée logique du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is no digital output of the project</source>
+        <translation>{0} n&apos;est pas une sortie logique du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>{0} is no direction; give three numbers such as 0 1 0, or auto</source>
+        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme 0 1 0, ou auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>{0} is no edge of {1}; choose edges of it</source>
+        <translation>{0} n&apos;est pas une arête de {1} ; choisissez ses arêtes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>{0} is no face of {1}; choose faces of the hub</source>
+        <translation>{0} n&apos;est pas une face de {1} ; choisissez des faces du moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>{0} is no face; choose faces or the whole shape</source>
+        <translation>{0} n&apos;est pas une face ; choisissez des faces ou toute la forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>{0} is no height; give numbers in mm</source>
+        <translation>{0} n&apos;est pas une hauteur ; donnez des nombres en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>{0} is no instruction</source>
+        <translation>{0} n&apos;est pas une instruction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is no library of the project</source>
+        <translation>{0} n&apos;est pas une bibliothèque du projet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>{0} is no pair of points; give x y z &gt; x y z in mm</source>
+        <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is no program of it, or calls itself</source>
+        <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
+        <source>{0} is no scale; give 1 for mm, 1000 for m</source>
+        <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
+        <source>{0} is no shape that can be drawn; use {1}</source>
+        <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
+        <source>{0} is no sign; use 1 or -1</source>
+        <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/wall.py"/>
+        <source>{0} is no torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
+        <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <source>{0} is no word such as M7 or H2=1; give one for on and one for off</source>
+        <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} is no {1}; choose one</source>
+        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>{0} is none of revolution, surface, developable</source>
+        <translation>{0} n&apos;est ni revolution, ni surface, ni developable</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>{0} is not a branch; use [front|back, up|down, flip|noflip] or auto</source>
+        <translation>{0} n&apos;est pas une branche ; utilisez [front|back, up|down, flip|noflip] ou auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/spiral.py"/>
+        <source>{0} is not a full turn; use path: layers</source>
+        <translation>{0} n&apos;est pas un tour entier ; utilisez path: layers</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not a list</source>
+        <translation>{0} n&apos;est pas une liste</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not a list of {1}</source>
+        <translation>{0} n&apos;est pas une liste de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not a number</source>
+        <translation>{0} n&apos;est pas un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a number or {1}</source>
+        <translation>{0} n&apos;est pas un nombre ou {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>{0} is not a number; give one such as 0.1</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>{0} is not a number{1}</source>
+        <translation>{0} n&apos;est pas un nombre{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a pose; give six numbers x y z RX RY RZ{1}</source>
+        <translation>{0} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>{0} is not a pose; give x y z in mm and RX RY RZ in deg</source>
+        <translation>{0} n&apos;est pas une pose ; donnez x y z en mm et RX RY RZ en deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not a range; give the smaller one first, or null for endless</source>
+        <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord la plus petite valeur, ou null pour un axe sans fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a range; give two angles, the smaller first</source>
+        <translation>{0} n&apos;est pas une plage ; donnez deux angles, le plus petit d&apos;abord</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not a text</source>
+        <translation>{0} n&apos;est pas un texte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not a type of joint; use revolute or prismatic</source>
+        <translation>{0} n&apos;est pas un type d&apos;articulation ; utilisez revolute ou prismatic</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not a unit vector</source>
+        <translation>{0} n&apos;est pas un vecteur unitaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a whole number</source>
+        <translation>{0} n&apos;est pas un nombre entier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>{0} is not above 0</source>
+        <translation>{0} n&apos;est pas supérieur à 0</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not an object</source>
+        <translation>{0} n&apos;est pas un objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>{0} is not an object with the keys {1}</source>
+        <translation>{0} n&apos;est pas un objet avec les clés {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/developable.py"/>
+        <source>{0} is not for solids on a hub, which grow along its normals; use local</source>
+        <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/part_file.py"/>
+        <source>{0} is not found among the objects with a shape ({1}); name one</source>
+        <translation>{0} n&apos;est pas trouvé parmi les objets à forme ({1}) ; nommez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not known; use one of {1}</source>
+        <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>{0} is not known; use one of {1}, or none</source>
+        <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}, ou none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not known; {1}</source>
+        <translation>{0} n&apos;est pas connu ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>{0} is not read as points; use {1}</source>
+        <translation>{0} n&apos;est pas lu comme des points ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>{0} is not read; use {1}</source>
+        <translation>{0} n&apos;est pas lu ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not the length of an arm; give more than 0 mm</source>
+        <translation>{0} n&apos;est pas la longueur d&apos;un bras ; donnez plus de 0 mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not the name of the file, {1}</source>
+        <translation>{0} n&apos;est pas le nom du fichier, {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not true or false</source>
+        <translation>{0} n&apos;est ni vrai ni faux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>{0} is not understood</source>
+        <translation>{0} n&apos;est pas compris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/expressions.py"/>
+        <source>{0} is not understood ({1}); write it as in {2}Spreadsheet.height / 2</source>
+        <translation>{0} n&apos;est pas compris ({1}) ; écrivez-le comme {2}Spreadsheet.height / 2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>{0} is not understood here</source>
+        <translation>{0} n&apos;est pas compris ici</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>{0} is not understood, or a second output is switched</source>
+        <translation>{0} n&apos;est pas compris, ou une seconde sortie est commandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>{0} is not understood; give layer/bead:constant:slope with up to {1} coefficients in deg and deg per turn, such as 12/0:-35:360; * stands for every other bead</source>
+        <translation>{0} n&apos;est pas compris ; donnez couche/cordon:constante:pente avec jusqu&apos;à {1} coefficients en deg et deg par tour, comme 12/0:-35:360 ; * vaut pour tout autre cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>{0} is not understood; give {1}</source>
+        <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/quantity.py"/>
+        <source>{0} is not understood; {1}</source>
+        <translation>{0} n&apos;est pas compris ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} is not {1} data of the project, or has not so many values</source>
+        <translation>{0} n&apos;est pas une donnée {1} du projet, ou n&apos;a pas autant de valeurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not {1}; give more than 0, or null where not known</source>
+        <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/properties.py"/>
+        <source>{0} is out of range; give -360 to 360 deg</source>
+        <translation>{0} est hors de la plage ; donnez de -360 à 360 deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is out of range; give {1}</source>
+        <translation>{0} est hors de la plage ; donnez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>{0} is there twice; give each bead one</source>
+        <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/turn.py"/>
+        <source>{0} leave more than one opening around the axis; choose one of them</source>
+        <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez-en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>{0} links to nothing, what it showed is gone or was not loaded; choose another {1}</source>
+        <translation>{0} ne lie à rien, ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé ; choisissez un autre {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>{0} may be a program of this very job; call one of another name</source>
+        <translation>{0} peut être un programme de ce travail même ; appelez-en un d&apos;un autre nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_parts.py"/>
+        <source>{0} means something else to the controller; use another word</source>
+        <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/first_layer.py"/>
+        <source>{0} meets {1} in {2} loops; layers start at the uppermost</source>
+        <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/iso_height.py"/>
+        <source>{0} mm is more than the wall is high ({1} mm); give a smaller one, or layers along the wall (spacing: arc-length)</source>
+        <translation>{0} mm sont plus que la hauteur de la paroi ({1} mm) ; donnez moins, ou des couches le long de la paroi (spacing: arc-length)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/arc_length.py"/>
+        <source>{0} mm is more than the wall is long ({1} mm); give a smaller one</source>
+        <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>{0} mm of the height are left at the top, less than a layer</source>
+        <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>{0} mm of the wall are left at the top, less than a layer</source>
+        <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <source>{0} mm/s cannot be written; use a speed between {1} and {2} mm/s</source>
+        <translation>{0} mm/s ne peuvent pas être écrits ; utilisez une vitesse entre {1} et {2} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_numbers.py"/>
+        <source>{0} mm/s cannot be written; use at least {1} mm/s</source>
+        <translation>{0} mm/s ne peuvent pas être écrits ; utilisez au moins {1} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_numbers.py"/>
+        <source>{0} mm/s cannot be written; use {1} to {2} mm/s</source>
+        <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>{0} more columns not used</source>
+        <translation>{0} autres colonnes non utilisées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <source>{0} moves take {1} s in all and cannot be shorter than 1 ms each; use a larger chord error or a lower speed</source>
+        <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} must be 1 or -1 each</source>
+        <translation>{0} doivent être 1 ou -1 chacun</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} must lie within +-180, that of axis 5 must be 0</source>
+        <translation>{0} doivent être entre -180 et 180, celui de l&apos;axe 5 doit être 0</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} of its points lie on {1}; choose the object that was measured, its unit, or pairs of points to begin with</source>
+        <translation>{0} de ses points sont sur {1} ; choisissez l&apos;objet qui a été mesuré, son unité, ou des paires de points pour commencer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>{0} of the points left out, expected 0 or more and less than 0.5</source>
+        <translation>{0} des points laissés de côté ; attendu : 0 ou plus et moins de 0.5</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/table.py"/>
+        <source>{0} of {1} directions cannot be turned to the torch by this machine; tilt less, or mount the part otherwise</source>
+        <translation>{0} de {1} directions ne peuvent pas être tournées vers la torche par cette machine ; inclinez moins, ou montez la pièce autrement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
+        <source>{0} of {1} fronts have corners, first layer {2}; the sharpest turns by {3} deg. The robot slows down there</source>
+        <translation>{0} de {1} fronts ont des angles, d&apos;abord la couche {2} ; le plus vif tourne de {3} deg. Le robot y ralentit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>{0} of {1} is a step of {2} mm in the wall; it is kept</source>
+        <translation>{0} de {1} est une marche de {2} mm dans la paroi ; elle est gardée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/revolution.py"/>
+        <source>{0} of {1} layers are more than 20 % off the layer height of {2} mm, first layer {3}; layer {4} is {5} mm from the one below; layers along the wall (spacing: arc-length) are even</source>
+        <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>{0} of {1} points cannot be reached with this branch; move the deposition point, choose another branch or tilt less</source>
+        <translation>{0} de {1} points ne peuvent pas être atteints avec cette branche ; déplacez le point de dépôt, choisissez une autre branche ou inclinez moins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <source>{0} of {1} solids or groups of solids get one layer alone, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
+        <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapids.py"/>
+        <source>{0} or the platform</source>
+        <translation>{0} ou le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>{0} pairs of points; give three or more</source>
+        <translation>{0} paires de points ; donnez-en trois ou plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <source>{0} points do not hold a part; measure {1} or more all over</source>
+        <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>{0} points do not make a circle; measure {1} or more</source>
+        <translation>{0} points ne font pas un cercle ; mesurez-en {1} ou plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/roundness.py"/>
+        <source>{0} points do not make a sphere; measure {1} or more</source>
+        <translation>{0} points ne font pas une sphère ; mesurez-en {1} ou plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} points lie past the edges of {1} and count nowhere</source>
+        <translation>{0} points sont au-delà des bords de {1} et ne comptent nulle part</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/figures.py"/>
+        <source>{0} points lie within {1} mm of the height {2} mm; measure more there, choose other heights, or a wider band</source>
+        <translation>{0} points sont à {1} mm au plus de la hauteur {2} mm ; mesurez-y davantage, choisissez d&apos;autres hauteurs, ou une bande plus large</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} points were left out of the fit, the farthest off; the figures have them</source>
+        <translation>{0} points ont été laissés hors de l&apos;ajustement, les plus écartés ; les chiffres les contiennent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>{0} programs are called by none of the others, expected one</source>
+        <translation>{0} programmes ne sont appelés par aucun autre, un seul attendu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>{0} row {1} (line {2})</source>
+        <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>{0} solids on {1} ({2})</source>
+        <translation>{0} solides sur {1} ({2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>{0} stands there twice</source>
+        <translation>{0} y est deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
+        <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} that stands in the world</source>
+        <translation>{0} qui est dans le monde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} that stands on the flange</source>
+        <translation>{0} qui est sur la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/turn.py"/>
+        <source>{0} turns {1} and {2} {3}; choose faces that turn alike</source>
+        <translation>{0} tourne {1} et {2} {3} ; choisissez des faces qui tournent pareillement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>{0} unpacks to more than {1} MB</source>
+        <translation>{0} occupe plus de {1} Mo une fois décomprimé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>{0} with a move is not understood</source>
+        <translation>{0} avec un mouvement n&apos;est pas compris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>{0} would be at {1} deg, its limit is {2} deg</source>
+        <translation>{0} serait à {1} deg, sa limite est {2} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/table.py"/>
+        <source>{0} would be at {1} {2}, its limit is {3} {4}; move the part on the table</source>
+        <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>{0} {1} is no straight line; choose a straight edge or an axis</source>
+        <translation>{0} {1} n&apos;est pas une droite ; choisissez une arête droite ou un axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
+        <source>{0} {1} is not a number; mend the row, or leave it out</source>
+        <translation>{0} {1} n&apos;est pas un nombre ; corrigez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>{0} {1} {2} is not a positive number; mend the row, or leave it out</source>
+        <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0} {1}; use {2}, or choose another machine</source>
+        <translation>{0} {1} ; utilisez {2}, ou choisissez une autre machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <source>{0}, in {1} places,</source>
+        <translation>{0}, en {1} endroits,</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0}/{1}.pgx line {2}</source>
+        <translation>{0}/{1}.pgx ligne {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <source>{0}: controller.matrix</source>
+        <translation>{0} : controller.matrix</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0}: make a machine file of it: New Machine… in the window</source>
+        <translation>{0} : faites-en un fichier machine : Nouvelle machine… dans la fenêtre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <source>{0}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool to choose; leave out what is meant for robots</source>
+        <translation>{0} : sans effet sur une machine à deux axes rotatifs, qui ne laisse pas de rotation autour de l&apos;outil à choisir ; retirez ce qui est fait pour les robots</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0}: {1} edges, the first at {2}; {3}</source>
+        <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>{0}: {1} mm off; choose other faces</source>
+        <translation>{0} : écart de {1} mm ; choisissez d&apos;autres faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>{0}: {1} mm off; name the faces of the wall if it is not part of it</source>
+        <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>{0}; choose a file you can write</source>
+        <translation>{0} ; choisissez un fichier que vous pouvez écrire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>{0}; choose a folder you can write to</source>
+        <translation>{0} ; choisissez un dossier où vous pouvez écrire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>{0}; export the part again</source>
+        <translation>{0} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>{0}; measure at least two speeds and two radii</source>
+        <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/link_meshes.py"/>
+        <source>{0}; the link has its plain solid for now</source>
+        <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}; use constant, or another controller</source>
+        <translation>{0} ; utilisez constant, ou une autre commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0}; use process.between_layers.input, strategy.wait, or another controller</source>
+        <translation>{0} ; utilisez process.between_layers.input, strategy.wait, ou une autre commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>{0}; write the program anew</source>
+        <translation>{0} ; écrivez le programme de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>{0}; {1} of {2} moves</source>
+        <translation>{0} ; {1} de {2} mouvements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is no number</source>
+        <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
+        <source>{0}={1} of &lt;{2}&gt; is not {3} numbers</source>
+        <translation>{0}={1} de &lt;{2}&gt; n&apos;est pas {3} nombres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>{:.1f} mm long in {:.1f} s</source>
+        <translation>long de {:.1f} mm en {:.1f} s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>{:.4g} mm wide</source>
+        <translation>large de {:.4g} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>{:g} mm wide: {} where straight, {} where r is {:g} mm</source>
+        <translation>largeur {:g} mm : {} en ligne droite, {} là où r est {:g} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{achieved} instead of {asked}</source>
+        <translation>{achieved} au lieu de {asked}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{condition:.3f} (at least {threshold:.3f})</source>
+        <translation>{condition:.3f} (au moins {threshold:.3f})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>{count} findings</source>
+        <translation>{count} remarques</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{label} cannot keep the speed: {than} becomes {value}</source>
+        <translation>{label} ne peut pas tenir la vitesse : {than} devient {value}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{label} comes within {value:.2f}{unit} of its limit</source>
+        <translation>{label} approche à {value:.2f}{unit} de sa limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{label} is {value:.2f}{unit} past its limit</source>
+        <translation>{label} dépasse de {value:.2f}{unit} sa limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>{label} was computed anew</source>
+        <translation>{label} a été recalculé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>{label} was deleted</source>
+        <translation>{label} a été supprimé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{mass:.1f} g</source>
+        <translation>{mass:.1f} g</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{metres:.3f} m</source>
+        <translation>{metres:.3f} m</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{time} where speeds are not kept</source>
+        <translation>{time} là où les vitesses ne sont pas tenues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>{volume:.2f} cm³</source>
+        <translation>{volume:.2f} cm³</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/page.py"/>
+        <source>{} (deg)</source>
+        <translation>{} (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fields.py"/>
+        <source>{} (empty: none)</source>
+        <translation>{} (vide : aucun)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/page.py"/>
+        <source>{} (mm)</source>
+        <translation>{} (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_panel.py"/>
+        <source>{} are missing: click them in the tree or the 3D view.</source>
+        <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min</source>
+        <translation>{} cordons, {:g} à {:g} mm/min, r {:g} à {:g} mm, fil {:g} m/min</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/picking.py"/>
+        <source>{} belongs to a job; select the part itself.</source>
+        <translation>{} appartient à un travail ; sélectionnez la pièce elle-même.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>{} cannot be carried out: {}</source>
+        <translation>{} ne peut pas être exécuté : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>{} cannot be written: {}</source>
+        <translation>{} ne peut pas être écrit : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>{} counts the other way (sign)</source>
+        <translation>{} compte dans l&apos;autre sens (signe)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>{} files written</source>
+        <translation>{} fichiers écrits</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>{} files written to {}</source>
+        <translation>{} fichiers écrits dans {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/needs.py"/>
+        <source>{} has no result: {}</source>
+        <translation>{} n&apos;a pas de résultat : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/picking.py"/>
+        <source>{} has no shape; select a body, solid, face, link or sketch.</source>
+        <translation>{} n&apos;a pas de forme ; sélectionnez un corps, un solide, une face, un lien ou une esquisse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} holds {} solids</source>
+        <translation>{} contient {} solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} is a mesh, which may be deposited on a hub</source>
+        <translation>{} est un maillage, qui peut être déposé sur un moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>{} is a mesh; a wall is of faces.</source>
+        <translation>{} est un maillage ; une paroi est faite de faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>{} is another object; faces of a hub are of one object. Clear it first to start again.</source>
+        <translation>{} est un autre objet ; les faces d&apos;un moyeu sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>{} is another object; faces of a wall are of one object. Clear it first to start again.</source>
+        <translation>{} est un autre objet ; les faces d&apos;une paroi sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/busy.py"/>
+        <source>{} is being computed</source>
+        <translation>{} est en cours de calcul</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>{} is hidden, or has no result.</source>
+        <translation>{} est caché, ou n&apos;a pas de résultat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <source>{} is missing: click it in the tree or the 3D view.</source>
+        <translation>{} manque : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>{} is missing: select it and press its Use selection.</source>
+        <translation>{} manque : sélectionnez-le et cliquez sur Prendre la sélection.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>{} is moved by {} mm and turned by {} deg</source>
+        <translation>{} est déplacé de {} mm et tourné de {} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} is no solid on a cylinder or cone</source>
+        <translation>{} n&apos;est pas un solide sur un cylindre ou un cône</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
+        <source>{} is not a number</source>
+        <translation>{} n&apos;est pas un nombre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>{} is not below {}</source>
+        <translation>{} n&apos;est pas inférieur à {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} is not of revolution, so it is a wall</source>
+        <translation>{} n&apos;est pas de révolution, c&apos;est donc une paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
+        <source>{} is written.</source>
+        <translation>{} est écrit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/recorded.py"/>
+        <source>{} is {}: {}</source>
+        <translation>{} est {} : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>{} is {}: {}. Double-click a stage in the tree to change it.</source>
+        <translation>{} est {} : {}. Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/picking.py"/>
+        <source>{} links to nothing: what it showed is gone or was not loaded.</source>
+        <translation>{} ne lie à rien : ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>{} mm/min (the fastest of the table)</source>
+        <translation>{} mm/min (la plus rapide du tableau)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <source>{} mm/min (the slowest of the table)</source>
+        <translation>{} mm/min (la plus lente du tableau)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/picking.py"/>
+        <source>{} objects are selected; pick the substrate</source>
+        <translation>{} objets sont sélectionnés ; choisissez le substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/picking.py"/>
+        <source>{} objects are selected; pick the wall and the substrate</source>
+        <translation>{} objets sont sélectionnés ; choisissez la paroi et le substrat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
+        <source>{} of the points looked at do not serve: they are red</source>
+        <translation>{} des points regardés ne conviennent pas : ils sont rouges</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/figures.py"/>
+        <source>{} of them past a limit only because an axis runs out of turns along its bead</source>
+        <translation>dont {} au-delà d&apos;une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <source>{} shows {} at zero</source>
+        <translation>{} montre {} à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} stands on a cylinder or cone of {}</source>
+        <translation>{} repose sur un cylindre ou un cône de {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} turns about one axis</source>
+        <translation>{} tourne autour d&apos;un axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>{} was written</source>
+        <translation>{} a été écrit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>{}, {}</source>
+        <translation>{}, {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>{}. {}</source>
+        <translation>{}. {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <source>{}: advanced</source>
+        <translation>{} : avancé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>{}: cancelled</source>
+        <translation>{} : annulé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/busy.py"/>
+        <source>{}: {}</source>
+        <translation>{} : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>{}: {}.</source>
+        <translation>{} : {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{}; {} is what it grows on</source>
+        <translation>{} ; {} est ce sur quoi il croît</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{}; {} is what they grow on</source>
+        <translation>{} ; {} est ce sur quoi elles croissent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/joints.py"/>
+        <source>σmin / σmax</source>
+        <translation>σmin / σmax</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>… std. dev.</source>
+        <translation>… écart type</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Cell</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Adds a cell: machine, set-up, platform and nozzle</source>
+        <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Cell…</source>
+        <translation>Cellule…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_ExportPath</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Export Path…</source>
+        <translation>Exporter la trajectoire…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF, ou en fait une trajectoire CAM ou Robot</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Feature</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Feature…</source>
+        <translation>Élément…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected shape of revolution to be deposited</source>
+        <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Inspect</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Compares measured points with what was planned</source>
+        <translation>Compare des points mesurés à ce qui était prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Inspect…</source>
+        <translation>Contrôler…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_JointPath</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Joint Path…</source>
+        <translation>Trajectoire articulaire…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plans the joint values of a toolpath in a cell</source>
+        <translation>Planifie les valeurs articulaires d&apos;une trajectoire d&apos;outil dans une cellule</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_NewJob</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Makes all stages for the selected shape, from cell to program</source>
+        <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>New Job…</source>
+        <translation>Nouveau travail…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_NewMachine</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses</source>
+        <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>New Machine…</source>
+        <translation>Nouvelle machine…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Path</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Path</source>
+        <translation>Trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Shows a toolpath or joint path layer by layer and point by point</source>
+        <translation>Montre une trajectoire d&apos;outil ou articulaire couche par couche et point par point</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Plots</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plots joints against limits, distances between layers and deposit rates</source>
+        <translation>Trace les articulations par rapport à leurs limites, les distances entre couches et les débits de dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plots…</source>
+        <translation>Graphiques…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Program</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Program…</source>
+        <translation>Programme…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Writes the controller&apos;s program of a joint path</source>
+        <translation>Écrit le programme de la commande pour une trajectoire articulaire</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Simulate</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Plays a joint path or program with its machine</source>
+        <translation>Joue une trajectoire articulaire ou un programme avec sa machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Simulate…</source>
+        <translation>Simuler…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_SolidsOnHub</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Solids on Hub…</source>
+        <translation>Solides sur moyeu…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected solids to be deposited on the cylinder or cone that is selected last</source>
+        <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_SpinMap</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Free Rotation Map…</source>
+        <translation>Carte de la rotation libre…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Shows the path against the rotation about the tool; the curve can be drawn by hand</source>
+        <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Toolpath</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Cuts a feature into layers and beads</source>
+        <translation>Découpe un élément en couches et en cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Toolpath…</source>
+        <translation>Trajectoire d&apos;outil…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_WallOnPart</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected faces as a wall to be deposited on the other object that is selected</source>
+        <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Wall on Part…</source>
+        <translation>Paroi sur pièce…</translation>
+    </message>
+</context>
+</TS>

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The code as syntax trees, and where its functions, constants and classes are."""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "freecad_am"
+
+Function = ast.FunctionDef
+
+
+class Module:
+    """A file: its tree, and for each node the function it stands in."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.tree = ast.parse(path.read_text(encoding="utf-8"))
+        self.functions = [node for node in ast.walk(self.tree) if isinstance(node, Function)]
+        self.around: dict[int, Function | None] = {}
+        self._place(self.tree, None)
+
+    def _place(self, node: ast.AST, function: Function | None) -> None:
+        for child in ast.iter_child_nodes(node):
+            self.around[id(child)] = function
+            self._place(child, child if isinstance(child, Function) else function)
+
+    def calls(self) -> Iterator[ast.Call]:
+        """All calls."""
+        return (node for node in ast.walk(self.tree) if isinstance(node, ast.Call))
+
+
+class Code:
+    """Several files, and what they define, by name."""
+
+    def __init__(self, paths: list[Path]) -> None:
+        self.modules = [Module(path) for path in sorted(paths)]
+        self.functions: dict[str, list[tuple[Module, Function]]] = defaultdict(list)
+        self.constants: dict[str, list[tuple[Module, ast.expr]]] = defaultdict(list)
+        for module in self.modules:
+            for function in module.functions:
+                self.functions[function.name].append((module, function))
+            for holder in [module.tree, *(node for node in module.tree.body if isinstance(node, ast.ClassDef))]:
+                for statement in holder.body:
+                    for name, value in assigned(statement):
+                        self.constants[name].append((module, value))
+
+
+def assigned(statement: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
+    """Names that a statement gives values, with those; of pairs one by one."""
+    if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name) and statement.value is not None:
+        yield statement.target.id, statement.value
+    elif isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
+        yield statement.target.id, statement.value
+    elif isinstance(statement, ast.Assign):
+        for target in statement.targets:
+            if isinstance(target, ast.Name):
+                yield target.id, statement.value
+            elif isinstance(target, ast.Tuple):
+                values = statement.value.elts if isinstance(statement.value, ast.Tuple) else [statement.value]
+                values = values if len(values) == len(target.elts) else [statement.value] * len(target.elts)
+                for one, value in zip(target.elts, values, strict=True):
+                    if isinstance(one, ast.Name):
+                        yield one.id, value
+
+
+def called(node: ast.Call) -> str:
+    """The bare name of what is called."""
+    return node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+
+
+def files(*folders: str) -> list[Path]:
+    """The files of the package in these folders, or with these names."""
+    found: list[Path] = []
+    for name in folders:
+        path = PACKAGE / name
+        found += sorted(path.rglob("*.py")) if path.is_dir() else [path]
+    return found
