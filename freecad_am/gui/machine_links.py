@@ -6,20 +6,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import FreeCAD as App
 import numpy as np
 from numpy.typing import NDArray
 from pivy import coin
 
-from ..brep import looks
-from ..core.issues import InputError
 from ..core.kinematics.link_shape import LinkShape
 from ..core.kinematics.machine import Machine
 from ..core.simulation import robot_links, table_links
-from ..core.simulation.solids import BODY, BRIGHT, DARK, Solid
+from ..core.simulation.solids import BRIGHT, DARK, Solid
 from ..objects import preferences
 from .lines import fill
-from .texts import error_line
+from .link_meshes import drawn_mesh
 
 Array = NDArray[np.float64]
 
@@ -30,8 +27,11 @@ _CREASE = 0.6  # rad; flatter edges of a user's mesh look round
 _SMALLEST = 1.05  # a table is a little wider than the platform on it
 
 
-def _tone(solid: Solid) -> tuple[float, float, float]:
-    return preferences.machine_colour() if solid.tone == BODY else TONES[solid.tone]
+Look = Sequence[float] | None  # a colour, None for the one that is preferred
+
+
+def _rgb(colour: Look) -> Sequence[float]:
+    return preferences.machine_colour() if colour is None else colour
 
 
 class MachineNodes:
@@ -44,7 +44,7 @@ class MachineNodes:
     def __init__(self, machine: Machine, platform: float, torch: float) -> None:
         self.node = coin.SoSeparator()
         self.transforms: list[Any] = []
-        self.materials: list[list[tuple[Any, Sequence[float]]]] = []
+        self.materials: list[list[tuple[Any, Look]]] = []
         self.bad = np.zeros(machine.chain.axes + 1, dtype=bool)
         if machine.is_table:
             solids = table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
@@ -58,11 +58,11 @@ class MachineNodes:
         link.addChild(transform)
         own = None if shape is None else _of_file(shape)
         parts = [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)] if own is not None else [
-            (of_solid(solid), _tone(solid)) for solid in plain
+            (of_solid(solid), TONES.get(solid.tone)) for solid in plain
         ]
         for node, colour in parts:
             material, part = coin.SoMaterial(), coin.SoSeparator()
-            material.diffuseColor.setValue(*colour)
+            material.diffuseColor.setValue(*_rgb(colour))
             material.specularColor.setValue(0.25, 0.25, 0.25)
             material.shininess = 0.4
             part.addChild(material)
@@ -83,8 +83,14 @@ class MachineNodes:
         """Links (axes + 1,) to be red; the others get their own colours back."""
         for index in np.flatnonzero(bad != self.bad):
             for material, colour in self.materials[index]:
-                material.diffuseColor.setValue(*(BAD if bad[index] else colour))
+                material.diffuseColor.setValue(*(BAD if bad[index] else _rgb(colour)))
         self.bad = bad.copy()
+
+    def renew_colours(self) -> None:
+        """Plain links get the colour that is preferred now."""
+        for bad, materials in zip(self.bad, self.materials):
+            for material, colour in materials:
+                material.diffuseColor.setValue(*(BAD if bad else _rgb(colour)))
 
 
 def move(transform: Any, pose: Array) -> None:
@@ -105,19 +111,15 @@ def of_solid(solid: Solid) -> Any:
 
 def _of_file(shape: LinkShape) -> Any:
     """The node of a user's file, None when it cannot be drawn, which is told."""
-    try:
-        points, triangles = looks.triangles(shape.path)
-    except InputError as error:
-        told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
-        App.Console.PrintError(error_line(told))
+    mesh = drawn_mesh(shape)
+    if mesh is None:
         return None
     group, hints = coin.SoGroup(), coin.SoShapeHints()
     hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
     hints.creaseAngle = _CREASE
     coordinates, faces = coin.SoCoordinate3(), coin.SoIndexedFaceSet()
-    placed = shape.scale * points @ shape.pose[:3, :3].T + shape.pose[:3, 3]
-    fill(coordinates.point, placed.astype(np.float32))
-    fill(faces.coordIndex, _corners(triangles))
+    fill(coordinates.point, mesh[0].astype(np.float32))
+    fill(faces.coordIndex, _corners(mesh[1]))
     for child in (hints, coordinates, faces):
         group.addChild(child)
     return group

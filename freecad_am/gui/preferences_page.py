@@ -98,7 +98,7 @@ class PreferencesPage:
         self.unit.setToolTip(tr("Of speeds in fields and read-outs; what is typed may have any"))
         self.unit.addItems(list(preferences.SPEED_UNITS))
         self.ramp.setObjectName("ramp")
-        self.ramp.setToolTip(tr("Of paths, from the least to the greatest; views show it once they are drawn anew"))
+        self.ramp.setToolTip(tr("Of paths, from the least to the greatest"))
         names = (tr("blue to yellow"), tr("violet to orange"), tr("grey"))
         for key, text in zip(preferences.RAMPS, names, strict=True):
             self.ramp.addItem(text, key)

@@ -53,6 +53,9 @@ class StageView:
     def style(self, vobj: Any) -> None:
         """Apply the view properties."""
 
+    def preferences_changed(self) -> None:
+        """Show what the user prefers now; most views depend on no preference."""
+
     def edit(self, obj: Any) -> None:
         """Open what a double click opens."""
         from .stage_panel import edit

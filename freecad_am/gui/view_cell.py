@@ -84,6 +84,10 @@ class CellView(StageView):
         if name == "ShowMachine" and self.root is not None and not vobj.Object.Document.Restoring:
             self.refresh()
 
+    def preferences_changed(self) -> None:
+        if self.machine is not None:
+            self.machine.renew_colours()
+
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
         """Entries of the context menu in the tree."""
         super().setupContextMenu(vobj, menu)

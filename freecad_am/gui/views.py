@@ -12,7 +12,7 @@ from PySide import QtCore
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.job_group import is_group
 from ..objects.stage import Stage
-from . import view_job
+from . import preference_watch, view_job
 from .busy import carry_out
 from .inspection.view import InspectionView
 from .view_base import MODE, StageView
@@ -31,6 +31,18 @@ VIEWS: dict[str, type[StageView]] = {
 }
 
 _to_be_seen: set[str] = set()
+
+
+def _preferences_changed() -> None:
+    """All that is drawn is to be as the user prefers it now."""
+    for document in App.listDocuments().values():
+        for obj in document.Objects:
+            view = getattr(obj.ViewObject, "Proxy", None)
+            if isinstance(view, StageView) and view.obj is not None:
+                view.preferences_changed()
+
+
+preference_watch.listen(_preferences_changed)
 
 
 def view_of(stage: Stage) -> type[StageView]:

@@ -18,6 +18,7 @@ from . import rows
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/RoboticAM"
 SPEED_UNITS = {"mm/s": 1.0, "mm/min": 60.0, "m/min": 0.06}  # how many of them 1 mm/s is
+SHOWN = ("SpeedUnit", "Ramp", "MachineColour")  # entries that what is drawn and told depends on
 RAMPS = ("blue to yellow", "violet to orange", "grey")
 MACHINE_COLOUR = (0.86, 0.87, 0.88)
 # parameters of the process that are proposed for new toolpaths, by row key

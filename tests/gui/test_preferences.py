@@ -132,6 +132,72 @@ def test_units_of_read_outs_and_colours(person, page, tmp_path):
     assert str(tmp_path) in user_machines.folders()
 
 
+def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
+    from freecad_am.gui.colours import ramp
+    from freecad_am.gui.path import dock as path_dock
+    from freecad_am.gui.plots import dock as plots
+    from freecad_am.gui.simulation import dock as simulations
+    from freecad_am.gui.spin_map import dock as maps
+
+    doc = hemisphere.Document
+    cell = api.make_cell(doc, limits="paper")
+    toolpath = api.make_toolpath(doc, api.make_feature(doc, hemisphere, layer_height=15), cell)
+    path = api.make_joint_path(doc, toolpath, cell)
+    cell.ViewObject.ShowMachine = True
+    view = path.ViewObject.Proxy
+    person.look()
+    person.select(path)
+    for name in ("RoboticAM_Path", "RoboticAM_Plots", "RoboticAM_Simulate"):
+        person.click(name)
+        person.idle(0.2)
+    facts = person.field(person.panel(path_dock.NAME), "facts")
+    panel = person.panel(plots.NAME)
+    box = person.field(panel, "picture")
+    box.setCurrentIndex(box.findData("travel"))
+
+    def drawn():
+        dock = plots._dock
+        person.until(lambda: dock.building.worker is None and dock.picture is not None and dock.picture.name == "travel",
+                     "the picture", 20)
+        return dock.picture.charts[0]
+
+    simulation = simulations._open[0]
+    simulation.player.go_to_row(int(np.flatnonzero(simulation.run.motion.deposit)[5]))
+    simulation.show()
+    before, colours, image = drawn(), view.path.colours.copy(), view.legend.image.image.getValue()[0]
+    assert before.y.unit == "mm/s" and " 6 mm/s" in facts.text()
+    page.unit.setCurrentIndex(page.unit.findText("mm/min"))
+    page.ramp.setCurrentIndex(page.ramp.findData("grey"))
+    page.colour.setProperty("color", person.widgets.QColor("#3366cc"))
+    page.saveSettings()
+    person.until(lambda: " 360 mm/min" in facts.text(), "the path's dock to follow")
+    person.until(lambda: drawn().y.unit == "mm/min", "the plots to follow")
+    after = drawn()
+    for one, other in zip(before.curves, after.curves):
+        np.testing.assert_allclose(other.y, 60.0 * one.y)
+        np.testing.assert_allclose(other.x, one.x)
+    assert after.span == pytest.approx((0.0, 60.0 * before.span[1]))
+    assert person.field(person.panel(simulations.NAME), "speed").text() == "360 mm/min"
+    share = view.scale.share(view.scale.values)
+    wanted = np.rint(255.0 * ramp(share)).astype(int)
+    told = np.stack([view.path.colours >> shift & 255 for shift in (24, 16, 8)], axis=1)
+    assert (told == wanted).all() and (view.path.colours != colours).mean() > 0.9
+    assert view.legend.image.image.getValue()[0] != image
+    for links in (simulation.scene.machine, cell.ViewObject.Proxy.machine):
+        plain = [material for link in links.materials for material, colour in link if colour is None]
+        assert plain and all(np.allclose(one.diffuseColor[0].getValue(), (0.2, 0.4, 0.8), atol=1e-6) for one in plain)
+    person.screenshot("preferences_at_once")
+    simulation.close()
+    person.select(path)
+    person.click("RoboticAM_SpinMap")
+    spin = maps._open[0]
+    person.until(lambda: spin.canvas.painted is not None, "the map", 30)
+    cells = spin.canvas.painted.colours.copy()
+    preferences.keep("Ramp", "violet to orange")  # not by the page
+    person.until(lambda: (spin.canvas.painted.colours != cells).any(), "the map to follow")
+    spin.close()
+
+
 def test_what_cannot_be_is_told_and_not_kept(person, page):
     page.machines.setText("/nowhere/at all")
     line = page.process["travel_speed"].widget.findChild(person.widgets.QLineEdit)

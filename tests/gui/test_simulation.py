@@ -13,7 +13,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.issues import WARNING, Issue
 from freecad_am.core.planning import moving_tool
 from freecad_am.core.simulation.pace import pace
-from freecad_am.core.simulation.watch import ISSUE, LIMIT, SLOWED
+from freecad_am.core.simulation.watch import ISSUE, LIMIT, SLOWED, TOUCHES
 from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import tool
 from freecad_am.gui.simulation.run import run_of
@@ -197,7 +197,8 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     simulation.show()
     person.idle(0.3)
     person.screenshot("simulation_past_limit")
-    assert simulation.scene.machine.bad.tolist() == [False] * 5 + [True, False]
+    touching = int(simulation.run.watch.touching[far[5]])  # so far bent the forearm is in the way
+    assert simulation.scene.machine.bad.tolist() == [k in (5, touching) for k in range(7)] and touching in (-1, 4)
     assert person.field(panel, "joints").bad.tolist() == [False] * 4 + [True, False]
     assert person.field(panel, "joints").margins[4] == pytest.approx(-1.0)
     assert red_pixels(person) > calm + 60
@@ -224,6 +225,33 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     simulation.player.go_to_row(len(simulation.run.motion) // 2)
     simulation.show()
     assert not simulation.scene.machine.bad.all()
+
+
+def test_a_link_that_touches_turns_red_and_is_told(person, hemisphere):
+    # so wide a platform meets the forearm wherever the wrist is bent much
+    path = job(hemisphere, limits="paper", platform_diameter=320.0)
+    panel, simulation = opened(person, path)
+    found = [one for one in simulation.run.watch.findings if one.kind == TOUCHES]
+    assert found and {(one.label, one.other) for one in found} == {("q4", "platform")}
+    person.field(panel, "next_finding").click()
+    person.until(lambda: simulation.player.row == found[0].row, "the finding")
+    assert person.field(panel, "finding").text().endswith("The link of q4 touches the platform")
+    assert simulation.scene.machine.bad.tolist() == [k == 4 for k in range(7)]
+    person.idle(0.2)
+    person.screenshot("simulation_touching")
+    touching = simulation.run.watch.touching
+    bent = np.abs(simulation.run.motion.joints[:, 4])
+    free = int(np.argmin(bent))
+    assert touching[free] == -1 and (bent[touching == 4].min() > np.radians(80))
+    simulation.player.go_to_row(free)
+    simulation.show()
+    assert not simulation.scene.machine.bad.any()
+    docks._open[0].close()
+    # with the platform as it is nothing touches, and that is said
+    api.change(path.Cell, platform_diameter=113.0)
+    hemisphere.Document.recompute()
+    panel, simulation = opened(person, path)
+    assert simulation.run.watch.arm_known and not (simulation.run.watch.touching != -1).any()
 
 
 def test_a_program_that_resumes_plays_only_what_it_runs(person, hemisphere):

@@ -11,6 +11,7 @@ from freecad_am.core.planning import spin_curve, spin_map
 from freecad_am.gui.path.colouring import NONE, TOO_NEAR
 from freecad_am.gui.spin_map import dock as docks
 from freecad_am.gui.spin_map.canvas import TURN
+from freecad_am.gui.spin_map.cells import FINE
 
 ROBOT = {"limits": "paper"}
 LONG = 30  # s
@@ -30,6 +31,7 @@ def opened(person, path):
     panel = person.panel(docks.NAME)
     one = docks._open[0]
     person.until(lambda: one.canvas.painted is not None, "the cells", LONG)
+    person.until(lambda: one.board.looked.get(one.draft.branch) == FINE, "the links of the robot", LONG)
     person.idle(0.2)
     return panel, one
 
@@ -82,7 +84,8 @@ def test_the_picture_is_what_core_computes(person, hemisphere):
             continue  # lines are drawn there
         x, y = round(float(canvas.x_of(column))), round(float(canvas.y_of(one.board.map.values[row])))
         wanted = canvas.painted.colours[row - 3:row + 4, column - 1:column + 2].astype(int)
-        assert np.abs(seen[y, x] - wanted).max(axis=2).min() <= 3, (row, column)
+        hatch = canvas.painted.hatched[row - 3:row + 4, column - 1:column + 2].any() and (seen[y, x] == 20).all()
+        assert hatch or np.abs(seen[y, x] - wanted).max(axis=2).min() <= 3, (row, column)
     for cells, colour in ((picture.beyond, TOO_NEAR), (~picture.reachable, NONE)):
         if cells.any():
             assert (canvas.painted.colours[cells] == np.round(255 * np.array(colour))).all()
@@ -114,6 +117,32 @@ def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):
         phi = float(spin_map.rotation_of(one.source.cell, tool, np.array([np.radians(rz)]), "rz")[0])
         q = spin_map.joints_at(one.source.task(one.draft.branch), one.board.columns, near[0], phi)[one.draft.branch]
         assert shown == pytest.approx(np.degrees(q), abs=0.6)
+
+
+def test_where_a_link_touches_the_map_is_hatched_and_says_what(person, hemisphere, hand):
+    path = job(hemisphere, limits="paper", platform_diameter=200.0)
+    panel, one = opened(person, path)
+    person.screenshot("spin_map_touching")
+    board, branch = one.board, one.draft.branch
+    picture = board.pictures[branch]
+    assert picture.arm.any() and (one.canvas.painted.hatched == (picture.forbidden | picture.arm)).all()
+    known = spin_map.arm_touched(one.source.task(branch), board.map, branch, one.source.arm, board.moment)
+    assert (picture.arm == known).all()
+    free = picture.feasible & ~picture.hatched
+    inside = {}
+    for name, cells in (("touching", picture.arm), ("free", free)):  # cells whose neighbours are like them
+        same = cells[2:-2, 1:-1].copy()
+        for rows in range(5):
+            for columns in range(3):
+                same &= cells[rows:cells.shape[0] - 4 + rows, columns:cells.shape[1] - 2 + columns]
+        inside[name] = np.argwhere(same) + [2, 1]
+        assert len(inside[name])
+    label = person.field(panel, "readout")
+    for name, places in inside.items():
+        row, column = places[len(places) // 2]
+        hand.do("mousemove", *on_screen(one.canvas, int(column), float(board.map.values[row])))
+        person.idle(0.2)
+        assert ("the link of q4 touches the platform" in label.text()) == (name == "touching"), label.text()
 
 
 def test_the_curve_is_dragged_and_becomes_the_plan(person, hemisphere, hand):
@@ -285,7 +314,7 @@ def test_a_path_from_point_to_point_is_smoothed(person, hemisphere, hand):
     panel, one = opened(person, path)
     gap = np.abs(values_of(one) - one.board.path_values(one.draft, one.source.planned.beads))
     assert person.field(panel, "use").isEnabled() and gap.max() < 0.1
-    low, high = (np.degrees(end(one.followed.joints[:, 1])) for end in (np.min, np.max))
+    low, high = (np.degrees(end(one.consequences.followed.joints[:, 1])) for end in (np.min, np.max))
     assert f"q2&nbsp;{low:.1f}…{high:.1f}°" in person.field(panel, "joints").text()
     hand.click(person.field(panel, "use"))
     person.until(lambda: path.Method == "layer-by-layer", "the plan", LONG)

@@ -45,8 +45,10 @@ class Deposit:
     room: float
 
 
-def deposit(points: Array, size: float) -> Deposit:
-    """The deposit of points (n, 3) in the order of deposition; size: mm from a point to the farthest place of its bead."""
+def deposit(points: Array, build: Array, width: float, height: float) -> Deposit:
+    """The deposit of beads of a width and a height, mm, that stand on points (n, 3) along unit vectors build (n, 3), in the
+    order of deposition."""
+    points = points + 0.5 * height * build
     low, edge = points.min(axis=0), FINEST
     while True:
         cube = np.floor((points - low) / edge).astype(np.int64)
@@ -55,7 +57,7 @@ def deposit(points: Array, size: float) -> Deposit:
         _, first, own = np.unique(number, return_index=True, return_inverse=True)
         if len(first) <= MOST:
             off = np.linalg.norm(points - points[first[own.ravel()]], axis=1)
-            return Deposit(points[first], first, float(off.max()) + size)
+            return Deposit(points[first], first, float(off.max() + np.hypot(0.5 * width, 0.5 * height)))
         edge *= 1.25
 
 

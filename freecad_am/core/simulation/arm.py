@@ -36,7 +36,7 @@ def laid(motion: Motion, width: float, height: float) -> Deposit | None:
     if not len(points):
         return None
     widest = float(np.nanmax(np.append(motion.width[motion.deposit], width)))
-    return deposit(points, float(np.hypot(0.5 * widest, height)))
+    return deposit(points, motion.build[motion.deposit], widest, height)
 
 
 def arm_touches(motion: Motion, arm: ArmContact) -> ArmTouches:

@@ -5,8 +5,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..geometry.rods import Rod, about, needed
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.rods import Array, Rod, about, needed, row
+from ..kinematics.chain import Chain
+from . import robot_links
 from .solids import Solid
+
+Mesh = tuple[Array, NDArray[np.int64]]
+
+
+def of_robot(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Rod]]:
+    """The rods of each link (axes + 1) of a robot, base first, in the frame of the link.
+
+    shapes: points (n, 3) and triangles (m, 3) of links that are not drawn plain, in the same frames.
+    """
+    plain = [of_solids(link) for link in robot_links.solids(chain)]
+    return [row(*shape) if shape is not None else rods for shape, rods in zip(shapes or [None] * len(plain), plain)]
 
 
 def of_solids(link: Sequence[Solid]) -> list[Rod]:

@@ -16,6 +16,7 @@ import numpy as np
 from pivy import coin
 from PySide import QtCore, QtGui
 
+from ...objects import preferences
 from ..colours import ramp
 from ..lines import unshaded
 from ..texts import translated
@@ -32,7 +33,7 @@ class Legend:
 
     def __init__(self) -> None:
         self.entry: Entry | None = None
-        self.left = 0
+        self.left, self.ramp = 0, ""
         # all of the view is from -1 to 1
         self.camera = coin.SoOrthographicCamera()
         self.camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
@@ -64,8 +65,8 @@ class Legend:
     def show(self, entry: Entry, left: int) -> int:
         """Show this, `left` px from the edge; its width with the margin, px."""
         width = _width(*entry)
-        if (entry, left) != (self.entry, self.left):
-            self.entry, self.left = entry, left
+        if (entry, left, preferences.ramp()) != (self.entry, self.left, self.ramp):
+            self.entry, self.left, self.ramp = entry, left, preferences.ramp()
             pixels = _picture(entry, left)
             self.image.image.setValue(coin.SbVec2s(pixels.shape[1], pixels.shape[0]), 4, pixels.tobytes())
         self.switch.whichChild = coin.SO_SWITCH_ALL

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from PySide import QtCore
 
 from ...core.issues import InputError
+from ...objects import preferences
 from ..lines import Array
 from ..texts import marked
 from ..view_base import StageView
@@ -116,7 +117,8 @@ class PathView(StageView):
 
     def _colour(self, vobj: Any) -> None:
         """Colour the beads anew where that would be other colours."""
-        wanted = (self.drawn, vobj.Colouring, *self.colours_depend_on(vobj.Object))
+        preferred = preferences.ramp(), preferences.speed_unit()
+        wanted = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
         if self.rows is not None and len(self.rows) and wanted != self.told:
             try:
                 colours, self.scale = self.coloured(vobj.Object, vobj.Colouring)
@@ -124,6 +126,9 @@ class PathView(StageView):
                 return
             self.path.paint(colours)
             self.told = wanted
+
+    def preferences_changed(self) -> None:
+        self.style(self.obj.ViewObject)
 
     def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
         """What else than the result the colours are made of."""

@@ -15,11 +15,12 @@ from ...plots import catalogue
 from ...plots.chart import Picture
 from ...plots.rows import OVER, PATH, TIME
 from ...plots.source import Source
+from .. import preference_watch
 from ..follower import Follower
 from ..later import Background, Later
 from ..texts import tr, translated_error
 from ..worker import Worker
-from . import saving, words
+from . import saving, units, words
 from .canvas import STEP, Canvas
 from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
 
@@ -59,6 +60,7 @@ class PlotsDock(Follower):
         self.building = Background(self.dock)
         self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
         self.canvas.say = self._said
+        preference_watch.listen(self.fill)
         for combo in (self.which, self.over):
             combo.currentIndexChanged.connect(lambda *_: self.fill())
         self.choice.activated.connect(self._chosen)
@@ -206,7 +208,7 @@ class PlotsDock(Follower):
             self.note.setText("")
         try:
             source, picture = worker.result()
-            picture = words.in_words(picture)
+            picture = units.in_units(words.in_words(picture))
         except AmError as error:
             self._show(None, translated_error(error))
             return

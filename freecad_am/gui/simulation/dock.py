@@ -13,6 +13,7 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
 
+from .. import preference_watch
 from ..colours import WRONG
 from ..texts import tr
 from . import told
@@ -58,6 +59,7 @@ class Simulation:
         Gui.getMainWindow().addDockWidget(QtCore.Qt.RightDockWidgetArea, self.dock)
         self.dock.show()
         App.addDocumentObserver(self)
+        preference_watch.listen(self._preferences_changed)
         self.show()
         QtCore.QTimer.singleShot(FIT, self._fit)  # once the dock has its place and the view the rest
 
@@ -255,14 +257,21 @@ class Simulation:
     def _tell_finding(self, found: Any) -> None:
         count = len(self.run.watch.findings)
         if found is None:
-            text = tr("{count} findings").format(count=count) if count else tr("Nothing to be seen: no limit, singularity "
-                                                                               "or speed comes near")
+            text = tr("{count} findings").format(count=count) if count else told.nothing(self.run)
         else:
             limit = found.label in self.run.cell.machine.axes
             unit = self.run.cell.machine.units[self.run.cell.machine.axes.index(found.label)] if limit else "deg"
             text = f"{(self.player.finding or 0) + 1}/{count}: {told.finding(found, unit)}"
         self.finding.setText(text)
         self.finding.setStyleSheet(f"QLabel {{ color: {WRONG}; }}" if found is not None else "")
+
+    def _preferences_changed(self) -> None:
+        """Units of speeds, and the colour of the machine."""
+        if self.scene is not None:
+            self.scene.machine.renew_colours()
+            self.show()
+            findings = self.run.watch.findings
+            self._tell_finding(None if self.player.finding is None else findings[self.player.finding])
 
     # ---- the end
 
@@ -273,6 +282,7 @@ class Simulation:
             return
         self.timer.stop()
         App.removeDocumentObserver(self)
+        preference_watch.forget(self._preferences_changed)
         scene.remove(document_goes)
         self.dock.closed = None
         self.dock.close()

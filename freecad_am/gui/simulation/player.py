@@ -107,7 +107,7 @@ class Player:
         margins = shown_margins(run.cell, state.joints)
         condition, threshold = float(run.watch.condition[row]), float(run.watch.threshold[row])
         singular, reachable = condition < threshold * (1.0 - _SAME), bool(np.isfinite(state.joints).all())
-        links = bad_links(run.cell, margins, ratios, singular, reachable)
+        links = bad_links(run.cell, margins, ratios, singular, reachable, int(run.watch.touching[row]))
         alone = bad_links(run.cell, margins, ratios, False, True)
         axes = len(machine.axes)
         return Moment(

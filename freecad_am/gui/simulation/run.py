@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...core.issues import InputError, Issue
 from ...core.kinematics import cell as cells
+from ...core.kinematics.arm_contact import ArmContact
 from ...core.kinematics.cell import PART_ON_ROBOT, Cell
 from ...core.motion import Motion
 from ...core.parameters.cell import CellParameters
@@ -19,6 +20,9 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.planning import moving_tool
 from ...core.planning import program as programs
+from ...core.simulation import link_rods
+from ...core.simulation.arm import ArmTouches, arm_touches, laid
+from ...core.simulation.link_rods import Mesh
 from ...core.simulation.margins import on_deposit
 from ...core.simulation.pace import Pace, pace
 from ...core.simulation.timeline import Timeline, timeline
@@ -30,6 +34,7 @@ from ...objects.joint_path import Planned, planned_of
 from ...objects.stage import issues_of, stage_of
 from ...objects.staleness import STALE
 from ..lines import Array
+from ..link_meshes import meshes_of
 
 
 @dataclass(frozen=True)
@@ -73,20 +78,32 @@ def prepared(obj: Any) -> Callable[[], Run]:
     names = tuple(dict.fromkeys((obj.Name, path.Name, path.Toolpath.Name, path.Cell.Name)))
     document = obj.Document.Name
     settings = obj.Proxy.parameters(obj, ProgramParameters) if stage.kind == "program" else None
+    cell = cells.resolve(looks, toolpath.frame, toolpath.family, folders)
+    shapes = meshes_of(cell.machine)
 
     def work() -> Run:
-        cell = cells.resolve(looks, toolpath.frame, toolpath.family, folders)
         motion, condition, threshold, found = _rows(planned, cell, toolpath.chord_error, settings, issues)
         times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
         kept = pace(motion, cell.machine.max_speed, cell.machine.max_acceleration)
         return Run(
             document=document, title=label, objects=names, cell=cell, looks=looks, toolpath=toolpath,
             width=process.bead_width, motion=motion, times=times, pace=kept,
-            watch=watch(motion, cell, kept, condition, threshold, found),
+            watch=watch(motion, cell, kept, condition, threshold, found, _arm(motion, cell, toolpath, process, shapes)),
             totals=totals(motion, times, process, toolpath.layer_height), stale=stale,
         )
 
     return work
+
+
+def _arm(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...]
+) -> ArmTouches | None:
+    """What the links of a robot touch; None for machines with rotary axes, of whose links no file tells enough."""
+    if cell.machine.is_table:
+        return None
+    rods = link_rods.of_robot(cell.machine.chain, shapes)
+    deposited = laid(motion, process.bead_width, toolpath.layer_height)
+    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited))
 
 
 def _rows(

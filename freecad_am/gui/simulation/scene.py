@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pivy import coin
 
 from ...core.geometry import frames
+from ...core.kinematics.arm_contact import NONE
 from ...core.simulation.placing import at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
@@ -74,6 +75,7 @@ class Scene:
         rows = Rows.of(beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height)
         colours = np.tile(METAL, (len(rows), 1))
         slowed, over = self.run.pace.slowed[deposit], self.run.watch.margin[deposit] < 0.0
+        over = over | (self.run.watch.touching[deposit] != NONE)
         colours[slowed] = SLOW
         colours[over | ~motion.reachable[deposit]] = WRONG
         self.deposit.set(rows)

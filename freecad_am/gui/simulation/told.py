@@ -12,6 +12,7 @@ from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...objects import preferences
 from ..texts import tr, translated
+from ..touching import link_touches
 from .player import Moment
 from .run import Run
 
@@ -27,6 +28,9 @@ def clock(seconds: float) -> str:
 def finding(found: Finding, unit: str = "deg") -> str:
     """One finding."""
     unit = "°" if unit == "deg" else " mm"
+    if found.kind == watch.TOUCHES:
+        text = link_touches(found.label, found.other)
+        return text[:1].upper() + text[1:]
     texts = {
         watch.UNREACHABLE: tr("Out of reach"),
         watch.LIMIT: tr("{label} is {value:.2f}{unit} past its limit"),
@@ -40,6 +44,13 @@ def finding(found: Finding, unit: str = "deg") -> str:
         return texts[found.kind].format(label=found.label, value=_speed(value), than=_speed(found.than))
     label = translated(found.label) if found.kind == watch.ISSUE else found.label
     return texts[found.kind].format(label=label, value=value, than=found.than, unit=unit)
+
+
+def nothing(run: Run) -> str:
+    """That there are no findings, and among what."""
+    if run.watch.arm_known:
+        return tr("Nothing to be seen: no limit, singularity or speed comes near, and no link of the robot touches anything")
+    return tr("Nothing to be seen: no limit, singularity or speed comes near")
 
 
 def place(run: Run, moment: Moment) -> str:

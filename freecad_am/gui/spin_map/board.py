@@ -36,6 +36,7 @@ class Cell:
     threshold: float
     touching: bool
     outside: bool
+    arm: tuple[str, str] | None  # a link, 'base' or by its axis, and what it touches
 
 
 class Board:
@@ -48,6 +49,7 @@ class Board:
         self.columns: Columns = dataclasses.replace(found, bead=np.array(self.beads)[found.bead])
         self.map: SpinMap | None = None
         self.pictures: dict[int, Picture] = {}
+        self.looked: dict[int, int] = {}  # branches whose links were looked at, one of so many rows
         self.curves: dict[int, tuple[tuple[BeadPath, ...], Array]] = {}
 
     # ---- computing, in another thread
@@ -62,6 +64,21 @@ class Board:
         """Keep what was computed."""
         self.map = made[0]
         self.pictures[made[1].branch] = made[1]
+
+    @property
+    def moment(self) -> NDArray[np.int64]:
+        """(C,) how many points of the job are deposited before each column."""
+        return np.asarray(self.source.starts[self.columns.bead] + self.columns.point)
+
+    def arm(self, branch: int, every: int) -> NDArray[np.bool_]:
+        """(R, C) where links of the robot touch something; one of so many rows is looked at."""
+        assert self.map is not None
+        return spin_map.arm_touched(self.source.task(branch), self.map, branch, self.source.arm, self.moment, every)
+
+    def take_arm(self, branch: int, touched: NDArray[np.bool_], every: int) -> None:
+        """Keep what was looked at."""
+        self.looked[branch] = every
+        self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
 
     def shows(self, bead: int) -> bool:
         """Whether a bead is among the columns: of many, some are."""
@@ -186,4 +203,15 @@ class Board:
             float(1.0 - offset.max()) if reached else -np.inf,
             task.given_rows.labels[int(offset.argmax())] if reached else "",
             condition, float(task.thresholds(at)[0]), made is not None and bool(made.touching[column]), outside,
+            self._arm_at(branch, column, joints),
         )
+
+    def _arm_at(self, branch: int, column: int, joints: Array) -> tuple[str, str] | None:
+        """The first link that touches something at a column, and what; none is known before links were looked at."""
+        if branch not in self.looked:
+            return None
+        arm = self.source.arm
+        found = arm.touches(joints[None], self.moment[[column]])
+        if not found.any[0]:
+            return None
+        return ("base", *self.source.cell.machine.axes)[found.link[0]], arm.names[found.what[0]]

@@ -4,54 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from PySide import QtCore, QtGui
 
 from ..lines import Array
-from ..path.colouring import round_numbers
 from ..texts import tr
-from .picture import Painted, enlarged
+from .curves import Curve, Dragged, Handle
+from .painting import BOTTOM, LEFT, RIGHT, TOP, TURN, Painting
+from .picture import Painted
 
-LEFT, RIGHT, TOP, BOTTOM = 52, 12, 30, 34
-HATCH = 7  # pixels between lines
-NEAR_CURVE, NEAR_HANDLE, HANDLE = 7.0, 10.0, 5.0
-TURN = 2.0 * np.pi
+NEAR_CURVE, NEAR_HANDLE = 7.0, 10.0
 MOST_TURNS = 3.0  # that are shown at once
-MOST_SEAMS = 120
-TO_TICKS = 6
-
-
-@dataclass(frozen=True)
-class Curve:
-    """A line over the map: values (C,) rad, counted on along each bead; bold: the one that can be dragged."""
-
-    values: Array
-    colour: tuple[int, int, int]
-    bold: bool = False
-    dashed: bool = False
-
-
-@dataclass(frozen=True)
-class Handle:
-    """What the curve is taken hold of by: bead, number among its handles, place."""
-
-    bead: int
-    number: int
-    column: float
-    value: float
-
-
-@dataclass
-class Dragged:
-    """What is being dragged, and the value it was last dragged to. handle: None for the curve itself."""
-
-    handle: Handle | None
-    column: int
-    value: float
-    moved: bool = False
 
 
 class Canvas(QtGui.QWidget):
@@ -80,8 +45,7 @@ class Canvas(QtGui.QWidget):
         self.drag: Dragged | None = None
         self.pressed: tuple[float, float] | None = None
         self.mouse: tuple[int, float] | None = None
-        self._pixmap: Any = None
-        self._made_of: Any = None
+        self.painting = Painting(self)
 
     def sizeHint(self) -> Any:
         """Called by Qt."""
@@ -189,10 +153,10 @@ class Canvas(QtGui.QWidget):
         if not own:
             return False
         near = np.abs(self.x_of(np.arange(self.count)) - x) < max(NEAR_CURVE, 1.0 * self.area().width() / self.count)
-        down = self.y_of(self._shown(own[0].values))[near]
+        down = self.y_of(self.shown(own[0].values))[near]
         return bool(len(down)) and bool(down.min() - NEAR_CURVE <= y <= down.max() + NEAR_CURVE)
 
-    def _shown(self, values: Array) -> Array:
+    def shown(self, values: Array) -> Array:
         """Values where they are drawn: as they are, or brought into the turn that is shown."""
         if self.high - self.low > TURN + 1e-9 or (values.min() >= self.low and values.max() <= self.high):
             return values
@@ -204,145 +168,11 @@ class Canvas(QtGui.QWidget):
         """Called by Qt."""
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
-        area = self.area()
         if self.painted is None:
-            painter.drawText(area, QtCore.Qt.AlignCenter, tr("The map is being computed…"))
-            painter.end()
-            return
-        painter.drawPixmap(area.topLeft(), self._cells())
-        painter.setClipRect(area)
-        self._draw_seams(painter)
-        for curve in self.curves:
-            self._draw_curve(painter, curve)
-        self._draw_bad(painter)
-        self._draw_handles(painter)
-        if self.mouse is not None:
-            painter.setPen(QtGui.QPen(QtGui.QColor(255, 255, 255, 150), 1.0))
-            across = float(self.x_of(self.mouse[0]))
-            painter.drawLine(QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom()))
-        painter.setClipping(False)
-        self._draw_axes(painter)
-        self._draw_legend(painter)
+            painter.drawText(self.area(), QtCore.Qt.AlignCenter, tr("The map is being computed…"))
+        else:
+            self.painting.paint(painter)
         painter.end()
-
-    def _cells(self) -> Any:
-        area = self.area()
-        wanted = (id(self.painted), int(area.width()), int(area.height()), self.low, self.high)
-        if self._made_of != wanted:
-            assert self.painted is not None
-            pixels = np.ascontiguousarray(enlarged(self.painted, wanted[1], wanted[2], self.low, self.high, HATCH))
-            image = QtGui.QImage(pixels.tobytes(), wanted[1], wanted[2], 4 * wanted[1], QtGui.QImage.Format_RGB32)
-            self._pixmap, self._made_of = QtGui.QPixmap.fromImage(image.copy()), wanted
-        return self._pixmap
-
-    def _draw_seams(self, painter: Any) -> None:
-        area = self.area()
-        if len(self.seams) <= MOST_SEAMS:
-            painter.setPen(QtGui.QPen(QtGui.QColor(255, 255, 255, 110), 1.0))
-            for seam in self.seams[1:]:
-                across = float(self.x_of(seam - 0.5))
-                painter.drawLine(QtCore.QPointF(across, area.top()), QtCore.QPointF(across, area.bottom()))
-        painter.setPen(QtGui.QPen(QtGui.QColor(0, 0, 0, 120), 1.0, QtCore.Qt.DashLine))
-        first = int(np.ceil((self.low - np.pi) / TURN))
-        for turn in range(first, int(np.floor((self.high - np.pi) / TURN)) + 1):
-            down = float(self.y_of(np.pi + turn * TURN))
-            if area.top() + 1.0 < down < area.bottom() - 1.0:
-                painter.drawLine(QtCore.QPointF(area.left(), down), QtCore.QPointF(area.right(), down))
-
-    def _draw_curve(self, painter: Any, curve: Curve) -> None:
-        across, values = self.x_of(np.arange(self.count)), self._shown(curve.values)
-        down = self.y_of(values)
-        cut = np.union1d(self.seams, np.flatnonzero(np.abs(np.diff(values)) > np.pi) + 1)
-        for width, colour in ((4.6, (0, 0, 0)), (2.6, curve.colour)) if curve.bold else ((1.8, curve.colour),):
-            pen = QtGui.QPen(QtGui.QColor(*colour), width)
-            if curve.dashed:
-                pen.setStyle(QtCore.Qt.DashLine)
-            painter.setPen(pen)
-            for start, end in zip([*cut, self.count], [*cut[1:], self.count], strict=False):
-                line = [QtCore.QPointF(across[k], down[k]) for k in range(int(start), int(end))]
-                if len(line) > 1:
-                    painter.drawPolyline(QtGui.QPolygonF(line))
-                elif line:
-                    painter.drawPoint(line[0])
-
-    def _draw_bad(self, painter: Any) -> None:
-        if not len(self.bad):
-            return
-        painter.setPen(QtGui.QPen(QtGui.QColor(120, 0, 0), 1.0))
-        painter.setBrush(QtGui.QColor(255, 40, 40))
-        across, down = self.x_of(self.bad[:, 0]), self.y_of(self._shown(self.bad[:, 1]))
-        _, kept = np.unique(np.round(across / 3.0), return_index=True)
-        for k in kept:
-            painter.drawEllipse(QtCore.QPointF(across[k], down[k]), 2.6, 2.6)
-
-    def _draw_handles(self, painter: Any) -> None:
-        painter.setPen(QtGui.QPen(QtGui.QColor(0, 0, 0), 1.6))
-        painter.setBrush(QtGui.QColor(255, 255, 255))
-        for one in self.handles:
-            painter.drawEllipse(QtCore.QPointF(self.x_of(one.column), self.y_of(one.value)), HANDLE, HANDLE)
-
-    def _draw_axes(self, painter: Any) -> None:
-        area, ink = self.area(), self.palette().color(QtGui.QPalette.WindowText)
-        painter.setPen(ink)
-        painter.setBrush(QtCore.Qt.NoBrush)
-        painter.drawRect(area)
-        line = painter.fontMetrics().height()
-        for step in (30, 45, 90, 180, 360):
-            if np.degrees(self.high - self.low) / step <= max(3.0, area.height() / (1.6 * line)):
-                break
-        first = int(np.ceil(np.degrees(self.low) / step - 1e-9))
-        for number in range(first, int(np.floor(np.degrees(self.high) / step + 1e-9)) + 1):
-            down = float(self.y_of(np.radians(number * step)))
-            painter.drawLine(QtCore.QPointF(area.left() - 4.0, down), QtCore.QPointF(area.left(), down))
-            box = QtCore.QRectF(0.0, down - 0.5 * line, LEFT - 7.0, line)
-            painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, f"{number * step}°")
-        last = -1e9
-        for column, text in self.layers:
-            across, wide = float(self.x_of(column)), 8.0 + painter.fontMetrics().boundingRect(text).width()
-            if across - 0.5 * wide < last:
-                continue
-            last = across + 0.5 * wide
-            painter.drawLine(QtCore.QPointF(across, area.bottom()), QtCore.QPointF(across, area.bottom() + 3.0))
-            box = QtCore.QRectF(across - 0.5 * wide, area.bottom() + 3.0, wide, line)
-            painter.drawText(box, QtCore.Qt.AlignCenter, text)
-        box = QtCore.QRectF(area.left(), area.bottom() + 2.0 + line, area.width(), line)
-        painter.drawText(box, QtCore.Qt.AlignCenter, self.title)
-
-    def _draw_legend(self, painter: Any) -> None:
-        """The ramp with round numbers, then the classes, above the map."""
-        assert self.painted is not None
-        scale, ink = self.painted.scale, self.palette().color(QtGui.QPalette.WindowText)
-        line, across = painter.fontMetrics().height(), float(LEFT)
-        painter.setPen(ink)
-        title = f"{tr(scale.title)} {scale.unit}".strip()
-        across = self._word(painter, across, title)
-        from ..colours import ramp
-
-        bar = QtCore.QRectF(across, 5.0, 90.0, 9.0)
-        fill = QtGui.QLinearGradient(bar.left(), 0.0, bar.right(), 0.0)
-        for share in np.linspace(0.0, 1.0, 9):
-            fill.setColorAt(float(share), QtGui.QColor.fromRgbF(*(float(part) for part in ramp(np.array([share]))[0])))
-        painter.fillRect(bar, fill)
-        numbers = round_numbers(scale.low, scale.high, 0.0) if scale.high > scale.low else np.array([scale.low])
-        for number in numbers[:: max(1, len(numbers) // TO_TICKS + 1)]:
-            at = bar.left() + bar.width() * float(scale.share(np.array([number]))[0])
-            box = QtCore.QRectF(at - 20.0, 14.0, 40.0, line)
-            painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
-        across = bar.right() + 14.0
-        for text, colour in self.painted.classes:
-            painter.fillRect(QtCore.QRectF(across, 5.0, 11.0, 11.0), QtGui.QColor.fromRgbF(*colour))
-            across = self._word(painter, across + 15.0, tr(text))
-        if self.painted.hatched.any():
-            box = QtCore.QRectF(across, 5.0, 11.0, 11.0)
-            painter.drawRect(box)
-            painter.fillRect(box, QtGui.QBrush(ink, QtCore.Qt.BDiagPattern))
-            self._word(painter, across + 15.0, tr("not allowed, or the nozzle touches"))
-
-    def _word(self, painter: Any, across: float, text: str) -> float:
-        wide = painter.fontMetrics().boundingRect(text).width() + 4.0
-        box = QtCore.QRectF(across, 2.0, wide, painter.fontMetrics().height())
-        painter.drawText(box, QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, text)
-        return across + wide + 8.0
 
 
 def _place(event: Any) -> tuple[float, float]:

@@ -12,36 +12,32 @@ import numpy as np
 from PySide import QtCore
 
 from ...core.issues import AmError
-from ...core.planning import spin_curve
 from ...core.planning.points import TURN
-from ...core.planning.spin_curve import Compared, Sums
+from ...core.planning.spin_curve import Compared
 from ...objects.progress import Cancelled
 from ...objects.stage import first_message, issues_of
 from ...objects.staleness import UP_TO_DATE
-from .. import recorded
-from ..later import Background, Later
+from .. import preference_watch, recorded
+from ..later import Later
 from ..simulation.dock import _Dock
 from ..texts import tr, translated, translated_error
-from ..worker import Worker
 from .board import Board
-from .canvas import Canvas, Curve, Dragged, Handle
+from .canvas import Canvas
+from .cells import Cells
 from .comparison import Comparison
+from .consequences import Consequences
 from .controls import AXES, CURVES, Controls
+from .curves import COLOURS, OWN, PLANNED, Curve, Dragged, Handle
 from .draft import CONSTANT, Draft
 from .figures import Figures
 from .form import Form
 from .jump import jump
-from .picture import KINDS, painted
-from .readout import joint_ranges, readout
+from .picture import KINDS
+from .readout import readout
 from .source import Source, source_of
 
 NAME = "RoboticAM_SpinMap"
-OWN, PLANNED = "own", "planned"
 WIDE, HIGH = 0.85, 380  # of the window's width; pixels
-COLOURS = {
-    OWN: (255, 140, 0), PLANNED: (255, 255, 255), "constant": (0, 215, 255), "point-by-point": (255, 70, 220),
-    "layer-by-layer": (140, 255, 120),
-}
 
 
 class SpinMapDock:
@@ -59,16 +55,18 @@ class SpinMapDock:
         for name, act in (("use", self._use), ("free", self._free), ("again", self._again), ("compare", self._compare)):
             self.form.buttons[name].clicked.connect(lambda *_, act=act: act())
         self.dock.setWidget(self.form)
-        self.cells, self.exact = Background(self.dock), Background(self.dock)
+        self.cells = Cells(self.dock, self.canvas, self._fill_controls, self._show_curves)
+        self.consequences = Consequences(self.dock, self.form, self.figures, self._planned_text)
         self.comparison = Comparison(self.dock, self._show_compared, self.form.tell)
         self.renewing = Later(self.dock, self.renew)
         self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
-        self.canvas.dragged, self.canvas.dropped = self._dragged, self._consequences_exact
+        self.canvas.dragged, self.canvas.dropped = self._dragged, self.consequences.exactly
         self._take(source_of(obj))
         Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
         self.dock.show()
         self.dock.raise_()
         App.addDocumentObserver(self)
+        preference_watch.listen(self._renew_cells)
         QtCore.QTimer.singleShot(0, self._fit)  # once it has its place among other docks
 
     def _fit(self) -> None:
@@ -92,10 +90,8 @@ class SpinMapDock:
         self.comparison.cancel()
         self.form.buttons["compare"].setText(tr("Compare methods"))
         self.figures.clear_all()
-        self.planned = spin_curve.sums(self.draft.follow(self.draft.live.planned))
-        self.planned_exact: Sums | None = None
-        self._consequences()
-        self._consequences_exact()
+        self.consequences.take(self.draft)
+        self._changed_for_good()
         self._renew_cells()
 
     def renew(self) -> None:
@@ -111,29 +107,11 @@ class SpinMapDock:
 
     def _renew_cells(self) -> None:
         """Show the picture of the branch, computed first where it is not known."""
-        board, branch = self.board, self.draft.branch
-        self.controls.fill(board, self.draft, self.bead)
-        if branch in board.pictures:
-            self._show_cells()
-            return
-        self.canvas.set_map(None, board.seams, board.labels)
+        self._fill_controls()
+        self.cells.show(self.board, self.draft.branch, KINDS[max(self.controls.kind.currentIndex(), 0)])
 
-        def show(worker: Worker) -> None:
-            board.take(worker.result())
-            if board is self.board:
-                self.controls.fill(board, self.draft, self.bead)
-                self._show_cells()
-
-        self.cells.start(lambda: board.compute(branch), show)
-
-    def _show_cells(self) -> None:
-        picture = self.board.pictures.get(self.draft.branch)
-        if picture is None:
-            return
-        kind = KINDS[max(self.controls.kind.currentIndex(), 0)]
-        self.canvas.title = self.board.title
-        self.canvas.set_map(painted(picture, kind), self.board.seams, self.board.labels)
-        self._show_curves()
+    def _fill_controls(self) -> None:
+        self.controls.fill(self.board, self.draft, self.bead)
 
     def _chosen(self) -> None:
         """Another layer, branch, axis, or other colours."""
@@ -142,15 +120,14 @@ class SpinMapDock:
         branch = self.controls.branch.currentIndex()
         if (layer, axis) != (self.board.layer, self.board.axis):
             if layer is not None and layer not in {of for of, _ in self.source.places}:
-                self.controls.fill(self.board, self.draft, self.bead)
+                self._fill_controls()
                 return
             self.board = Board(self.source, layer, axis)
             shown = self.board.columns.bead
             self.bead = int(shown[np.abs(shown - self.bead).argmin()])
         if branch != self.draft.branch:
             self.draft.branch = branch
-            self._consequences()
-            self._consequences_exact()
+            self._changed_for_good()
         self._renew_cells()
 
     # ---- the curve
@@ -164,8 +141,7 @@ class SpinMapDock:
         self.bead = self.controls.bead.value()
         if self.controls.degree.value() != self.draft.degree:
             self.draft.set_degree(self.controls.degree.value())
-        self._consequences()
-        self._consequences_exact()
+        self._changed_for_good()
 
     def _entered(self, number: int, value: float) -> None:
         """A coefficient was entered, deg and deg per turn."""
@@ -175,8 +151,7 @@ class SpinMapDock:
         else:
             wanted = np.radians(value) / TURN**number
             draft.coefficients[self._together(), number] += wanted - draft.coefficients[self.bead, number]
-        self._consequences()
-        self._consequences_exact()
+        self._changed_for_good()
 
     def _dragged(self, drag: Dragged, by: float) -> None:
         """The mouse has moved the curve, or one of its handles."""
@@ -187,7 +162,7 @@ class SpinMapDock:
         else:
             self.bead = int(board.columns.bead[drag.column])
             draft.shift(changed, self._together())
-        self._consequences()
+        self._changed()
 
     def _handles(self, values: Any) -> list[Handle]:
         draft, board = self.draft, self.board
@@ -201,52 +176,16 @@ class SpinMapDock:
 
     # ---- consequences
 
-    def _consequences(self) -> None:
+    def _changed(self) -> None:
         """Tell at once what the curve as it is now means."""
-        self.followed = self.draft.followed()
-        self._tell(spin_curve.sums(self.followed), self.planned, self.draft.thinned)
-        self.form.show_joints(joint_ranges(self.followed.joints, self.source.cell))
-        self.controls.fill(self.board, self.draft, self.bead)
+        self.consequences.now()
+        self._fill_controls()
         self._show_curves()
 
-    def _consequences_exact(self) -> None:
-        """The same of all points, where only some have been looked at."""
-        draft = self.draft
-        if not draft.thinned:
-            return
-        own = draft.copied()
-
-        def work() -> tuple[Sums, Sums]:
-            full = own.full
-            mine = spin_curve.sums(own.follow(own.phi(full.points, full.points.bead), False))
-            if self.planned_exact is None:
-                of_plan = own.copied()
-                of_plan.branch = own.source.branch
-                return mine, spin_curve.sums(of_plan.follow(full.planned, False))
-            return mine, self.planned_exact
-
-        def show(worker: Worker) -> None:
-            found = worker.result()
-            if draft is self.draft:
-                draft.learn(own)
-                self.planned_exact = found[1]
-                self._tell(*found, False)
-
-        self.exact.start(work, show)
-
-    def _tell(self, sums: Sums, planned: Sums, about: bool) -> None:
-        self.figures.set(OWN, tr("This curve"), COLOURS[OWN], sums, planned, about)
-        self.figures.set(PLANNED, tr("As planned"), COLOURS[PLANNED], planned, None, about)
-        edited = self.draft.edited
-        self.form.buttons["use"].setEnabled(edited)
-        if sums.lost:
-            text, wrong = tr("{} of the points looked at do not serve: they are red").format(sums.lost), True
-        elif edited and sums.ratio > 1.0:
-            asked = tr("A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse")
-            text, wrong = asked.format(100.0 * sums.ratio), True
-        else:
-            text, wrong = self._planned_text() if not edited else (tr("All points serve"), False)
-        self.form.tell(text, wrong)
+    def _changed_for_good(self) -> None:
+        """And of all points a little later."""
+        self._changed()
+        self.consequences.exactly()
 
     def _planned_text(self) -> tuple[str, bool]:
         with contextlib.suppress(ReferenceError, RuntimeError):
@@ -266,7 +205,7 @@ class SpinMapDock:
         if self.figures.shows(OWN):
             values = board.draft_values(draft)
             curves.append(Curve(values, COLOURS[OWN], bold=True))
-            handles, bad = self._handles(values), board.bad(draft, self.followed, values)
+            handles, bad = self._handles(values), board.bad(draft, self.consequences.followed, values)
         self.canvas.set_curves(curves, handles, bad)
 
     # ---- side by side
@@ -275,7 +214,7 @@ class SpinMapDock:
         """Plan all methods in the background, or stop that."""
         if self.comparison.runs:
             self.comparison.cancel()
-            self._consequences()
+            self._changed()
         else:
             self.comparison.start(self.source, self.source.task(self.draft.branch))
         self.form.buttons["compare"].setText(tr("Cancel") if self.comparison.runs else tr("Compare methods"))
@@ -285,8 +224,8 @@ class SpinMapDock:
         self.form.buttons["compare"].setText(tr("Compare methods"))
         if found:
             self.compared = found
-            self._consequences()
-        planned = self.planned_exact or self.planned
+            self._changed()
+        planned = self.consequences.of_plan()
         for one in self.compared:
             help = "; ".join(translated(issue.message) for issue in one.issues[:3]) or tr("nothing forbids it")
             self.figures.set(one.name, translated(one.name), COLOURS[one.name], one.sums, planned, help=help)
@@ -299,7 +238,7 @@ class SpinMapDock:
 
     def _clicked(self, column: int, value: float) -> None:
         self.bead = int(self.board.columns.bead[column])
-        self.controls.fill(self.board, self.draft, self.bead)
+        self._fill_controls()
         self._show_curves()
         with contextlib.suppress(ReferenceError, RuntimeError):  # the view is closed
             jump(self.obj, self.board.place(column)[0], self.board.columns.points.position[column])
@@ -314,8 +253,7 @@ class SpinMapDock:
 
     def _again(self) -> None:
         self.draft.reset()
-        self._consequences()
-        self._consequences_exact()
+        self._changed_for_good()
         self._renew_cells()
 
     def _change(self, arguments: dict[str, str]) -> None:
@@ -335,7 +273,8 @@ class SpinMapDock:
             return
         self.gone = True
         App.removeDocumentObserver(self)
-        for background in (self.cells, self.exact, self.comparison):
+        preference_watch.forget(self._renew_cells)
+        for background in (self.cells, self.consequences, self.comparison):
             background.cancel()
         self.renewing.timer.stop()
         self.dock.closed = None

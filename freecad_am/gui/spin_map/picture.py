@@ -45,7 +45,7 @@ def painted(of: Picture, kind: str) -> Painted:
         if cells.any():
             colours[cells] = colour
             classes.append((text, colour))
-    return Painted(np.round(255.0 * colours).astype(np.uint8), of.forbidden, scale, tuple(classes))
+    return Painted(np.round(255.0 * colours).astype(np.uint8), of.hatched, scale, tuple(classes))
 
 
 def enlarged(of: Painted, width: int, height: int, low: float, high: float, lines: int) -> Pixels:

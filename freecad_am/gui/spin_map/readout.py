@@ -10,6 +10,7 @@ import numpy as np
 from ...core.kinematics.cell import Cell as Station
 from ..lines import Array
 from ..texts import tr
+from ..touching import link_touches
 from .board import Cell
 
 PAST = 1e-9  # rad, of rounding
@@ -31,6 +32,8 @@ def readout(cell: Cell, axes: Sequence[str]) -> str:
         notes.append(tr("rotation not allowed"))
     if cell.touching:
         notes.append(tr("the nozzle touches platform or part"))
+    if cell.arm is not None:
+        notes.append(link_touches(*cell.arm))
     margin = tr("margin {:.1f} % ({})").format(100.0 * cell.margin, cell.nearest)
     condition = tr("condition {:.4f}, least {:.4f}").format(cell.condition, cell.threshold)
     joints = "   ".join(f"{name} {value:.2f}°" for name, value in zip(axes, np.degrees(cell.joints), strict=False))

@@ -4,26 +4,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import opw
+from ...core.kinematics.arm_contact import ArmContact, deposit
 from ...core.kinematics.cell import Cell
 from ...core.parameters.joints import JointParameters
+from ...core.parameters.process import ProcessParameters
 from ...core.planning.joint_path import JointPath
 from ...core.planning.plan import REVOLUTION
 from ...core.planning.task import Task
+from ...core.simulation import link_rods
+from ...core.simulation.link_rods import Mesh
 from ...core.toolpath import Bead, Toolpath
 from ...objects import user_machines
 from ...objects.joint_path import planned_of
 from ...objects.stage import stage_of
+from ..lines import Array
+from ..link_meshes import meshes_of
 
 
 @dataclass(frozen=True)
 class Source:
     """All that is read of the document. objects: names of those it was read from. beads: of the toolpath, with their places
-    (layer, index)."""
+    (layer, index). width: mm of beads that tell none. shapes: meshes that a user gave the links of the robot."""
 
     document: str
     name: str
@@ -35,6 +44,22 @@ class Source:
     planned: JointPath
     beads: tuple[Bead, ...]
     places: tuple[tuple[int, int], ...]
+    width: float
+    shapes: tuple[Mesh | None, ...]
+
+    @cached_property
+    def starts(self) -> Array:
+        """(beads + 1,) how many points there are before each bead, and in all."""
+        return np.concatenate([[0], np.cumsum([len(bead) for bead in self.beads])])
+
+    @cached_property
+    def arm(self) -> ArmContact:
+        """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
+        widest = max([self.width, *(float(bead.width.max()) for bead in self.beads if bead.width is not None)])
+        points, build = (np.concatenate([getattr(bead, name) for bead in self.beads]) for name in ("points", "build"))
+        laid = deposit(points, build, widest, self.toolpath.layer_height)
+        rods = link_rods.of_robot(self.cell.machine.chain, self.shapes)
+        return ArmContact(self.cell, rods, self.toolpath.surroundings, laid)
 
     @property
     def branch(self) -> int:
@@ -63,4 +88,5 @@ def source_of(obj: Any) -> Source:
         objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))), cell=cell,
         parameters=obj.Proxy.parameters(obj, JointParameters), toolpath=toolpath, planned=value.joint_path,
         beads=tuple(bead for _, _, bead in toolpath), places=tuple((layer, index) for layer, index, _ in toolpath),
+        width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width, shapes=meshes_of(cell.machine),
     )

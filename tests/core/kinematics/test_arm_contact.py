@@ -39,6 +39,11 @@ def rods_of(cell):
     return [link_rods.of_solids(link) for link in drawn(cell)]
 
 
+def laid(points, width=2.0):
+    """Beads of no height."""
+    return deposit(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), width, 0.0)
+
+
 def anywhere(cell, count, seed):
     most = np.full(6, np.pi)
     low, high = np.maximum(cell.limits.lower[:6], -most), np.minimum(cell.limits.upper[:6], most)
@@ -99,7 +104,7 @@ def test_only_what_was_there_before_is_touched(setup):
     rods = rods_of(cell)
     points = np.random.default_rng(3).uniform([-300, -300, 0], [300, 300, 400], (300, 3))
     q = anywhere(cell, 200, 4)
-    everything = ArmContact(cell, rods, (), deposit(points, 1.0))
+    everything = ArmContact(cell, rods, (), laid(points))
     found = everything.touches(q)
     there = found.any & (found.what == everything.names.index(DEPOSIT))
     assert there.sum() > 10
@@ -107,18 +112,24 @@ def test_only_what_was_there_before_is_touched(setup):
     assert not (none.what == everything.names.index(DEPOSIT)).any()
     # with the first k points it is what a deposit of those alone says; room for thinning is the same for both
     k = 120
-    first = ArmContact(cell, rods, (), dataclasses.replace(deposit(points[:k], 1.0), room=everything.deposit.room))
+    first = ArmContact(cell, rods, (), dataclasses.replace(laid(points[:k]), room=everything.deposit.room))
     assert (everything.touches(q, np.full(200, k)).link == first.touches(q).link).mean() > 0.99
 
 
 def test_a_thinned_deposit_leaves_room_for_all_of_its_points():
     points = np.random.default_rng(5).uniform(-100, 100, (60_000, 3))
-    made = deposit(points, 2.5)
+    made = laid(points, 5.0)
     assert len(made.points) <= arm_contact.MOST < len(points)
     for number in np.random.default_rng(6).integers(0, len(points), 300):
         near = np.linalg.norm(made.points - points[number], axis=1) <= made.room - 2.5 + 1e-9
         assert (made.since[near] <= number).any()
     assert (points[made.since] == made.points).all()
+
+
+def test_beads_stand_on_their_points():
+    points, up = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    made = deposit(points, up, 6.0, 8.0)
+    assert np.abs(made.points - [[0.0, 0.0, 4.0], [54.0, 0.0, 0.0]]).max() < 1e-12 and made.room == pytest.approx(5.0)
 
 
 def test_platform_and_nozzle_are_looked_at():

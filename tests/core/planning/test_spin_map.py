@@ -346,8 +346,8 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     beads = beads_of(funnel)[0]
     starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads])])
     moment = starts[at.bead] + at.point
-    points = np.concatenate([bead.points for bead in beads])
-    contact = ArmContact(cell, rods, [wall], deposit(points, 5.0))
+    points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
+    contact = ArmContact(cell, rods, [wall], deposit(points, build, 6.0, 9.0))
     touched = spin_map.arm_touched(task, found, FLIP, contact, moment)
     looked = picture.reachable & ~picture.beyond & ~picture.outside & ~found.touching
     assert 0 < touched.sum() < looked.sum() and not (touched & ~looked).any()

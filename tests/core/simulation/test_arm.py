@@ -77,5 +77,5 @@ def test_the_deposit_of_a_motion_has_the_size_of_its_beads(a_motion):
     wide = dataclasses.replace(motion, width=np.where(motion.deposit, np.arange(len(motion)) % 5 + 2.0, np.nan))
     made = arms.laid(wide, 1.0, 0.5)
     assert len(made.points) == motion.deposit.sum()  # random points are far apart
-    assert made.room == pytest.approx(np.hypot(3.0, 0.5))
-    assert arms.laid(motion, 1.0, 0.5).room >= np.hypot(0.5, 0.5)
+    assert made.room == pytest.approx(np.hypot(3.0, 0.25))
+    assert arms.laid(motion, 1.0, 0.5).room >= np.hypot(0.5, 0.25)

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shapes that a user gave the links of a machine, as triangles in the frames of the links."""
+
+from __future__ import annotations
+
+import FreeCAD as App
+
+from ..brep import looks
+from ..core.issues import InputError
+from ..core.kinematics.link_shape import LinkShape
+from ..core.kinematics.machine import Machine
+from ..core.simulation.link_rods import Mesh
+from .texts import error_line
+
+
+def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
+    """(axes + 1) points and triangles of each link's file, base first; None where there is none, or none that can be read:
+    that is told when the link is drawn."""
+    found: list[Mesh | None] = []
+    for shape in machine.shapes:
+        try:
+            found.append(None if shape is None else mesh_of(shape))
+        except InputError:
+            found.append(None)
+    return tuple(found)
+
+
+def drawn_mesh(shape: LinkShape) -> Mesh | None:
+    """The mesh of a user's file that is to be drawn; None when it cannot be read, which is told on the report view."""
+    try:
+        return mesh_of(shape)
+    except InputError as error:
+        told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
+        App.Console.PrintError(error_line(told))
+        return None
+
+
+def mesh_of(shape: LinkShape) -> Mesh:
+    """Points (n, 3) mm in the frame of the link and triangles (m, 3) of a user's file. Raises InputError naming it."""
+    points, triangles = looks.triangles(shape.path)
+    return shape.scale * points @ shape.pose[:3, :3].T + shape.pose[:3, 3], triangles

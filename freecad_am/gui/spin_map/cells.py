@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Has the cells of a map computed beside the window, and shows them: at first without the robot's links, then with these as
+they are known roughly, then in every row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..later import Background
+from ..worker import Worker
+from .board import Board
+from .canvas import Canvas
+from .picture import painted
+
+ROUGH, FINE = 6, 1  # one of so many rows is looked at
+
+
+class Cells:
+    """`known` is called when more is known of a board, `drawn` when its cells are shown."""
+
+    def __init__(self, form: Any, canvas: Canvas, known: Callable[[], None], drawn: Callable[[], None]) -> None:
+        self.canvas, self.known, self.drawn = canvas, known, drawn
+        self.background = Background(form)
+
+    def cancel(self) -> None:
+        """End what is being computed."""
+        self.background.cancel()
+
+    def show(self, board: Board, branch: int, kind: str) -> None:
+        """Show a branch by margin or condition; its cells are computed first where they are not known."""
+        self.board, self.branch, self.kind = board, branch, kind
+        if branch in board.pictures:
+            self._draw()
+            self._go_on()
+            return
+        self.canvas.set_map(None, board.seams, board.labels)
+
+        def take(worker: Worker) -> None:
+            board.take(worker.result())
+            self.known()
+            self._draw()
+            self._go_on()
+
+        self.background.start(lambda: board.compute(branch), take)
+
+    def _go_on(self) -> None:
+        """Look at the links of the robot, until every row was looked at."""
+        board, branch = self.board, self.branch
+        before = board.looked.get(branch)
+        if before == FINE:
+            self.background.cancel()
+            return
+        every = ROUGH if before is None else FINE
+
+        def take(worker: Worker) -> None:
+            board.take_arm(branch, worker.result(), every)
+            self._draw()
+            self._go_on()
+
+        self.background.start(lambda: board.arm(branch, every), take)
+
+    def _draw(self) -> None:
+        board = self.board
+        self.canvas.title = board.title
+        self.canvas.set_map(painted(board.pictures[self.branch], self.kind), board.seams, board.labels)
+        self.drawn()

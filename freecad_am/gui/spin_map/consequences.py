@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the curve that is worked on means: told at once of some of its points, and of all of them a little later."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...core.planning import spin_curve
+from ...core.planning.spin_curve import Followed, Sums
+from ..later import Background
+from ..texts import tr
+from ..worker import Worker
+from .curves import COLOURS, OWN, PLANNED
+from .draft import Draft
+from .figures import Figures
+from .form import Form
+from .readout import joint_ranges
+
+
+class Consequences:
+    """`status` says how the joint path itself stands, and whether that is wrong. followed: what the curve asks of the
+    machine at the points that are looked at while it is dragged."""
+
+    followed: Followed
+
+    def __init__(self, owner: Any, form: Form, figures: Figures, status: Callable[[], tuple[str, bool]]) -> None:
+        self.form, self.figures, self.status = form, figures, status
+        self.background = Background(owner)
+
+    def take(self, draft: Draft) -> None:
+        """Look at another draft, which is as it was planned."""
+        self.draft = draft
+        self.planned = spin_curve.sums(draft.follow(draft.live.planned))
+        self.planned_exact: Sums | None = None
+
+    def of_plan(self) -> Sums:
+        """The figures of what was planned, of all points where they are known."""
+        return self.planned_exact or self.planned
+
+    def cancel(self) -> None:
+        """End what is being computed."""
+        self.background.cancel()
+
+    def now(self) -> None:
+        """Tell at once what the curve as it is now means."""
+        draft = self.draft
+        self.followed = draft.followed()
+        self._tell(spin_curve.sums(self.followed), self.planned, draft.thinned)
+        self.form.show_joints(joint_ranges(self.followed.joints, draft.source.cell))
+
+    def exactly(self) -> None:
+        """The same of all points, where only some have been looked at."""
+        draft, known = self.draft, self.planned_exact
+        if not draft.thinned:
+            return
+        own = draft.copied()
+
+        def work() -> tuple[Sums, Sums]:
+            full = own.full
+            mine = spin_curve.sums(own.follow(own.phi(full.points, full.points.bead), False))
+            if known is not None:
+                return mine, known
+            of_plan = own.copied()
+            of_plan.branch = own.source.branch
+            return mine, spin_curve.sums(of_plan.follow(full.planned, False))
+
+        def show(worker: Worker) -> None:
+            found = worker.result()
+            if draft is self.draft:
+                draft.learn(own)
+                self.planned_exact = found[1]
+                self._tell(*found, False)
+
+        self.background.start(work, show)
+
+    def _tell(self, sums: Sums, planned: Sums, about: bool) -> None:
+        self.figures.set(OWN, tr("This curve"), COLOURS[OWN], sums, planned, about)
+        self.figures.set(PLANNED, tr("As planned"), COLOURS[PLANNED], planned, None, about)
+        edited = self.draft.edited
+        self.form.buttons["use"].setEnabled(edited)
+        if sums.lost:
+            text, wrong = tr("{} of the points looked at do not serve: they are red").format(sums.lost), True
+        elif edited and sums.ratio > 1.0:
+            asked = tr("A joint would have to be at {:.0f} % of its speed: the planner will slow it, or refuse")
+            text, wrong = asked.format(100.0 * sums.ratio), True
+        else:
+            text, wrong = self.status() if not edited else (tr("All points serve"), False)
+        self.form.tell(text, wrong)
