@@ -72,12 +72,28 @@ class Phrases:
     def translated(self, text: str, translate: Callable[[str], str]) -> str:
         """A text in another language, `translate` giving that of a template; itself where it is of none.
 
-        What was put in is a text of its own where it has several words, such as the remedy at the end of an error.
+        What was put in may be a text of its own, such as the remedy at the end of an error.
         """
         found = self.find(text)
         if found is None:
-            return text
+            return self._apart(text, translate)
         template, values = found
-        inner = {at: self.translated(value, translate) if " " in value else value for at, value in values.items()}
+        inner = {at: self._inner(value, translate) for at, value in values.items()}
         count = 1 + max(inner, default=-1)
         return translate(template.text).format(*(inner.get(at, "") for at in range(count)))
+
+    def _inner(self, value: str, translate: Callable[[str], str]) -> str:
+        """What was put into a text: words of ours, else a name or a number, which stay."""
+        ours = " " in value or (value.islower() and value in self.plain)
+        return self.translated(value, translate) if ours else value
+
+    def _apart(self, text: str, translate: Callable[[str], str]) -> str:
+        """A text after the place it is about, 'Box: it is empty'; itself where what follows is of no template either."""
+        at = text.find(": ")
+        while at >= 0:
+            if self.find(text[at + 2:]) is not None:
+                return translate("{}: {}").format(
+                    self._inner(text[:at], translate), self.translated(text[at + 2:], translate)
+                )
+            at = text.find(": ", at + 1)
+        return text

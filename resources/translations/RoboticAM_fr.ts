@@ -2402,6 +2402,11 @@
         <translation>Couches également espacées le long de la paroi (arc-length) ou le long de l&apos;axe (iso-height).</translation>
     </message>
     <message>
+        <location filename="../../InitGui.py"/>
+        <source>Layers, joint paths and checked programs for robots that deposit material</source>
+        <translation>Couches, trajectoires articulaires et programmes vérifiés pour les robots qui déposent de la matière</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Lead</source>
         <translation>Angle d&apos;avance</translation>
@@ -2888,8 +2893,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
-        <source>Of paths, from the least to the greatest; views show it once they are drawn anew</source>
-        <translation>Des trajectoires, de la plus petite à la plus grande valeur ; les vues les montrent une fois redessinées</translation>
+        <source>Of paths, from the least to the greatest</source>
+        <translation>Des trajectoires, de la plus petite à la plus grande valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
@@ -6217,9 +6222,19 @@
         <translation>hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_numbers.py"/>
+        <location filename="../../freecad_am/core/issues.py"/>
+        <source>layer {0}</source>
+        <translation>couche {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/issues.py"/>
         <source>layer {0} bead {1}</source>
         <translation>couche {0} cordon {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/issues.py"/>
+        <source>layer {0} bead {1} point {2}</source>
+        <translation>couche {0} cordon {1} point {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/reading.py"/>
@@ -8103,8 +8118,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/rows.py"/>
-        <source>{0} has another dimension; give {1}{2}</source>
-        <translation>{0} a une autre dimension ; donnez {1}{2}</translation>
+        <source>{0} has another dimension; give {1}</source>
+        <translation>{0} a une autre dimension ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
@@ -8173,8 +8188,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} is missing; choose {1}{2}</source>
-        <translation>{0} manque ; choisissez {1}{2}</translation>
+        <source>{0} is missing; choose {1}</source>
+        <translation>{0} manque ; choisissez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>

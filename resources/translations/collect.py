@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Collects all texts that the window shows, and brings the translations up to date with them.
 
-`python3 resources/translations/collect.py` in a Python that has FreeCAD writes messages.json, the templates by which
+`python3 resources/translations/collect.py` writes messages.json, the templates by which
 messages are recognised, and RoboticAM_fr.ts with the translations there are; what is new has none and is listed. With
 `--release` lrelease makes RoboticAM_fr.qm of it.
 """
@@ -20,9 +20,15 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
-import FreeCAD  # noqa: E402, F401  first of all
+from freecad_am.batch import host  # noqa: E402
 
+host.find_freecad()
+
+import FreeCAD  # noqa: E402, F401  first of all
 import ts_file  # noqa: E402
+from sources import ROOT, Code, Module, called, files  # noqa: E402
+from templates import Templates  # noqa: E402
+
 from freecad_am.core import issues  # noqa: E402
 from freecad_am.core.parameters import field  # noqa: E402
 from freecad_am.objects import preferences, properties, staleness  # noqa: E402
@@ -35,8 +41,6 @@ from freecad_am.objects.program import Program  # noqa: E402
 from freecad_am.objects.rows import Row, group_of, rows  # noqa: E402
 from freecad_am.objects.surface_feature import SurfaceFeature  # noqa: E402
 from freecad_am.objects.toolpath import Toolpath  # noqa: E402
-from sources import ROOT, Code, Module, called, files  # noqa: E402
-from templates import Templates  # noqa: E402
 
 LANGUAGES = ("fr",)
 WINDOW, PROPERTY, COMMAND = "RoboticAM", "App::Property", "RoboticAM_{}"
@@ -66,6 +70,8 @@ class Collected:
             self._of_stage(stage)
         for word in (*staleness.STATUSES, issues.ERROR, issues.WARNING, issues.NOTE):
             self.messages.setdefault(word, "freecad_am/objects/staleness.py")
+        for text in ("layer {0}", "layer {0} bead {1}", "layer {0} bead {1} point {2}"):
+            self.messages.setdefault(text, "freecad_am/core/issues.py")
         for row in preferences.process_rows():
             self.messages.setdefault(preferences.label(row), "freecad_am/objects/preferences.py")
         for template, place in Templates(self.code, TITLES).found.items():
@@ -82,9 +88,9 @@ class Collected:
         for table in (node for node in ast.walk(module.tree) if isinstance(node, ast.Dict)):
             for key, tool in zip(table.keys, table.values, strict=True):
                 if isinstance(tool, ast.Call) and called(tool) == "Tool" and isinstance(key, ast.Constant):
-                    texts = [node.args[0] for node in ast.walk(tool) if isinstance(node, ast.Call) and called(node) == "marked"]
-                    own = {text.value: place for text in texts if isinstance(text, ast.Constant)}
-                    self.commands[COMMAND.format(key.value)] = own
+                    calls = (node for node in ast.walk(tool) if isinstance(node, ast.Call) and called(node) == "marked")
+                    texts = [call.args[0].value for call in calls if isinstance(call.args[0], ast.Constant)]
+                    self.commands[COMMAND.format(key.value)] = dict.fromkeys(texts, place)
 
     def _of_properties(self, module: Module, place: str) -> None:
         """Helps beside a type of property: of `addProperty`, of figures, of options of views."""
@@ -116,8 +122,8 @@ class Collected:
         if field.range_text(row.spec):
             numbers = count()
             self.messages.setdefault(FIGURE.sub(lambda _: f"{{{next(numbers)}}}", field.range_text(row.spec)), place)
-        forms = {"App::PropertyFloat", "App::PropertyTime"} if row.form == field.TIME else {properties.property_type(row, None)}
-        for form in sorted(forms):
+        either = ["App::PropertyFloat", "App::PropertyTime"]  # by FreeCAD's version
+        for form in either if row.form == field.TIME else [properties.property_type(row, None)]:
             self.properties.setdefault(properties.tooltip(row, form), place)
 
     def texts(self) -> ts_file.Texts:

@@ -52,10 +52,9 @@ class Code:
 
 def assigned(statement: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
     """Names that a statement gives values, with those; of pairs one by one."""
-    if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name) and statement.value is not None:
-        yield statement.target.id, statement.value
-    elif isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
-        yield statement.target.id, statement.value
+    if isinstance(statement, (ast.AnnAssign, ast.AugAssign)):
+        if isinstance(statement.target, ast.Name) and statement.value is not None:
+            yield statement.target.id, statement.value
     elif isinstance(statement, ast.Assign):
         for target in statement.targets:
             if isinstance(target, ast.Name):

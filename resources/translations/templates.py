@@ -152,7 +152,7 @@ class Templates:
             found: list[list[Part]] = [[]]
             for part in node.values:
                 inner = part.value if isinstance(part, ast.FormattedValue) else part
-                plain = not isinstance(part, ast.FormattedValue) or part.format_spec is None and part.conversion == -1
+                plain = not isinstance(part, ast.FormattedValue) or (part.format_spec is None and part.conversion == -1)
                 cases = (self._words(inner, function) if plain else None) or [[inner]]
                 found = [[*before, *case] for before, case in product(found, cases)]
                 if len(found) > _MOST_CASES:
@@ -182,11 +182,12 @@ class Templates:
         return None
 
     def _add(self, case: list[Part], module: Module) -> None:
-        texts, count = [], 0
-        for part in case:
+        texts: list[str] = []
+        count = 0
+        for part in filter(None, case):
             if isinstance(part, str):
                 texts.append(part.replace("{", "{{").replace("}", "}}"))
-            else:
+            elif not texts or texts[-1] != f"{{{count - 1}}}":  # two places side by side cannot be told apart
                 texts.append(f"{{{count}}}")
                 count += 1
         template = "".join(texts).strip()

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every text of the window can be translated, the French one is complete and current, and messages are recognised."""
+
+import ast
+import json
+import math
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from freecad_am.core.issues import AmError, Issue
+from freecad_am.core.kinematics import machine
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.gui.phrases import Phrases, Template
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "resources" / "translations"
+sys.path.insert(0, str(FOLDER))
+
+import collect  # noqa: E402
+import ts_file  # noqa: E402
+
+UPDATE = "run resources/translations/collect.py, translate what it lists in RoboticAM_fr.ts, and run it with --release"
+NO_BREAK = "\u00a0"
+
+
+@pytest.fixture(scope="module")
+def collected():
+    return collect.Collected()
+
+
+@pytest.fixture(scope="module")
+def french():
+    return ts_file.contexts(FOLDER / "RoboticAM_fr.ts")
+
+
+@pytest.fixture(scope="module")
+def phrases():
+    return Phrases(json.loads((FOLDER / "messages.json").read_text(encoding="utf-8")))
+
+
+# ---- what is shipped
+
+
+def test_all_texts_are_collected(collected, french):
+    texts = collected.texts()
+    assert len(texts["RoboticAM"]) > 1000 and len(texts["App::Property"]) > 100
+    for context in texts.keys() | french.keys():
+        now, shipped = set(texts.get(context, ())), set(french.get(context, ()))
+        assert now == shipped, f"{context}: new {sorted(now - shipped)}, gone {sorted(shipped - now)}; {UPDATE}"
+    assert (FOLDER / "messages.json").read_text(encoding="utf-8") == collected.recognised(), UPDATE
+
+
+def test_french_is_complete(french):
+    missing = [source for texts in french.values() for source, told in texts.items() if not told]
+    assert not missing, f"{UPDATE}: {missing}"
+    assert "unfinished" not in (FOLDER / "RoboticAM_fr.ts").read_text(encoding="utf-8")
+    same = {source for source, told in french["RoboticAM"].items() if source == told}
+    words = {source for source in same if re.search(r"[a-z]{3,} [a-z]{3,}", re.sub(r"\{[^}]*\}", "", source))}
+    assert not words, "not translated"
+
+
+def test_places_and_accelerators_are_kept(french):
+    for texts in french.values():
+        for source, told in texts.items():
+            assert ts_file.fields(source) == ts_file.fields(told), (source, told)
+            assert source.count("&") == told.count("&"), (source, told)
+            assert source[:1].isspace() == told[:1].isspace() and source[-1:].isspace() == told[-1:].isspace(), source
+
+
+def test_french_is_set_as_french_is(french):
+    for texts in french.values():
+        for told in texts.values():
+            words = re.sub(r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[a-z])", "", told)  # settings, such as wall: outer
+            assert not re.search(rf"[^{NO_BREAK}][;:?!»](?=\s|$)", words), f"no space that does not break: {told}"
+
+
+def test_what_lrelease_made_is_current(french):
+    core = pytest.importorskip("PySide2.QtCore" if "PySide6" not in sys.modules else "PySide6.QtCore")
+    translator = core.QTranslator()
+    assert translator.load(str(FOLDER / "RoboticAM_fr.qm"))
+    for context, texts in french.items():
+        for source, told in texts.items():
+            assert translator.translate(context, source) == told, f"{source}; {UPDATE}"
+
+
+# ---- no text of the window is left out
+
+SHOWING = {
+    "setText", "setToolTip", "setStatusTip", "setWhatsThis", "setWindowTitle", "setPlaceholderText", "setTitle", "setSuffix",
+    "setPrefix", "setSpecialValueText", "setLabelText", "setHorizontalHeaderLabels", "setVerticalHeaderLabels", "addTab",
+    "addAction", "addItem", "addItems", "addRow", "addButton", "drawText", "showMessage", "PrintError", "PrintWarning",
+    "PrintMessage", "getOpenFileName", "getSaveFileName", "getExistingDirectory", "QLabel", "QPushButton", "QCheckBox",
+    "QRadioButton", "QGroupBox", "QDockWidget", "QAction", "Tool", "Fold", "say", "_say", "tell", "_tell", "add_text",
+    "heading", "question", "warning", "information", "critical",
+}
+TRANSLATING = {"tr", "marked", "translated", "sentence", "translated_error", "error_line"}
+NAMES = {"mm", "min", "deg", "kg", "cm", "RZ", "URDF", "urdf", "xml", "csv", "nbsp", "palette", "text"}
+# names and icons of commands, and names of objects, which nobody reads
+UNREAD = {"Tool": {0}, "_tell": set()}
+
+
+def bare(node: ast.AST) -> list[str]:
+    """Literal texts with words in what is shown, outside of calls that translate."""
+    if isinstance(node, ast.Call):
+        name = collect.called(node)
+        if name in TRANSLATING:
+            return []
+        inner = [node.func.value] if isinstance(node.func, ast.Attribute) else []
+        return [text for part in inner + (node.args if name == "join" else []) for text in bare(part)]
+    if isinstance(node, ast.Constant):
+        if not isinstance(node.value, str):
+            return []
+        words = re.findall(r"[A-Za-z]{2,}", re.sub(r"<[^>]*>|&\w+;|%[12]", " ", node.value))
+        return [node.value] if set(words) - NAMES else []
+    if isinstance(node, ast.Subscript):
+        return bare(node.value)
+    if isinstance(node, ast.Compare):
+        return []
+    if isinstance(node, ast.IfExp):
+        return bare(node.body) + bare(node.orelse)
+    return [text for child in ast.iter_child_nodes(node) for text in bare(child)]
+
+
+def shown_bare(tree: ast.AST) -> list[tuple[int, str]]:
+    """Lines and texts that a file shows without translating them."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and collect.called(node) in SHOWING:
+            name = collect.called(node)
+            for at, argument in enumerate(node.args):
+                if at not in UNREAD.get(name, ()):
+                    found += [(node.lineno, text) for text in bare(argument)]
+    return found
+
+
+@pytest.mark.parametrize("path", [*collect.files("gui"), ROOT / "InitGui.py"], ids=lambda path: path.stem)
+def test_no_text_is_shown_as_it_is_written(path):
+    assert shown_bare(ast.parse(path.read_text(encoding="utf-8"))) == []
+
+
+def test_texts_shown_as_they_are_written_are_found():
+    text = 'a.setText("Some words")\nb.setToolTip(f"{n} layers")\nQLabel(tr("fine"))\nc.say("No" if x else tr("Yes"))\n'
+    assert [line for line, _ in shown_bare(ast.parse(text + 'd.setText("{} mm".format(1))'))] == [1, 2, 4]
+
+
+# ---- messages are recognised by their templates
+
+
+def test_each_template_recognises_its_own_texts(phrases):
+    for one in phrases.templates:
+        values = {at: f"Ab{at}" for at in one.fields}
+        text = one.text.format(*(f"Ab{at}" for at in range(1 + max(one.fields))))
+        found = phrases.find(text)
+        assert found is not None and (found[0].text, found[1]) == (one.text, values), text
+    for text in phrases.plain:
+        assert phrases.find(text)[1] == {}
+
+
+def upper(template: str) -> str:
+    """A language for tests: everything but the places in capitals."""
+    parts = re.split(r"(\{[^}]*\})", template)
+    return "".join(part if part.startswith("{") else part.upper() for part in parts)
+
+
+def test_figures_and_names_stay_as_they_are():
+    phrases = Phrases(["{0} is a mesh; use {1}", "a number such as {0}", "it has {0} faces", "wall", "{{x}} is no key {0}"])
+    told = phrases.translated("Box 2 is a mesh; use a number such as 1.50", upper)
+    assert told == "Box 2 IS A MESH; USE A NUMBER SUCH AS 1.50"
+    assert phrases.translated("Cone: it has 12 faces", upper) == "Cone: IT HAS 12 FACES"
+    assert phrases.translated("wall", upper) == "WALL"
+    assert phrases.translated("{x} is no key y", upper) == "{x} IS NO KEY y"
+    assert phrases.translated("of none of these", upper) == "of none of these"
+
+
+def test_the_template_that_says_more_is_meant():
+    phrases = Phrases(["{0} is not {1}", "{0} is not a number", "{0} is not a number; give {1}"])
+    assert phrases.find("'a' is not a number; give 1")[0].text == "{0} is not a number; give {1}"
+    assert phrases.find("'a' is not a number")[0].text == "{0} is not a number"
+    assert Template("{0} is not {1}").values("a number") is None
+
+
+MISTAKES = {
+    "out of range": lambda: RevolutionParameters(layer_height=-1.0),
+    "no number": lambda: RevolutionParameters(chord_error=math.nan),
+    "no choice": lambda: RevolutionParameters(spacing="even"),
+    "no word": lambda: ProcessParameters(bead_model=3),
+    "no machine": lambda: machine.load("fanuc-arcmate120", ()),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES.keys())
+def test_errors_of_the_core_are_recognised(mistake, phrases):
+    with pytest.raises(AmError) as caught:
+        mistake()
+    assert phrases.find(caught.value.message) is not None, caught.value.message
+
+
+def test_the_place_of_a_finding_is_recognised(phrases):
+    where = Issue("error", "X", "it is there", 3, 1, 4).where
+    assert phrases.find(where)[0].text == "layer {0} bead {1} point {2}"
