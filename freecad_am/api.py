@@ -319,20 +319,23 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
         return interop.add_trajectory(obj, tolerance, math.radians(turn))
 
 
-def open_part(doc: Any, path: str, object: str = "") -> Any:
+def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
-    (STL, OBJ, 3MF) for a wall to grow on or to be kept clear of.
+    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of.
 
-    `am.open_part(doc, "cup.step")`
+    scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
     """
     from .objects.part_file import part_shape
 
-    shape, label = part_shape(path, object)
+    shape, label = part_shape(path, object, scale)
     with _one_step(doc, "Open part"):
         is_mesh = hasattr(shape, "Topology")
         part = doc.addObject("Mesh::Feature" if is_mesh else "Part::Feature", "Part")
         part.Label = label
         setattr(part, "Mesh" if is_mesh else "Shape", shape)
+        if is_mesh:
+            part.addProperty("App::PropertyLength", "FileScale", "Part", "How long one unit of the file is.", 1)
+            part.FileScale = scale
         part.purgeTouched()
     return part
 

@@ -9,6 +9,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
+from freecad_am.core.geometry.file_unit import refuse_scale
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -36,13 +37,15 @@ _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 
 @dataclass(frozen=True)
 class PartSource:
-    """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used."""
+    """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used. scale: mm
+    of one unit of a mesh file that does not tell it."""
 
     file: str
     object: str | None = None
     faces: tuple[str, ...] = ()
     settings: tuple[tuple[str, str, str], ...] = ()
     start_edges: tuple[str, ...] = ()
+    scale: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -199,7 +202,8 @@ def _fixtures(section: Any, path: str) -> tuple[PartSource, ...]:
 
 
 def _part(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
-    fields.known_keys(section, ("file", "object", "faces", "set", *(("start_edges",) if key == "part" else ())), key)
+    further = ("start_edges",) if key == "part" else ()
+    fields.known_keys(section, ("file", "object", "faces", "set", "scale", *further), key)
     if "file" not in section:
         raise InputError("NO_PART", f"{key}.file", f"there is no file; write {key}: {{file: shape.step}}")
     file = absolute(fields.text(section["file"], f"{key}.file"), path)
@@ -217,7 +221,17 @@ def _part(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
         faces=_names(section.get("faces"), f"{key}.faces", _FACE),
         settings=tuple(_settings(section.get("set") or {}, key)),
         start_edges=_names(section.get("start_edges"), f"{key}.start_edges", _EDGE),
+        scale=_scale(section.get("scale"), file, f"{key}.scale"),
     )
+
+
+def _scale(value: Any, file: str, key: str) -> float:
+    """mm of one unit of a file."""
+    if value is None:
+        return 1.0
+    scale = quantity.read(value, f.LENGTH, key)
+    refuse_scale(scale, file, key)
+    return scale
 
 
 def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:

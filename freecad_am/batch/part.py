@@ -26,7 +26,7 @@ def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = Fal
             "BREP or FCStd; a mesh may be the substrate, or a fixture",
         )
     if not part.settings:
-        return api.open_part(document, part.file, part.object or "")
+        return api.open_part(document, part.file, part.object or "", part.scale)
     with tempfile.TemporaryDirectory() as folder:
         changed = os.path.join(folder, os.path.basename(part.file))
         _save_changed(part, changed, key)

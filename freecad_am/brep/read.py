@@ -51,8 +51,9 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
     return _shape(file, where)
 
 
-def read_mesh(path: str | os.PathLike[str]) -> Any:
-    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. InputErrors as `read_shape`."""
+def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
+    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one unit of an STL or OBJ file,
+    which tells none; a 3MF file tells its own. InputErrors as `read_shape`."""
     file = Path(path)
     where = file.name or str(path)
     if not file.is_file():
@@ -71,6 +72,10 @@ def read_mesh(path: str | os.PathLike[str]) -> Any:
         raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
+    if scale != 1.0:
+        larger = FreeCAD.Matrix()
+        larger.scale(scale, scale, scale)
+        mesh.transform(larger)
     return mesh
 
 

@@ -9,19 +9,21 @@ from typing import Any
 import FreeCAD as App
 
 from ..brep.read import MESHES, read_mesh, read_shape
+from ..core.geometry.file_unit import refuse_scale
 from ..core.issues import InputError
 from .feature import global_shape
 
 
-def part_shape(path: str, object_name: str = "") -> tuple[Any, str]:
+def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
     """The shape of a part file, the mesh of an STL, OBJ or 3MF file, and a label for it. `object_name`: Name or Label
-    of an object of an FCStd file.
+    of an object of an FCStd file. scale: mm of one unit of an STL or OBJ file.
 
-    Raises the InputErrors of `brep.read`, and NO_OBJECT.
+    Raises the InputErrors of `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of another file or none above 0.
     """
     stem, extension = os.path.splitext(os.path.basename(path))
+    refuse_scale(scale, path, "scale")
     if extension.lower() in MESHES:
-        return read_mesh(path), stem
+        return read_mesh(path, scale), stem
     if extension.lower() != ".fcstd":
         return read_shape(path), stem
     if not os.path.isfile(path):

@@ -17,7 +17,7 @@ from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
 from ..core.process import bead_table
-from ..core.strategies import developable, revolution, surface, surface_directions, wall_clearance, wall_fronts
+from ..core.strategies import developable, platform, revolution, surface, surface_directions, wall_clearance, wall_fronts
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
 from .developable_feature import DevelopableFeature
@@ -98,6 +98,9 @@ def planned(
     if isinstance(strategy, SurfaceParameters):
         family = wall_fronts if isinstance(wall, PatchWall) else surface
         made = family.plan(wall, strategy, build, process, _share)
+        if cell is not None:
+            points = np.vstack([bead.points for _, _, bead in made])
+            platform.refuse_below(wall.label, points, _mounted(cell, made), cell.platform_diameter)
         progress.report(STRATEGY, "keeping the nozzle clear")
         return _kept_clear(made, wall, build, cell)
     toolpath = revolution.plan(
@@ -106,6 +109,11 @@ def planned(
         np.eye(4) if cell is not None and cell.mount == "part" else None, _share,
     )
     return _kept_clear(toolpath, wall, build, cell)
+
+
+def _mounted(cell: CellParameters, toolpath: CoreToolpath) -> Any:
+    """The frame (4, 4) in part coordinates that sits on the platform."""
+    return toolpath.frame if cell.mount == "feature" else np.eye(4)
 
 
 def _share(fraction: float, text: str) -> None:
@@ -118,6 +126,8 @@ def _of_solids(
 ) -> CoreToolpath:
     """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
     model = None if process.bead_model == "none" else bead_table.load(process.bead_model)
+    if cell is not None and cell.mount != "feature":  # the feature's own frame is at its lowest end
+        platform.refuse_solids_below(solids, np.eye(4), cell.platform_diameter)
     toolpath = developable.plan(solids, strategy, build, process, model, _share)
     if build.clearance == "none":
         return toolpath

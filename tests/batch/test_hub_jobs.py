@@ -110,6 +110,45 @@ def test_a_mesh_on_a_base_given_by_numbers(workshop):
     assert (refused.status, refused.err.count("error[UNSUPPORTED_FILE]")) == (2, 1), refused.err
 
 
+@pytest.mark.parametrize(("ending", "scale", "factor"), [("stl", "1 in", 25.4), ("obj", "10", 10.0), ("stl", "1 m", 1000.0)])
+def test_a_mesh_in_another_unit_is_scaled(workshop, ending, scale, factor):
+    bar = Part.makeBox(60.0, 14.0, 30.0, FreeCAD.Vector(0, -7, 60))
+    points, facets = bar.tessellate(0.1)
+
+    def deposited(unit, told):
+        mesh = Mesh.Mesh([[points[k] for k in facet] for facet in facets])
+        mesh.transform(FreeCAD.Matrix(*(np.diag([1.0, 1.0, 1.0, unit]) / unit).ravel()))
+        mesh.write(str(workshop.folder / f"blade.{ending}"))
+        (workshop.folder / "blade.yaml").write_text(MESH.replace("blade.stl", f"blade.{ending}{told}"), encoding="utf-8")
+        done = workshop.run("plan", "blade.yaml", "-o", "out")
+        assert done.status == 0, done.err
+        with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+            return np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm")] for row in csv.DictReader(stream)])
+
+    np.testing.assert_allclose(deposited(factor, f", scale: {scale}"), deposited(1.0, ""), atol=2e-3)
+    deposited(factor, f", scale: {scale}")
+    document = FreeCAD.openDocument(str(workshop.folder / "out" / "blade.FCStd"))
+    try:
+        (part,) = document.findObjects("Mesh::Feature")
+        assert part.FileScale.Value == factor and part.Mesh.BoundBox.XMax == pytest.approx(60.0, rel=1e-6)
+    finally:
+        FreeCAD.closeDocument(document.Name)
+
+
+@pytest.mark.parametrize(("part", "code", "told"), [
+    ("{file: blades.step, scale: 25.4}", "BAD_VALUE", "tells its unit itself"),
+    ("{file: blades.stl, scale: 0 mm}", "BAD_VALUE", "0 mm is no unit"),
+    ("{file: blades.stl, scale: inf}", "BAD_VALUE", "inf mm is no unit"),
+    ("{file: blades.stl, scale: 90 deg}", "BAD_UNIT", "an angle"),
+    ("{file: blades.stl, scale: inch}", "BAD_UNIT", "inch"),
+])
+def test_scales_that_are_refused(read, part, code, told):
+    with pytest.raises(InputError) as caught:
+        read(START.replace("{file: blades.step}", part))
+    assert (caught.value.code, "part.scale" in caught.value.where) == (code, True) and told in caught.value.message
+    assert read(START.replace("{file: blades.step}", "{file: blades.stl, scale: 1/2 in}")).part.scale == 12.7
+
+
 FIN = """\
 part: {file: fin.step}
 substrate: {file: hub.step}

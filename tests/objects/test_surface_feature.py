@@ -51,6 +51,17 @@ def test_renewed_when_the_substrate_changes(doc, tube):
     assert np.hypot(start[:, 0], start[:, 2]) == pytest.approx(25.0, abs=1e-4)
 
 
+def test_a_wall_that_reaches_below_the_platform_is_refused_with_its_depth(doc, tube):
+    """The wall begins on the pipe 16 mm above its middle or, beside it, where the pipe is 29.66 mm high."""
+    for obj in tube:
+        obj.Placement.Base = obj.Placement.Base - App.Vector(0, 0, 40)
+    feature = made(doc, tube)
+    with pytest.raises(InputError, match=r"reaches 10\.34 mm below the platform") as found:
+        api.make_toolpath(doc, feature, api.make_cell(doc))
+    assert found.value.code == "OFF_PLATFORM"
+    assert api.make_toolpath(doc, feature, api.make_cell(doc, platform_diameter=0))
+
+
 def test_saved_and_read_back(doc, tube, tmp_path):
     spline = doc.addObject("Part::Feature", "Spline")
     spline.Shape = tube[0].Shape.Faces[0].toNurbs()

@@ -44,7 +44,8 @@ def _planes(corners: Array) -> Array:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     units = np.where(length > 1e-12, normals / np.maximum(length, 1e-300), 0.0)
-    return np.c_[units, dot(units, corners[:, 0])]
+    planes: Array = np.c_[units, dot(units, corners[:, 0])]
+    return planes
 
 
 def _crossed(corners: Array, triangles: Index, planes: Array, pairs: Index, least: float) -> Crossings:

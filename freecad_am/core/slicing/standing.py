@@ -86,7 +86,10 @@ def _of_units(body: Body, seats: Sequence[Seat]) -> str:
             z = vertices[:, 2]
             beside = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
             if away.min() <= NEAR < away.max() and beside:
-                return f". Times {factor:g} it would reach {seat.base.name}: is its file in {unit}? Then export it in mm"
+                return (
+                    f". Times {factor:g} it would reach {seat.base.name}: is its file in {unit}? Then export it in mm, or "
+                    f"give scale: {factor:g} mm with it, as part.scale (in the window: Meshes, Scale)"
+                )
     return ""
 
 

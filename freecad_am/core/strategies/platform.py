@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the platform is under a wall of revolution, and whether the wall stands on it."""
+"""Where the platform is under a wall of revolution, and whether what is deposited stands on it or reaches below it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.on_hub import SolidsOnHub
 from ..geometry.profile import Array, RevolvedWall
+from ..geometry.solid_mesh import spread
+from ..geometry.told import place
 from ..issues import WARNING, InputError, Issue
 
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm
+DEEP = 0.05  # mm; what reaches no farther below the platform stands on it, but for its chords
+GRAIN = 0.05  # of the radius of the platform, between the places of solids that are looked at
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,30 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
         f"the base of {wall.label} has a diameter of {2.0 * base:.4g} mm and reaches over the platform; check "
         "cell.platform_diameter (0 for none)", 0,
     )]
+
+
+def refuse_below(label: str, points: Array, frame: Array, diameter: float) -> None:
+    """InputError OFF_PLATFORM where points (n, 3) of what is deposited are below the platform, a disc about the origin of a
+    frame (4, 4) in part coordinates; diameter: mm, 0 for none. Beside the disc there is room below its plane."""
+    local = (points - frame[:3, 3]) @ frame[:3, :3]
+    depth = np.where(np.hypot(local[:, 0], local[:, 1]) < 0.5 * diameter, -local[:, 2], 0.0)
+    if depth.max(initial=0.0) > DEEP:
+        worst = int(depth.argmax())
+        raise _off(
+            f"{label} reaches {depth[worst]:.4g} mm below the platform, at {place(points[worst])}",
+            "move the part up, or set cell.platform_diameter to what there is (0 for none)",
+        )
+
+
+def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
+    """The same of solids on a hub, of what is outside of the surfaces that they stand on."""
+    for group in solids.groups:
+        for body in group.bodies:
+            corners = body.corners()
+            low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
+            points = np.vstack([corners[low].reshape(-1, 3), spread(corners[low], max(GRAIN * 0.5 * diameter, 1.0))[0]])
+            outside = group.base.surface.distance(group.base.inside(points)) > DEEP
+            refuse_below(body.name, points[outside], frame, diameter)
 
 
 def _off(what: str, remedy: str) -> InputError:

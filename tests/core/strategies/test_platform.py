@@ -4,8 +4,11 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
 from freecad_am.core.geometry.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.sampling import line
+from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.strategies import platform
 
@@ -53,3 +56,25 @@ def test_a_base_that_reaches_over_the_edge_is_deposited_with_a_warning(diameter,
     found = platform.overhanging(WALL, platform.under(WALL, diameter, frame))
     assert [(issue.level, issue.code) for issue in found] == ([("warning", "OVER_PLATFORM")] if over else [])
     assert all("Cup has a diameter of 40 mm" in issue.message for issue in found)
+
+
+@pytest.mark.parametrize(("drop", "diameter", "refused"), [
+    (0.0, 300.0, False), (0.04, 300.0, False), (7.5, 300.0, True), (7.5, 0.0, False), (7.5, 110.0, False),
+])
+def test_solids_that_reach_below_the_platform_are_refused_with_their_depth(drop, diameter, refused):
+    """A bar beside a hub of 40 mm: what of it is within the hub does not count, nor what is beside the platform."""
+    corner = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+    sides = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+             [1, 5, 7], [1, 7, 3]]
+    bar = corner * [250.0, 20.0, 60.0] - [-60.0, 10.0, drop]
+    within = corner * [10.0, 20.0, 90.0] - [5.0, 10.0, 20.0]
+    faces = np.array(sides, dtype=np.int64)
+    base = Base("hub", Developable(40.0), upright(np.zeros(3), np.array([0.0, 0.0, 1.0])))
+    both = Body("bar", np.vstack([bar, within]), np.vstack([faces, faces + 8]))
+    solids = SolidsOnHub("bars", (Group(base, (both,)),), 0.01)
+    if not refused:
+        platform.refuse_solids_below(solids, np.eye(4), diameter)
+        return
+    with pytest.raises(InputError, match=r"bar reaches 7\.5 mm below the platform, at \(") as found:
+        platform.refuse_solids_below(solids, np.eye(4), diameter)
+    assert found.value.code == "OFF_PLATFORM" and found.value.where == "cell.platform_diameter"
