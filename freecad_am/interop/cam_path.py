@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..core.issues import InputError
+from . import neighbour
 from .lines import Line
 
 ON, OFF = "(deposit on)", "(deposit off)"
@@ -21,11 +21,8 @@ def add(document: Any, lines: Sequence[Line], label: str) -> Any:
     try:
         import Path
     except ImportError:
-        raise InputError(
-            "NO_MODULE", "CAM path", "this FreeCAD has no CAM (Path) workbench; install it or write STEP or DXF instead"
-        ) from None
-    obj = document.addObject("Path::Feature", "AmPath")
-    obj.Label = label
+        raise neighbour.lacking("CAM path", "CAM (Path)", "write STEP or DXF") from None
+    obj = neighbour.added(document, "Path::Feature", "AmPath", label)
     obj.Path = Path.Path([Path.Command(name, words) for name, words in commands(lines)])
     return obj
 

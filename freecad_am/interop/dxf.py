@@ -44,7 +44,7 @@ def _polyline(line: Line) -> str:
 
 
 def _layer(line: Line) -> str:
-    return f"LAYER_{line.layer + 1:03d}" if line.deposit else RAPID
+    return f"LAYER_{line.layer:03d}" if line.deposit else RAPID
 
 
 def _at(name: str, point: object) -> str:

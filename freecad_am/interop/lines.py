@@ -33,8 +33,8 @@ class Line:
 
     @property
     def name(self) -> str:
-        """Such as L003 B01 or L003 rapid."""
-        return f"L{self.layer + 1:03d} B{self.bead + 1:02d}" if self.deposit else f"L{self.layer + 1:03d} rapid"
+        """Such as L003 B01 or L003 rapid, from 0 as everywhere."""
+        return f"L{self.layer:03d} B{self.bead:02d}" if self.deposit else f"L{self.layer:03d} rapid"
 
     def chosen(self, rows: NDArray[np.intp]) -> Line:
         """The line through some of its points, the speed towards each kept."""

@@ -10,7 +10,7 @@ import FreeCAD as App
 import numpy as np
 
 from ..core.geometry.frames import pose
-from ..core.issues import InputError
+from . import neighbour
 from .lines import Line, attitudes, thinned
 
 
@@ -22,11 +22,8 @@ def add(document: Any, lines: Sequence[Line], label: str, tolerance: float, turn
     try:
         import Robot
     except ImportError:
-        raise InputError(
-            "NO_MODULE", "trajectory", "this FreeCAD has no Robot workbench; install it or make a CAM path instead"
-        ) from None
-    obj = document.addObject("Robot::TrajectoryObject", "AmTrajectory")
-    obj.Label = label
+        raise neighbour.lacking("trajectory", "Robot", "make a CAM path") from None
+    obj = neighbour.added(document, "Robot::TrajectoryObject", "AmTrajectory", label)
     trajectory = Robot.Trajectory()
     trajectory.insertWaypoints([
         Robot.Waypoint(place, type="LIN", name=name, vel=speed) for name, place, speed in waypoints(lines, tolerance, turn)
@@ -46,7 +43,7 @@ def waypoints(lines: Sequence[Line], tolerance: float, turn: float) -> list[tupl
         poses = pose(attitudes(few.tool), few.points)
         speed = np.where(np.arange(len(few.speed)) == 0, few.speed[1], few.speed)
         found += [
-            (f"{line.name} {k + 1}", App.Placement(App.Matrix(*poses[k].ravel().tolist())), float(speed[k]))
+            (f"{line.name} {k}", App.Placement(App.Matrix(*poses[k].ravel().tolist())), float(speed[k]))
             for k in range(skipped, len(few.points))
         ]
     return found

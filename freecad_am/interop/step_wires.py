@@ -50,7 +50,7 @@ def edge(line: Line) -> Any:
 def _components(lines: Sequence[Line]) -> dict[str, list[Line]]:
     found: dict[str, list[Line]] = {}
     for line in lines:
-        found.setdefault(f"Layer {line.layer + 1:03d}" if line.deposit else RAPID, []).append(line)
+        found.setdefault(f"Layer {line.layer:03d}" if line.deposit else RAPID, []).append(line)
     return found
 
 

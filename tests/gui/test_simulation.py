@@ -159,7 +159,8 @@ def test_steps_go_by_points_and_layers(person, hemisphere):
     press("point_back")
     assert simulation.player.time < times.arrive[row]
     place = person.field(panel, "place").text()
-    assert place.startswith(f"Layer {motion.layer[simulation.player.row]} of")
+    layers = simulation.run.times.layers
+    assert place.startswith(f"Layer {motion.layer[simulation.player.row]} (0 to {layers[-1]}), bead ")
     texts = [label.text() for label in person.field(panel, "totals").findChildren(person.widgets.QLabel)]
     sums = simulation.run.totals
     assert f"{sums.mass:.1f} g" in texts and f"{sums.length / 1000:.3f} m" in texts

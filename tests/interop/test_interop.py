@@ -88,7 +88,7 @@ def test_step_read_back_has_every_point_of_every_bead(job, tmp_path):
             assert edge.distToShape(Part.Vertex(App.Vector(*point)))[0] < 1e-6
         assert edge.Length == pytest.approx(np.linalg.norm(np.diff(points, axis=0), axis=1).sum(), abs=1e-4)
     with open(path, encoding="utf-8") as stream:
-        assert "'Layer 001" in stream.read()
+        assert "'Layer 000" in stream.read()
 
 
 def test_dxf_is_the_beads_to_the_last_written_digit(job, tmp_path):
@@ -99,7 +99,7 @@ def test_dxf_is_the_beads_to_the_last_written_digit(job, tmp_path):
     for index, (polyline, points) in enumerate(zip(found, beads(job), strict=True)):
         assert polyline["flag"] == 8
         assert np.abs(np.array(polyline["points"]) - points).max() <= 0.5000001e-6
-        assert polyline["layer"].startswith("LAYER_") and (index or polyline["layer"] == "LAYER_001")
+        assert polyline["layer"].startswith("LAYER_") and (index or polyline["layer"] == "LAYER_000")
     api.export_wires(job, path, rapids=True)
     assert {"RAPID"} < {polyline["layer"] for polyline in polylines(path)}
 

@@ -98,6 +98,7 @@ class PathDock(Follower):
         for row in (self.from_, self.to, self.point):
             row.moved = self._moved
         path_view.listen(lambda view: self.fill())
+        path_view.listen_to_clicks(self.dock.isVisible, self._picked)
         App.addDocumentObserver(self)
         Gui.Selection.addObserver(self)
 
@@ -202,6 +203,21 @@ class PathDock(Follower):
             self.single.setChecked(False)
             view.show(None)
             self.fill()
+
+    def _picked(self, view: PathView, row: int) -> None:
+        """A point of a path was clicked in the 3D view: all up to it is shown."""
+        QtCore.QTimer.singleShot(0, lambda: self._go_to(view, row))  # once the click has been dealt with
+
+    def _go_to(self, view: PathView, row: int) -> None:
+        rows, obj = view.rows, view.obj
+        if rows is None or row >= len(rows):
+            return
+        self.target = (obj.Document.Name, obj.Name)
+        layer = int(rows.layers[rows.bead_of(row)])
+        begin = 0 if view.shown is None else min(view.shown[0], layer)
+        first = layer if self.single.isChecked() else begin
+        view.show((first, layer, row + 1 - rows.of_layers(layer, layer)[0]))
+        self.fill()
 
     def _set(self, name: str, value: Any) -> None:
         view = self.view()

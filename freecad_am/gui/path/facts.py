@@ -12,7 +12,10 @@ from .rows import Rows
 
 
 def facts(rows: Rows, row: int) -> str:
-    """The bead that a row belongs to: its layer, number, kind, speed, width, length and time; and the row's place."""
+    """The bead that a row belongs to: its layer, number, kind, speed, width, length and time; and the row's place.
+
+    Numbers count from 0, as in messages, programs and `waypoints.csv`.
+    """
     index = rows.bead_of(row)
     bead, layer = rows.beads[index], int(rows.layers[index])
     first, end = np.searchsorted(rows.layers, [layer, layer + 1])
@@ -22,11 +25,11 @@ def facts(rows: Rows, row: int) -> str:
     x, y, z = bead.points[at]
     return " · ".join((
         tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
-        tr("bead {} of {}, {}").format(index - int(first) + 1, int(end - first), _kind(bead)),
+        tr("bead {} (0 to {}), {}").format(index - int(first), int(end - first) - 1, _kind(bead)),
         f"{preferences.speed(float(bead.speed[max(at, 1)])):.4g} {preferences.speed_unit()}",
         tr("{:.4g} mm wide").format(float(rows.width[row])),
         tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time),
-        tr("point {} of {} at {:.2f}, {:.2f}, {:.2f} mm").format(at + 1, len(bead), x, y, z),
+        tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z),
     ))
 
 

@@ -7,6 +7,7 @@ import contextlib
 from collections.abc import Callable
 from typing import Any, ClassVar
 
+import numpy as np
 from PySide import QtCore
 
 from ...core.issues import InputError
@@ -15,6 +16,7 @@ from ..lines import Array
 from ..texts import marked
 from ..view_base import StageView
 from . import legend
+from .clicks import ClickNode
 from .colouring import Scale
 from .pieces import PathNodes
 from .rows import Rows
@@ -61,6 +63,8 @@ class PathView(StageView):
 
     def scene(self, root: Any) -> None:
         self.path, self.legend = PathNodes(), legend.Legend()
+        self.clicks = ClickNode(lambda: any(wanted() for wanted, _ in _choosers), self._seen, self._clicked)
+        root.addChild(self.clicks.node)
         root.addChild(self.path.node)
         root.addChild(self.legend.node)
 
@@ -136,6 +140,17 @@ class PathView(StageView):
 
     # ---- the stretch that is shown
 
+    def stretch(self) -> tuple[int, int]:
+        """The first row that is shown, and the row after the last."""
+        if self.rows is None:
+            return 0, 0
+        if self.shown is None:
+            return 0, len(self.rows)
+        first, end = self.rows.of_layers(*self.shown[:2])
+        if self.shown[2] is not None:
+            end = min(end, self.rows.of_layers(self.shown[1], self.shown[1])[0] + self.shown[2])
+        return first, end
+
     def show(self, shown: tuple[int, int, int | None] | None) -> None:
         """Show some layers, and of the last one some points; None for all."""
         rows = self.rows
@@ -144,17 +159,37 @@ class PathView(StageView):
         if shown is not None:
             last = min(shown[1], rows.layer_count - 1)
             shown = (min(shown[0], last), last, shown[2])
-        first, end = (0, len(rows)) if shown is None else rows.of_layers(*shown[:2])
-        if shown is not None and shown[2] is not None:
-            end = min(end, rows.of_layers(shown[1], shown[1])[0] + shown[2])
         self.shown = shown
+        first, end = self.stretch()
         self.path.show(first, end)
         self.limited(first, end)
 
 
-# ---- who wants to know of changes
+    # ---- clicks
+
+    def _seen(self) -> tuple[Array, float]:
+        """The points that are shown, and the width of beads."""
+        first, end = self.stretch()
+        if self.rows is None or end <= first:
+            return np.zeros((0, 3)), 0.0
+        return self.rows.points[first:end], float(self.rows.width[first:end].max())
+
+    def _clicked(self, number: int) -> None:
+        for wanted, choose in _choosers:
+            if wanted():
+                choose(self, self.stretch()[0] + number)
+
+
+# ---- who wants to know of clicks and changes
+
+_choosers: list[tuple[Callable[[], bool], Callable[[PathView, int], None]]] = []
 
 _listeners: list[Callable[[PathView], None]] = []
+
+
+def listen_to_clicks(wanted: Callable[[], bool], choose: Callable[[PathView, int], None]) -> None:
+    """Call `choose` with a row of a path when that is clicked in a 3D view, as long as `wanted`."""
+    _choosers.append((wanted, choose))
 
 
 def listen(listener: Callable[[PathView], None]) -> None:

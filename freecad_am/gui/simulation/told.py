@@ -54,11 +54,11 @@ def nothing(run: Run) -> str:
 
 
 def place(run: Run, moment: Moment) -> str:
-    """Layer, bead and point."""
+    """Layer, bead and point, from 0 as everywhere."""
     motion, row = run.motion, moment.row
-    return tr("Layer {layer} of {layers}, bead {bead}, point {point}").format(
-        layer=int(motion.layer[row]), layers=int(run.times.layers[-1]), bead=int(motion.bead[row]),
-        point=int(motion.point[row]),
+    return tr("Layer {layer} ({first} to {last}), bead {bead}, point {point}").format(
+        layer=int(motion.layer[row]), first=int(run.times.layers[0]), last=int(run.times.layers[-1]),
+        bead=int(motion.bead[row]), point=int(motion.point[row]),
     )
 
 
