@@ -62,7 +62,8 @@ class Chart:
 
     limits: least and most value allowed, infinite where there is none; what lies beyond is shaded, values there are marked.
     band: a range of x that is as wanted. marks: values of y with a name to compare with; upright: of x. borders: x of the
-    starts of layers, and layers, their numbers. span: of y, where it is not as the values ask for.
+    starts of layers, and layers, their numbers. span: of y, where it is not as the values ask for. unlimited: why there are
+    no limits, where one would look for them.
     """
 
     title: str
@@ -77,6 +78,7 @@ class Chart:
     borders: Array | None = None
     layers: NDArray[np.int64] | None = None
     span: tuple[float, float] | None = None
+    unlimited: str = ""
 
     def wrong(self, values: Array) -> NDArray[np.bool_]:
         """Which values (n,) lie beyond the limits."""
@@ -129,7 +131,7 @@ def together(title: str, charts: Sequence[Chart]) -> Chart:
         for number, chart in enumerate(charts) for curve in chart.curves
     )
     y = Quantity(charts[0].y.name, " or ".join(units))
-    return replace(charts[0], title=title, y=y, curves=curves, limits=(-INF, INF), span=None)
+    return replace(charts[0], title=title, y=y, curves=curves, limits=(-INF, INF), span=None, unlimited="")
 
 
 def _ends(values: Sequence[Array], more: Sequence[float]) -> tuple[float, float]:

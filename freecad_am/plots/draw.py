@@ -222,6 +222,8 @@ class _Frame:
             ends = f"{least:.6g} to {most:.6g}" if np.isfinite(least) else f"up to {most:.6g}"
             if np.isfinite(most):
                 self._text(right, down, f"limits {ends} {self.chart.y.unit}", ha="right", size=SMALL)
+            elif self.chart.unlimited:
+                self._text(right, down, self.chart.unlimited, ha="right", size=SMALL)
             return
         if CHARACTER * (1.2 * len(title) + sum(len(curve.name) + 3.0 for curve in named)) > self.place.width:
             self._column(named)

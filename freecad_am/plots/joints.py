@@ -11,6 +11,10 @@ from .rows import Rows
 from .source import Source
 
 ENDLESS = " (endless)"
+# what is told where a machine file has no limit, and where none can have one
+NO_SPEED = "no limit known: the machine file has no max_speed"
+NO_ACCELERATION = "no limit known: the machine file has no max_acceleration"
+NO_JERK = "no limit known: machine files have none of jerks"
 MOST_SHARE = 250.0  # % of the limit; what is faster is cut off, or the rest would not be seen
 
 
@@ -35,19 +39,20 @@ def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 def speeds(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """A chart per axis, while depositing: the mean of each segment."""
-    return _rates(source, rows, rows.along(source.rates.speed), "speed", "/s", _cell(source).machine.max_speed, STEP)
+    return _rates(source, rows, rows.along(source.rates.speed), "speed", "/s", _cell(source).machine.max_speed, STEP,
+                  NO_SPEED)
 
 
 def accelerations(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """A chart per axis, while depositing, at the points within beads."""
     most = _cell(source).machine.max_acceleration
-    return _rates(source, rows, rows.at(source.rates.acceleration), "acceleration", "/s²", most, LINE)
+    return _rates(source, rows, rows.at(source.rates.acceleration), "acceleration", "/s²", most, LINE, NO_ACCELERATION)
 
 
 def jerks(source: Source, rows: Rows) -> tuple[Chart, ...]:
     """A chart per axis, while depositing; machine files tell no limits."""
     most = np.full(len(_cell(source).machine.axes), INF)
-    return _rates(source, rows, rows.along(source.rates.jerk), "jerk", "/s³", most, STEP)
+    return _rates(source, rows, rows.along(source.rates.jerk), "jerk", "/s³", most, STEP, NO_JERK)
 
 
 def shares(source: Source, rows: Rows) -> tuple[Chart, ...]:
@@ -79,23 +84,25 @@ def condition(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def _rates(
-    source: Source, rows: Rows, values: Array, name: str, per: str, most: Array, kind: str
+    source: Source, rows: Rows, values: Array, name: str, per: str, most: Array, kind: str, unlimited: str
 ) -> tuple[Chart, ...]:
     machine = _cell(source).machine
     shown, ends = values / machine.unit_values, most / machine.unit_values
     return tuple(
-        _of_axis(rows, axis, label, Quantity(name, machine.units[axis] + per), shown[:, axis], (-end, end), kind)
+        _of_axis(rows, axis, label, Quantity(name, machine.units[axis] + per), shown[:, axis], (-end, end), kind,
+                 unlimited if np.isinf(end) else "")
         for axis, (label, end) in enumerate(zip(machine.axes, ends.tolist(), strict=True))
     )
 
 
 def _of_axis(
-    rows: Rows, axis: int, title: str, y: Quantity, values: Array, limits: tuple[float, float], kind: str
+    rows: Rows, axis: int, title: str, y: Quantity, values: Array, limits: tuple[float, float], kind: str,
+    unlimited: str = "",
 ) -> Chart:
     curve = _curve(rows, title.removesuffix(ENDLESS), values, axis, kind)
     return Chart(
         title, rows.quantity, y, (curve,), limits=(float(limits[0]), float(limits[1])), borders=rows.borders,
-        layers=rows.layers,
+        layers=rows.layers, unlimited=unlimited,
     )
 
 

@@ -24,6 +24,9 @@ WORDS = (
     marked("mean"), marked("highest"), marked("drift"), marked("least allowed"), marked("condition"),
     marked("layer height"), marked("a toolpath has no joints yet; choose a joint path"),
     marked("there is nothing to be seen in these layers"), marked("this machine has no condition"),
+    marked("no limit known: the machine file has no max_speed"),
+    marked("no limit known: the machine file has no max_acceleration"),
+    marked("no limit known: machine files have none of jerks"),
     marked("none of these layers lies on another"), marked("no bead model sets the speeds (process.bead_model)"),
 )
 
@@ -38,6 +41,7 @@ def in_words(picture: Picture) -> Picture:
             curves=tuple(replace(curve, name=translated(curve.name)) for curve in chart.curves),
             marks=tuple((value, translated(name)) for value, name in chart.marks),
             upright=tuple((value, translated(name)) for value, name in chart.upright),
+            unlimited=translated(chart.unlimited),
         )
 
     return replace(picture, charts=tuple(map(of_chart, picture.charts)), lacking=translated(picture.lacking))
