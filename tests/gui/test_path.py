@@ -12,7 +12,7 @@ from freecad_am.core.kinematics import machine as machines
 from freecad_am.core.simulation.margins import margins, speed_ratios
 from freecad_am.core.toolpath import Layer
 from freecad_am.gui.colours import ramp
-from freecad_am.gui.path import colouring, dock, legend
+from freecad_am.gui.path import clicks, colouring, dock, legend
 from freecad_am.gui.path.facts import facts
 from freecad_am.gui.path.rows import PIECE, Rows
 
@@ -299,3 +299,75 @@ def edges(line_set, rows):
         yield from np.linalg.norm(np.diff(points[at : at + count], axis=0), axis=1)
         at += count
     assert at <= len(points)
+
+
+def where(view, hand, point):
+    """Where a point of the 3D view is on the screen, by FreeCAD's own projection."""
+    on_view = getattr(view, "getPointOnViewport", None) or view.getPointOnScreen
+    x, y = on_view(App.Vector(*map(float, point)))
+    place = hand.corner(view) + hand.person.core.QPoint(x, view.getSize()[1] - 1 - y)
+    return place.x(), place.y()
+
+
+@pytest.mark.parametrize("look", ["lines", "tubes"])
+def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
+    proxy = joint_path.ViewObject.Proxy
+    rows = proxy.rows
+    document = joint_path.Document
+    joint_path.ViewObject.Look = look
+    document.Sphere.ViewObject.Visibility = False
+    person.click("RoboticAM_Path")
+    panel = person.panel(dock.NAME)
+    view = person.gui.activeDocument().activeView()
+    view.viewFront()
+    person.gui.SendMsgToActiveView("ViewFit")
+    person.idle(0.5)
+    toward = np.array(view.getViewDirection())
+    facing = np.flatnonzero(rows.points @ toward < -12.0)  # the near side of the dome
+    random = np.random.default_rng(8)
+    for wanted in random.choice(facing, 6, replace=False):
+        proxy.show(None)
+        person.idle(0.1)
+        hand.at(where(view, hand, rows.points[wanted]))
+        person.until(lambda: proxy.shown is not None, "the click to count", 5)
+        first, layer, count = proxy.shown
+        row = rows.of_layers(layer, layer)[0] + count - 1
+        # a pixel is some tenths of a mm; beads are 5 mm apart
+        assert np.linalg.norm(rows.points[row] - rows.points[wanted]) < 1.5 and first == 0
+        assert layer == rows.layers[rows.bead_of(int(wanted))]
+        assert person.field(panel, "to_spin").value() == layer and person.field(panel, "point_spin").value() == count
+        assert facts(rows, row) in person.field(panel, "facts").text()
+    person.screenshot(f"path_clicked_{look}")
+    # what is hidden is not hit: with the lower layers alone a click on a higher one does nothing
+    proxy.show((0, 2, None))
+    person.idle(0.1)
+    top = int(rows.of_layers(rows.layer_count - 3, rows.layer_count - 3)[0])
+    hand.at(where(view, hand, rows.points[top]))
+    person.idle(0.3)
+    assert proxy.shown == (0, 2, None)
+    # nor anything once the dock is closed
+    panel.close()
+    proxy.show(None)
+    hand.at(where(view, hand, rows.points[facing[0]]))
+    person.idle(0.3)
+    assert proxy.shown is None
+
+
+def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant():
+    random = np.random.default_rng(9)
+    points = random.uniform(-100, 100, (300_000, 3))
+    turn = np.eye(4)
+    turn[:3, :3] = np.linalg.qr(random.normal(size=(3, 3)))[0]
+    turn[3, :3] = 5.0, -3.0, 2.0
+    to_screen = np.diag([1 / 150, 1 / 120, -1 / 400, 1.0])  # orthographic, from above
+    size, toward = np.array([800.0, 600.0]), np.array([0.0, 0.0, -1.0])
+    world = points @ turn[:3, :3] + turn[3, :3]
+    flat = 0.5 * (world[:, :2] / [150, 120] + 1) * size
+    for place in random.uniform([200, 150], [600, 450], (20, 2)):
+        found = clicks.nearest(points, turn, to_screen, size, toward, place, 2.0)
+        away = np.linalg.norm(flat - place, axis=1)
+        near = away <= clicks.NEAR
+        highest = world[near, 2].max()
+        front = near & (world[:, 2] >= highest - clicks.DEEP * 2.0)
+        assert front[found] and away[found] == away[front].min()
+    assert clicks.nearest(points, turn, to_screen, size, toward, np.array([5.0, 5.0]), 2.0) is None
