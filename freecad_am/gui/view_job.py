@@ -33,6 +33,11 @@ class JobView:
         """Stages alone belong into a job."""
         return stage_of(obj) is not None
 
+    def replaceObject(self, old: Any, new: Any) -> bool:
+        """A stage dropped onto another one does not take its place, as FreeCAD would have it: that one would be lost from
+        the job, while what follows still needs it."""
+        return False
+
     def onDelete(self, vobj: Any, names: Any) -> bool:
         """The stages go too, those that follow first, within the step of undo that deletes the group."""
         document = vobj.Object.Document

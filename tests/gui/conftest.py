@@ -275,16 +275,33 @@ class Hand:
         self.do("type", "--delay", "20", text)
         self.do("key", "Tab")
 
-    def click_tree(self, label, *held):
-        """Click an object in the tree."""
-        trees = [tree for tree in self.person.window.findChildren(self.person.widgets.QTreeWidget) if tree.isVisible()]
-        tree = next(tree for tree in trees if tree.findItems(label, _anywhere(self.person.core)))
+    def in_tree(self, label):
+        """The place of an object of the tree on the screen, brought into sight."""
+        def there():
+            trees = self.person.window.findChildren(self.person.widgets.QTreeWidget)
+            return [tree for tree in trees if tree.isVisible() and tree.findItems(label, _anywhere(self.person.core))]
+
+        tree = self.person.until(there, f"{label} in the tree", 5)[0]  # which follows the document a little later
         item = tree.findItems(label, _anywhere(self.person.core))[0]
         tree.scrollToItem(item)
+        self.person.idle(0.1)
         place = tree.visualItemRect(item).center()
         place.setX(tree.visualItemRect(item).left() + 25)
         where = tree.viewport().mapToGlobal(place)
-        self.at((where.x(), where.y()), *held)
+        return where.x(), where.y()
+
+    def click_tree(self, label, *held):
+        """Click an object in the tree."""
+        self.at(self.in_tree(label), *held)
+
+    def drag_in_tree(self, label, onto):
+        """Drag an object of the tree onto another one, and drop it there."""
+        self.in_tree(onto)  # both are brought into sight before either place is taken
+        (x, y), (far_x, far_y) = self.in_tree(label), self.in_tree(onto)
+        way = [(x + (far_x - x) * k // 4, y + (far_y - y) * k // 4) for k in (1, 2, 3, 4)]
+        moves = [word for place in [*way, (far_x + 1, far_y)] for word in ("mousemove", *place, "sleep", 0.1)]
+        self.do("mousemove", x, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.2, *moves, "sleep", 0.3, "mouseup", 1)
+        self.person.idle(0.5)
 
     def click_face(self, obj, face, *held):
         """Click a face of an object where it is to be seen in the 3D view; what a panel covers is brought out from under it

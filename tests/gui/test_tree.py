@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The tree by mouse and keys: what is dragged where it belongs and where not, and what is deleted and brought back."""
+
+import subprocess
+
+import pytest
+
+from freecad_am import api
+from freecad_am.objects.job_group import grouped, is_group
+
+
+@pytest.fixture
+def job(person, hemisphere):
+    """The document of a job of few layers, in its group."""
+    doc = hemisphere.Document
+    hemisphere.Label = "Cup"
+    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature, cell)
+    api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
+    grouped(doc, "Job of a cup", api.stages_of(doc))
+    for dock in person.window.findChildren(person.widgets.QDockWidget):
+        if dock.objectName() in ("Combo View", "Model", "Tree view"):
+            dock.show()
+            dock.raise_()
+    open_up(person, "Job of a cup")
+    return doc
+
+
+def open_up(person, label):
+    """Unfold an object in the tree, whose children are only then there."""
+    match = person.core.Qt.MatchExactly | person.core.Qt.MatchRecursive
+
+    def found():
+        trees = [tree for tree in person.window.findChildren(person.widgets.QTreeWidget) if tree.isVisible()]
+        return [item for tree in trees for item in tree.findItems(label, match)]
+
+    for item in person.until(found, f"{label} in the tree", 5):
+        item.setExpanded(True)
+    person.idle()
+
+
+def group_of(doc):
+    return next(obj for obj in doc.Objects if is_group(obj))
+
+
+def statuses(doc):
+    return [obj.Status for obj in api.stages_of(doc)]
+
+
+def state(doc):
+    return {obj.Name: (obj.Key, obj.Status, obj.Message) for obj in api.stages_of(doc)}
+
+
+def yes_by_mouse(person):
+    """Click Yes in the question that the next step brings up; a list that then holds its texts."""
+    asked = []
+
+    def look():
+        box = person.widgets.QApplication.activeModalWidget()
+        if not isinstance(box, person.widgets.QMessageBox):
+            return
+        timer.stop()
+        asked.append(" ".join([box.text(), box.informativeText(), box.detailedText()]))
+        button = box.button(person.widgets.QMessageBox.Yes)
+        place = button.mapToGlobal(button.rect().center())
+        subprocess.Popen(["xdotool", "mousemove", str(place.x()), str(place.y()), "click", "1"])
+
+    timer = person.core.QTimer()
+    timer.setInterval(300)
+    timer.timeout.connect(look)
+    timer.start()
+    asked.append(timer)
+    return asked
+
+
+def delete(person, hand, label):
+    """Select an object in the tree and press Delete; the questions that were asked, each answered with Yes."""
+    hand.click_tree(label)
+    person.until(lambda: [obj.Label for obj in person.gui.Selection.getSelection()] == [label], f"{label} to be selected", 5)
+    asked = yes_by_mouse(person)
+    hand.do("key", "Delete")
+    person.idle(1.0)
+    asked.pop(0).stop()
+    return asked
+
+
+def test_a_job_is_dragged_into_a_folder_and_out_again(person, hand, job):
+    folder = job.addObject("App::DocumentObjectGroup", "Folder")
+    job.recompute()
+    before = state(job)
+    group = group_of(job)
+    hand.drag_in_tree(group.Label, "Folder")
+    assert [obj.Name for obj in folder.Group] == [group.Name] and len(group.Group) == 5
+    job.recompute()
+    assert state(job) == before
+    person.gui.runCommand("Std_Undo")
+    person.idle()
+    assert folder.Group == [] and len(group.Group) == 5
+    job.recompute()
+    assert state(job) == before
+
+
+def test_what_does_not_belong_somewhere_cannot_be_dropped_there(person, hand, job):
+    group, before = group_of(job), state(job)
+    held = [obj.Name for obj in group.Group]
+    hand.drag_in_tree("Cup", group.Label)  # a part into a job
+    hand.drag_in_tree("Toolpath", "Feature")  # a stage onto another one
+    hand.drag_in_tree("Feature", "Cell")
+    assert [obj.Name for obj in group.Group] == held
+    assert job.Toolpath.Feature == job.Feature and job.Feature.Source[0] == job.Sphere
+    job.recompute()
+    assert state(job) == before
+
+
+def test_a_stage_is_dragged_out_of_its_job(person, hand, job):
+    group, before = group_of(job), state(job)
+    hand.drag_in_tree("Toolpath", job.Label)
+    assert job.Toolpath not in group.Group and len(group.Group) == 4
+    job.recompute()
+    assert state(job) == before
+    hand.drag_in_tree("Toolpath", group.Label)
+    assert job.Toolpath in group.Group
+    job.recompute()
+    assert state(job) == before
+
+
+def test_the_part_of_a_job_is_deleted_and_brought_back_by_keys(person, hand, job):
+    """FreeCAD asks, and names what needs the part: that is its own habit for whatever something is built on."""
+    before = state(job)
+    (asked,) = delete(person, hand, "Cup")
+    assert "Feature" in asked
+    assert job.getObject("Sphere") is None and job.Feature.Status == "failed"
+    assert "Source is missing" in job.Feature.Message
+    job.recompute()
+    assert statuses(job) == ["up to date", *["failed"] * 4]
+    hand.click_tree("Feature")
+    hand.do("key", "ctrl+z")
+    person.until(lambda: job.getObject("Sphere") is not None, "the part to come back", 5)
+    job.recompute()
+    assert state(job) == before and job.Feature.Source[0] == job.Sphere
+    hand.do("key", "ctrl+shift+z")
+    person.until(lambda: job.getObject("Sphere") is None, "the part to go again", 5)
+    assert job.Feature.Status == "failed"
+    hand.do("key", "ctrl+z")
+    person.until(lambda: job.getObject("Sphere") is not None, "the part to come back again", 5)
+    job.recompute()
+    assert state(job) == before
+
+
+@pytest.mark.parametrize("name", ["Cell", "Feature", "Toolpath", "JointPath", "Program"])
+def test_a_stage_is_deleted_and_brought_back_by_keys(person, hand, job, name):
+    before = state(job)
+    label = job.getObject(name).Label
+    asked = delete(person, hand, label)
+    assert len(asked) == 0 if name == "Program" else len(asked) == 1
+    assert job.getObject(name) is None
+    job.recompute()
+    left = [obj for obj in api.stages_of(job) if obj.Status != "up to date"]
+    assert all("is missing" in obj.Message or "waits for" in obj.Message for obj in left)
+    assert any("is missing" in obj.Message for obj in left) or name == "Program"
+    hand.click_tree("Cup")
+    hand.do("key", "ctrl+z")
+    person.until(lambda: job.getObject(name) is not None, f"{label} to come back", 5)
+    job.recompute()
+    assert state(job) == before and job.getObject(name) in group_of(job).Group
+
+
+def test_a_whole_job_is_deleted_and_brought_back_by_keys(person, hand, job):
+    before, label = state(job), group_of(job).Label
+    assert delete(person, hand, label) == []  # nothing that is left needs it: nothing is asked
+    assert [obj.Name for obj in job.Objects] == ["Sphere"]
+    hand.click_tree("Cup")
+    hand.do("key", "ctrl+z")
+    person.until(lambda: len(api.stages_of(job)) == 5, "the job to come back", 5)
+    job.recompute()
+    assert state(job) == before and len(group_of(job).Group) == 5
