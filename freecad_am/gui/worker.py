@@ -112,9 +112,9 @@ def _attend(worker: Worker) -> None:
 def _look() -> None:
     """Drop workers that have ended, and collect the cycles of a moment, in the window's thread."""
     _going[:] = [worker for worker in _going if worker.goes_on()]
+    if _collecting:
+        gc.collect(YOUNG)
     if _going:
-        if _collecting:
-            gc.collect(YOUNG)
         QtCore.QTimer.singleShot(AGAIN, _look)
     elif _collecting:
         gc.enable()
