@@ -269,6 +269,11 @@
         <translation>Combien de temps a pris le calcul.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>How long one unit of the file is.</source>
+        <translation>Longueur d&apos;une unité du fichier.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How long to wait between layers.</source>
         <translation>Temps d&apos;attente entre les couches.</translation>
@@ -993,8 +998,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/standing.py"/>
-        <source>. Times {0} it would reach {1}: is its file in {2}? Then export it in mm</source>
-        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm</translation>
+        <source>. Times {0} it would reach {1}: is its file in {2}? Then export it in mm, or give scale: {3} mm with it, as part.scale (in the window: Meshes, Scale)</source>
+        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez scale: {3} mm avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -1325,6 +1330,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>By how much the input&apos;s value in a program rises with a degree.</source>
         <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <source>CAM (Path)</source>
+        <translation>CAM (Path)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/cam_path.py"/>
@@ -2373,8 +2383,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
-        <source>Layer {layer} of {layers}, bead {bead}, point {point}</source>
-        <translation>Couche {layer} de {layers}, cordon {bead}, point {point}</translation>
+        <source>Layer {layer} ({first} to {last}), bead {bead}, point {point}</source>
+        <translation>Couche {layer} ({first} à {last}), cordon {bead}, point {point}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -3429,7 +3439,7 @@
     <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>Select the shape to deposit, or its faces, and press Use selection.</source>
-        <translation>Sélectionnez la forme à déposer, ou ses faces, et cliquez sur Prendre la sélection.</translation>
+        <translation>Sélectionnez la forme à déposer, ou ses faces, et cliquez sur Prendre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -4264,12 +4274,12 @@
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>Upwards</source>
-        <translation>Vers le haut</translation>
+        <translation>Ordonnée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>Use selection</source>
-        <translation>Prendre la sélection</translation>
+        <translation>Prendre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>
@@ -5073,8 +5083,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
-        <source>bead {} of {}, {}</source>
-        <translation>cordon {} de {}, {}</translation>
+        <source>bead {} (0 to {}), {}</source>
+        <translation>cordon {} (0 à {}), {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/predicted.py"/>
@@ -5114,7 +5124,7 @@
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>beyond a limit</source>
-        <translation>au-delà d&apos;une limite</translation>
+        <translation>hors limites</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
@@ -6337,6 +6347,11 @@
         <translation>m</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/interop/robot_trajectory.py"/>
+        <source>make a CAM path</source>
+        <translation>faites une trajectoire CAM</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>manipulability</source>
         <translation>manipulabilité</translation>
@@ -6402,6 +6417,11 @@
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>move the part up, or set cell.platform_diameter to what there is (0 for none)</source>
+        <translation>montez la pièce, ou mettez cell.platform_diameter à ce qui existe (0 pour aucun)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/picture.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
@@ -6457,6 +6477,21 @@
         <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi elles tournent jusqu&apos;à {0} deg/mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>no limit known: machine files have none of jerks</source>
+        <translation>aucune limite connue : les fichiers machine n&apos;en ont pas pour les jerks</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>no limit known: the machine file has no max_acceleration</source>
+        <translation>aucune limite connue : le fichier machine n&apos;a pas de max_acceleration</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>no limit known: the machine file has no max_speed</source>
+        <translation>aucune limite connue : le fichier machine n&apos;a pas de max_speed</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>no line of it has three numbers; give rows of x y z</source>
         <translation>aucune ligne n&apos;a trois nombres ; donnez des lignes de x y z</translation>
@@ -6504,7 +6539,7 @@
     <message>
         <location filename="../../freecad_am/gui/spin_map/painting.py"/>
         <source>not allowed, or touching</source>
-        <translation>non permis, ou contact</translation>
+        <translation>interdit ou contact</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -6663,8 +6698,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
-        <source>point {} of {} at {:.2f}, {:.2f}, {:.2f} mm</source>
-        <translation>point {} de {} en {:.2f}, {:.2f}, {:.2f} mm</translation>
+        <source>point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm</source>
+        <translation>point {} (0 à {}) en {:.2f}, {:.2f}, {:.2f} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -7702,19 +7737,14 @@
         <translation>theta, d, a et alpha doivent être des nombres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/cam_path.py"/>
-        <source>this FreeCAD has no CAM (Path) workbench; install it or write STEP or DXF instead</source>
-        <translation>ce FreeCAD n&apos;a pas d&apos;atelier CAM (Path) ; installez-le, ou écrivez STEP ou DXF</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/interop/robot_trajectory.py"/>
-        <source>this FreeCAD has no Robot workbench; install it or make a CAM path instead</source>
-        <translation>ce FreeCAD n&apos;a pas d&apos;atelier Robot ; installez-le, ou faites une trajectoire CAM</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/interop/step_wires.py"/>
         <source>this FreeCAD has no module Import; write DXF instead</source>
         <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/neighbour.py"/>
+        <source>this FreeCAD has no {0} workbench; install it or {1} instead</source>
+        <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -7975,6 +8005,11 @@
         <location filename="../../freecad_am/posts/linuxcnc.py"/>
         <source>work offset {0} is not there for the part; use 1 to {1} (G54 to G59.2; the ninth, {2}, is set to zero for moves of the axes)</source>
         <translation>le décalage d&apos;origine {0} n&apos;existe pas pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/cam_path.py"/>
+        <source>write STEP or DXF</source>
+        <translation>écrivez STEP ou DXF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/quantity.py"/>
@@ -8547,6 +8582,11 @@
         <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/file_unit.py"/>
+        <source>{0} mm is no unit; give the length of one unit of the file, as 25.4 mm</source>
+        <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>{0} mm of the height are left at the top, less than a layer</source>
         <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>
@@ -8677,6 +8717,11 @@
         <translation>{0} programmes ne sont appelés par aucun autre, un seul attendu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>{0} reaches {1} mm below the platform, at {2}</source>
+        <translation>{0} descend à {1} mm au-dessous du plateau, en {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} row {1} (line {2})</source>
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
@@ -8695,6 +8740,11 @@
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/file_unit.py"/>
+        <source>{0} tells its unit itself; leave out the scale, it is for STL and OBJ</source>
+        <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -9029,7 +9079,7 @@
     <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>{} is missing: select it and press its Use selection.</source>
-        <translation>{} manque : sélectionnez-le et cliquez sur Prendre la sélection.</translation>
+        <translation>{} manque : sélectionnez-le et cliquez sur Prendre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>

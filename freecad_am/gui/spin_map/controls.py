@@ -147,5 +147,5 @@ def scrolled(widget: Any) -> Any:
     area.setFrameShape(QtGui.QFrame.NoFrame)
     area.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
     area.setWidget(widget)
-    area.setMinimumWidth(210)
+    area.setMinimumWidth(max(210, widget.minimumSizeHint().width() + area.verticalScrollBar().sizeHint().width()))
     return area

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The window in French: tools, panels, errors, legends and docks; and FreeCAD as it starts in French.
+
+The language is that of the window while a test runs, and English again afterwards.
+"""
+
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from tests import run
+
+NO_BREAK = "\u00a0"
+
+
+@pytest.fixture
+def french(person):
+    person.gui.setLocale("French")
+    person.idle(0.3)
+    yield person
+    for name in list(App.listDocuments()):
+        App.closeDocument(name)
+    person.gui.setLocale("English")
+    person.idle(0.3)
+
+
+def cut_off(person, form):
+    """The labels, buttons and boxes to tick of a form whose words have less room than they need."""
+    kinds = (person.widgets.QLabel, person.widgets.QAbstractButton, person.widgets.QGroupBox)
+    found = []
+    for kind in kinds:
+        for widget in form.findChildren(kind):
+            text = widget.title() if isinstance(widget, person.widgets.QGroupBox) else widget.text()
+            if not widget.isVisible() or not text:
+                continue
+            wraps = isinstance(widget, person.widgets.QLabel) and widget.wordWrap()
+            needed = widget.heightForWidth(widget.width()) if wraps else widget.minimumSizeHint().height()
+            if widget.height() < needed or (not wraps and widget.width() < widget.minimumSizeHint().width()):
+                found.append(text)
+    return found
+
+
+def test_tools_say_in_french_what_is_missing(french):
+    App.newDocument("Window")
+    button = french.button("RoboticAM_Toolpath")
+    french.until(
+        lambda: re.search(r"Découpe un élément.*Faites d'abord un élément", button.toolTip()), "what is missing", 5
+    )
+    texts = [action.text() for action in french.gui.Command.get("RoboticAM_JointPath").getAction()]
+    assert texts == ["Trajectoire articulaire…"]
+
+
+def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
+    french.select(hemisphere)
+    french.click("RoboticAM_Feature")
+    panel = french.panel("RoboticAM_RevolutionFeature")
+    french.idle(0.6)
+    labels = {label.text() for label in panel.findChildren(french.widgets.QLabel) if label.isVisible()}
+    assert {"Source", "Axe", "Hauteur de couche", "Erreur de corde"} <= labels
+    height = french.field(panel, "LayerHeight")
+    assert height.toolTip() == "Distance entre couches voisines."
+    assert f"Permis{NO_BREAK}: plus de 0" in height.whatsThis().replace("&nbsp;", NO_BREAK)
+    choices = french.field(panel, "Wall")
+    assert [choices.itemText(at) for at in range(choices.count())] == ["extérieure", "intérieure", "milieu"]
+    hand.enter(panel, "LayerHeight", "0 mm")
+    french.press("Ok")
+    french.until(lambda: "hors de la plage" in french.panel_error(panel), "the error under its field", 5)
+    assert french.panel_error(panel) == f"0 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
+    french.screenshot("french-feature")
+    assert cut_off(french, panel) == []
+    french.choose(panel, "Spacing", "hauteur constante")
+    hand.enter(panel, "LayerHeight", "2 mm")
+    french.press("Ok")
+    french.panel_closed()
+    made = api.stages_of(App.ActiveDocument, "feature")[0]
+    assert made.Spacing == "iso-height" and made.LayerHeight.Value == 2.0  # documents know no language
+    assert made.Status in ("up to date", "stale")
+
+
+def test_findings_and_docks_are_french(french, hemisphere):
+    doc = App.ActiveDocument
+    feature = api.make_feature(doc, hemisphere, layer_height=9)
+    cell = api.make_cell(doc, limits="paper")
+    path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+    for command, name, words in (
+        ("RoboticAM_SpinMap", "RoboticAM_SpinMap", {"Branche", "Courbe", "Degré", "Cordon"}),
+        ("RoboticAM_Simulate", "RoboticAM_Simulation", {"Temps", "Masse", "Mouvements rapides"}),
+    ):
+        french.select(path)
+        french.click(command)
+        dock = french.panel(name)
+        french.idle(2.0)
+        seen = {label.text().rstrip(f":{NO_BREAK}") for label in dock.findChildren(french.widgets.QLabel)}
+        assert words <= seen, sorted(seen)
+        french.screenshot(f"french-{name}")
+    assert path.Message == "" or re.search(r" (is|are|the) ", path.Message)  # what documents hold stays English
+
+
+def test_freecad_that_starts_in_french_shows_ours(tmp_path):
+    """Another FreeCAD, with French in its preferences."""
+    program = Path(f"/proc/{os.getpid()}/exe").resolve()
+    script = tmp_path / "look.py"
+    told = tmp_path / "told.txt"
+    script.write_text(
+        "import os\nimport FreeCADGui as Gui\nfrom PySide import QtCore\n"
+        "def look():\n"
+        "    Gui.activateWorkbench('RoboticAMWorkbench')\n"
+        "    texts = [Gui.listWorkbenches()['RoboticAMWorkbench'].ToolTip]\n"
+        "    texts += [action.text() for action in Gui.Command.get('RoboticAM_NewJob').getAction()]\n"
+        f"    open({str(told)!r}, 'w', encoding='utf-8').write('\\n'.join(texts))\n"
+        "    os._exit(0)\n"
+        "QtCore.QTimer.singleShot(1000, look)\n", encoding="utf-8",
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        env = run.private_home(Path(folder))
+        profile = Path(folder) / "user.cfg"
+        profile.write_text(profile.read_text(encoding="utf-8").replace(">English<", ">French<"), encoding="utf-8")
+        subprocess.run([str(program), str(script)], env=env, timeout=120, check=False, capture_output=True)
+    lines = told.read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("Couches, trajectoires articulaires et programmes vérifiés")
+    assert lines[1:] == ["Nouveau travail…"]
