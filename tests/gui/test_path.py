@@ -325,15 +325,24 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     toward = np.array(view.getViewDirection())
     facing = np.flatnonzero(rows.points @ toward < -12.0)  # the near side of the dome
     random = np.random.default_rng(8)
-    for wanted in random.choice(facing, 6, replace=False):
+    chosen = random.choice(facing, 6, replace=False)
+    for wanted in chosen:
         proxy.show(None)
         person.idle(0.1)
+        if wanted == chosen[0]:  # a mouse that is dragged means no point
+            hand.do("mousemove", *where(view, hand, rows.points[wanted]))
+            hand.do("mousedown", 1)
+            hand.do("mousemove_relative", 30, 12)
+            hand.do("mouseup", 1)
+            person.idle(0.3)
+            assert proxy.shown is None
         hand.at(where(view, hand, rows.points[wanted]))
         person.until(lambda: proxy.shown is not None, "the click to count", 5)
         first, layer, count = proxy.shown
         row = rows.of_layers(layer, layer)[0] + count - 1
-        # a pixel is some tenths of a mm; beads are 5 mm apart
-        assert np.linalg.norm(rows.points[row] - rows.points[wanted]) < 1.5 and first == 0
+        # as seen a pixel or two away, where points of the dome's side are close to each other; beads are 5 mm apart
+        away = np.subtract(where(view, hand, rows.points[row]), where(view, hand, rows.points[wanted]))
+        assert np.abs(away).max() <= 3 and np.linalg.norm(rows.points[row] - rows.points[wanted]) < 3.0 and first == 0
         assert layer == rows.layers[rows.bead_of(int(wanted))]
         assert person.field(panel, "to_spin").value() == layer and person.field(panel, "point_spin").value() == count
         assert facts(rows, row) in person.field(panel, "facts").text()
@@ -360,14 +369,15 @@ def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant()
     turn[:3, :3] = np.linalg.qr(random.normal(size=(3, 3)))[0]
     turn[3, :3] = 5.0, -3.0, 2.0
     to_screen = np.diag([1 / 150, 1 / 120, -1 / 400, 1.0])  # orthographic, from above
-    size, toward = np.array([800.0, 600.0]), np.array([0.0, 0.0, -1.0])
+    size = np.array([800.0, 600.0])
+    sight = clicks.Sight(turn, to_screen, size, np.array([0.0, 0.0, -1.0]))
     world = points @ turn[:3, :3] + turn[3, :3]
     flat = 0.5 * (world[:, :2] / [150, 120] + 1) * size
     for place in random.uniform([200, 150], [600, 450], (20, 2)):
-        found = clicks.nearest(points, turn, to_screen, size, toward, place, 2.0)
+        found = clicks.nearest(points, sight, place, 2.0)
         away = np.linalg.norm(flat - place, axis=1)
         near = away <= clicks.NEAR
         highest = world[near, 2].max()
         front = near & (world[:, 2] >= highest - clicks.DEEP * 2.0)
         assert front[found] and away[found] == away[front].min()
-    assert clicks.nearest(points, turn, to_screen, size, toward, np.array([5.0, 5.0]), 2.0) is None
+    assert clicks.nearest(points, sight, np.array([5.0, 5.0]), 2.0) is None

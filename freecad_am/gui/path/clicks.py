@@ -8,69 +8,89 @@ the mouse the foremost ones count, for they hide the others, and of these the ne
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from pivy import coin
+from PySide import QtCore, QtGui
 
 from ..lines import Array
 
 NEAR = 8.0  # px from the mouse
 STILL = 3  # px the mouse may move while the button is down
+LOOK_EVERY = 15  # ms, whether the button has been let go
 DEEP = 1.5  # widths of a bead, by how much points may lie behind the foremost
+
+
+@dataclass(frozen=True)
+class Sight:
+    """How a view shows a path. to_world, to_screen: (4, 4) for row vectors, the latter to -1..1. size: (2,) px of the view.
+    toward: (3,) where its camera looks."""
+
+    to_world: Array
+    to_screen: Array
+    size: Array
+    toward: Array
 
 
 class ClickNode:
     """A node in the scene of a path. `wanted` says whether anybody asks; `seen` gives points (n, 3) that are shown and the
-    width of beads, mm; `clicked` is called with the number of one of them."""
+    width of beads, mm; `clicked` is called with the number of one of them.
+
+    The scene hears of a button that goes down; when it comes up again FreeCAD's selection may keep that to itself.
+    """
 
     def __init__(
         self, wanted: Callable[[], bool], seen: Callable[[], tuple[Array, float]], clicked: Callable[[int], None]
     ) -> None:
         self.wanted, self.seen, self.clicked = wanted, seen, clicked
-        self.pressed: tuple[int, int] | None = None
         self.node = coin.SoEventCallback()
         self.node.addEventCallback(coin.SoMouseButtonEvent.getClassTypeId(), self._event, None)
 
     def _event(self, data: Any, node: Any) -> None:
-        event, left = node.getEvent(), coin.SoMouseButtonEvent.BUTTON1
-        place = event.getPosition().getValue()
-        if coin.SoMouseButtonEvent.isButtonPressEvent(event, left):
-            self.pressed = (place[0], place[1])
-        elif coin.SoMouseButtonEvent.isButtonReleaseEvent(event, left) and self.pressed is not None:
-            before, self.pressed = self.pressed, None
-            moved = max(abs(place[0] - before[0]), abs(place[1] - before[1]))
-            if moved <= STILL and self.wanted():
-                self._click(node.getAction(), np.array([place[0], place[1]], float))
+        event = node.getEvent()
+        if coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1) and self.wanted():
+            place = np.array(event.getPosition().getValue(), float)
+            self._wait(_sight(node.getAction()), place, QtGui.QCursor.pos())
 
-    def _click(self, action: Any, place: Array) -> None:
+    def _wait(self, sight: Sight, place: Array, start: Any) -> None:
+        """Until the button is let go; a mouse that has moved by then has turned the view, or drawn a frame."""
+        if (QtGui.QCursor.pos() - start).manhattanLength() > STILL:
+            return
+        if QtGui.QApplication.mouseButtons() & QtCore.Qt.LeftButton:
+            QtCore.QTimer.singleShot(LOOK_EVERY, lambda: self._wait(sight, place, start))
+            return
         points, width = self.seen()
-        state = action.getState()
-        size = np.array(action.getViewportRegion().getViewportSizePixels().getValue(), float)
-        volume, model = coin.SoViewVolumeElement.get(state), coin.SoModelMatrixElement.get(state)
-        to_world, to_screen = (np.array(one.getValue()) for one in (model, volume.getMatrix()))
-        toward = np.array(volume.getProjectionDirection().getValue())
-        found = nearest(points, to_world, to_screen, size, toward, place, width)
+        found = nearest(points, sight, place, width)
         if found is not None:
             self.clicked(found)
 
 
-def nearest(
-    points: Array, to_world: Array, to_screen: Array, size: Array, toward: Array, place: Array, width: float
-) -> int | None:
-    """The number of the point that is meant by a place on the screen (2,), px; None where none is near.
+def _sight(action: Any) -> Sight:
+    """How the view that an action goes through shows what is at its place in the scene."""
+    region, volume = action.getViewportRegion(), coin.SoViewVolumeElement.get(action.getState())
+    placed = coin.SoGetMatrixAction(region)  # an action for events knows no transformations
+    placed.apply(action.getCurPath())
+    # held by names: pivy frees what they are read from
+    model, screen, toward = placed.getMatrix(), volume.getMatrix(), volume.getProjectionDirection()
+    size = region.getViewportSizePixels()
+    return Sight(*(np.array(one.getValue(), float) for one in (model, screen, size, toward)))
 
-    points: (n, 3). to_world, to_screen: (4, 4) for row vectors, the latter to -1..1. size: (2,) px of the view. toward: (3,)
-    where the camera looks. width: mm by which points may lie behind the foremost one, nearly.
+
+def nearest(points: Array, sight: Sight, place: Array, width: float) -> int | None:
+    """The number of the point that is meant by a place on the screen (2,), px from its lower left; None where none is near.
+
+    points: (n, 3). width: mm by which points may lie behind the foremost one, nearly.
     """
-    world = points @ to_world[:3, :3] + to_world[3, :3]
-    shown = world @ to_screen[:3] + to_screen[3]
+    world = points @ sight.to_world[:3, :3] + sight.to_world[3, :3]
+    shown = world @ sight.to_screen[:3] + sight.to_screen[3]
     with np.errstate(divide="ignore", invalid="ignore"):
-        flat = 0.5 * (shown[:, :2] / shown[:, 3:] + 1.0) * size
+        flat = 0.5 * (shown[:, :2] / shown[:, 3:] + 1.0) * sight.size
     away = np.linalg.norm(flat - place, axis=1)
     near = np.flatnonzero((away <= NEAR) & (shown[:, 3] > 0.0))
     if not len(near):
         return None
-    depth = world[near] @ toward
+    depth = world[near] @ sight.toward
     front = near[depth <= depth.min() + DEEP * width]
     return int(front[np.argmin(away[front])])

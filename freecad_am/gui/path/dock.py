@@ -206,9 +206,6 @@ class PathDock(Follower):
 
     def _picked(self, view: PathView, row: int) -> None:
         """A point of a path was clicked in the 3D view: all up to it is shown."""
-        QtCore.QTimer.singleShot(0, lambda: self._go_to(view, row))  # once the click has been dealt with
-
-    def _go_to(self, view: PathView, row: int) -> None:
         rows, obj = view.rows, view.obj
         if rows is None or row >= len(rows):
             return
