@@ -323,6 +323,7 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     person.gui.SendMsgToActiveView("ViewFit")
     person.idle(0.5)
     toward = np.array(view.getViewDirection())
+    aim = rows.points + (0.5 * rows.height[:, None] * rows.build if look == "tubes" else 0.0)
     facing = np.flatnonzero(rows.points @ toward < -12.0)  # the near side of the dome
     random = np.random.default_rng(8)
     chosen = random.choice(facing, 6, replace=False)
@@ -330,18 +331,18 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
         proxy.show(None)
         person.idle(0.1)
         if wanted == chosen[0]:  # a mouse that is dragged means no point
-            hand.do("mousemove", *where(view, hand, rows.points[wanted]))
+            hand.do("mousemove", *where(view, hand, aim[wanted]))
             hand.do("mousedown", 1)
             hand.do("mousemove_relative", 30, 12)
             hand.do("mouseup", 1)
             person.idle(0.3)
             assert proxy.shown is None
-        hand.at(where(view, hand, rows.points[wanted]))
+        hand.at(where(view, hand, aim[wanted]))
         person.until(lambda: proxy.shown is not None, "the click to count", 5)
         first, layer, count = proxy.shown
         row = rows.of_layers(layer, layer)[0] + count - 1
         # as seen a pixel or two away, where points of the dome's side are close to each other; beads are 5 mm apart
-        away = np.subtract(where(view, hand, rows.points[row]), where(view, hand, rows.points[wanted]))
+        away = np.subtract(where(view, hand, aim[row]), where(view, hand, aim[wanted]))
         assert np.abs(away).max() <= 3 and np.linalg.norm(rows.points[row] - rows.points[wanted]) < 3.0 and first == 0
         assert layer == rows.layers[rows.bead_of(int(wanted))]
         assert person.field(panel, "to_spin").value() == layer and person.field(panel, "point_spin").value() == count
@@ -351,13 +352,13 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     proxy.show((0, 2, None))
     person.idle(0.1)
     top = int(rows.of_layers(rows.layer_count - 3, rows.layer_count - 3)[0])
-    hand.at(where(view, hand, rows.points[top]))
+    hand.at(where(view, hand, aim[top]))
     person.idle(0.3)
     assert proxy.shown == (0, 2, None)
     # nor anything once the dock is closed
     panel.close()
     proxy.show(None)
-    hand.at(where(view, hand, rows.points[facing[0]]))
+    hand.at(where(view, hand, aim[facing[0]]))
     person.idle(0.3)
     assert proxy.shown is None
 
@@ -374,10 +375,14 @@ def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant()
     world = points @ turn[:3, :3] + turn[3, :3]
     flat = 0.5 * (world[:, :2] / [150, 120] + 1) * size
     for place in random.uniform([200, 150], [600, 450], (20, 2)):
-        found = clicks.nearest(points, sight, place, 2.0)
+        found = clicks.nearest(points, 0.0, 2.0, sight, place)
         away = np.linalg.norm(flat - place, axis=1)
         near = away <= clicks.NEAR
         highest = world[near, 2].max()
         front = near & (world[:, 2] >= highest - clicks.DEEP * 2.0)
         assert front[found] and away[found] == away[front].min()
-    assert clicks.nearest(points, sight, np.array([5.0, 5.0]), 2.0) is None
+    assert clicks.nearest(points, 0.0, 2.0, sight, np.array([5.0, 5.0])) is None
+    # a tube of 9 mm is as wide as it is seen: 22.5 px to each side
+    alone, beside = world[:1] - turn[3, :3], np.array([[20.0, 0.0], [25.0, 0.0]]) + flat[0]
+    hit = [clicks.nearest(alone @ turn[:3, :3].T, 9.0, 9.0, sight, place) for place in beside]
+    assert hit == [0, None]

@@ -35,14 +35,15 @@ class Sight:
 
 
 class ClickNode:
-    """A node in the scene of a path. `wanted` says whether anybody asks; `seen` gives points (n, 3) that are shown and the
-    width of beads, mm; `clicked` is called with the number of one of them.
+    """A node in the scene of a path. `wanted` says whether anybody asks; `seen` gives points (n, 3) that are shown, how far
+    what is drawn about them reaches, and the width of beads, mm; `clicked` is called with the number of one of them.
 
     The scene hears of a button that goes down; when it comes up again FreeCAD's selection may keep that to itself.
     """
 
     def __init__(
-        self, wanted: Callable[[], bool], seen: Callable[[], tuple[Array, float]], clicked: Callable[[int], None]
+        self, wanted: Callable[[], bool], seen: Callable[[], tuple[Array, float, float]],
+        clicked: Callable[[int], None],
     ) -> None:
         self.wanted, self.seen, self.clicked = wanted, seen, clicked
         self.node = coin.SoEventCallback()
@@ -61,8 +62,7 @@ class ClickNode:
         if QtGui.QApplication.mouseButtons() & QtCore.Qt.LeftButton:
             QtCore.QTimer.singleShot(LOOK_EVERY, lambda: self._wait(sight, place, start))
             return
-        points, width = self.seen()
-        found = nearest(points, sight, place, width)
+        found = nearest(*self.seen(), sight, place)
         if found is not None:
             self.clicked(found)
 
@@ -78,17 +78,20 @@ def _sight(action: Any) -> Sight:
     return Sight(*(np.array(one.getValue(), float) for one in (model, screen, size, toward)))
 
 
-def nearest(points: Array, sight: Sight, place: Array, width: float) -> int | None:
+def nearest(points: Array, reach: float, width: float, sight: Sight, place: Array) -> int | None:
     """The number of the point that is meant by a place on the screen (2,), px from its lower left; None where none is near.
 
-    points: (n, 3). width: mm by which points may lie behind the foremost one, nearly.
+    points: (n, 3). reach: mm about them that belongs to them. width: mm by which points may lie behind the foremost one,
+    nearly.
     """
     world = points @ sight.to_world[:3, :3] + sight.to_world[3, :3]
     shown = world @ sight.to_screen[:3] + sight.to_screen[3]
     with np.errstate(divide="ignore", invalid="ignore"):
         flat = 0.5 * (shown[:, :2] / shown[:, 3:] + 1.0) * sight.size
     away = np.linalg.norm(flat - place, axis=1)
-    near = np.flatnonzero((away <= NEAR) & (shown[:, 3] > 0.0))
+    with np.errstate(divide="ignore"):
+        size = reach * 0.5 * sight.size[1] * np.linalg.norm(sight.to_screen[:3, 1]) / shown[:, 3]
+    near = np.flatnonzero((away <= np.maximum(NEAR, size)) & (shown[:, 3] > 0.0))
     if not len(near):
         return None
     depth = world[near] @ sight.toward

@@ -167,12 +167,17 @@ class PathView(StageView):
 
     # ---- clicks
 
-    def _seen(self) -> tuple[Array, float]:
-        """The points that are shown, and the width of beads."""
+    def _seen(self) -> tuple[Array, float, float]:
+        """The points that are shown, of tubes in their middle; how far these reach about them, and the width of beads."""
         first, end = self.stretch()
         if self.rows is None or end <= first:
-            return np.zeros((0, 3)), 0.0
-        return self.rows.points[first:end], float(self.rows.width[first:end].max())
+            return np.zeros((0, 3)), 0.0, 0.0
+        some, width = slice(first, end), float(self.rows.width[first:end].max())
+        if not self.path.as_tubes:
+            return self.rows.points[some], 0.0, width
+        height = self.rows.height[some]
+        middle = self.rows.points[some] + 0.5 * height[:, None] * self.rows.build[some]
+        return middle, 0.5 * max(width, float(height.max())), width
 
     def _clicked(self, number: int) -> None:
         for wanted, choose in _choosers:
