@@ -52,8 +52,7 @@ class ClickNode:
     def _event(self, data: Any, node: Any) -> None:
         event = node.getEvent()
         if coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1) and self.wanted():
-            place = np.array(event.getPosition().getValue(), float)
-            self._wait(_sight(node.getAction()), place, QtGui.QCursor.pos())
+            self._wait(_sight(node.getAction()), _pair(event.getPosition()), QtGui.QCursor.pos())
 
     def _wait(self, sight: Sight, place: Array, start: Any) -> None:
         """Until the button is let go; a mouse that has moved by then has turned the view, or drawn a frame."""
@@ -74,8 +73,13 @@ def _sight(action: Any) -> Sight:
     placed.apply(action.getCurPath())
     # held by names: pivy frees what they are read from
     model, screen, toward = placed.getMatrix(), volume.getMatrix(), volume.getProjectionDirection()
-    size = region.getViewportSizePixels()
-    return Sight(*(np.array(one.getValue(), float) for one in (model, screen, size, toward)))
+    model, screen, toward = (np.array(one.getValue(), float) for one in (model, screen, toward))
+    return Sight(model, screen, _pair(region.getViewportSizePixels()), toward)
+
+
+def _pair(short: Any) -> Array:
+    """(2,) of an SbVec2s, of which some versions of pivy give no values at once."""
+    return np.array([short[0], short[1]], float)
 
 
 def nearest(points: Array, reach: float, width: float, sight: Sight, place: Array) -> int | None:
