@@ -54,6 +54,7 @@ class QuantityField:
         self._add_mark()
         self.line.textEdited.connect(self._keep)
         self.line.textChanged.connect(self._forget)
+        self.line.textChanged.connect(self._begin_in_sight)
         self.box.editingFinished.connect(self._restore)
 
     def _add_mark(self) -> None:
@@ -103,6 +104,11 @@ class QuantityField:
             QtCore.QTimer.singleShot(0, self._restore)
         elif text != self.typed and self.box.hasFocus():  # by the arrows or the wheel
             self.typed = None
+
+    def _begin_in_sight(self, *_: Any) -> None:
+        """Where the field is too narrow for the number, its first digits are seen: '1000 m', not '000 mm'."""
+        if not self.box.hasFocus():
+            self.line.setCursorPosition(0)
 
     def _restore(self, *_: Any) -> None:
         with contextlib.suppress(RuntimeError):  # the panel is closed

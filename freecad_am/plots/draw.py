@@ -166,7 +166,7 @@ class _Frame:
         last = -np.inf
         for number in seen:
             share = (float(chart.borders[number]) - low) / (high - low)
-            text = f"{'' if last >= 0.0 else 'layer '}{chart.layers[number]}"
+            text = ("{}" if last >= 0.0 else self.look.words.layer).format(chart.layers[number])
             if share * self.place.width >= last + APART:
                 self._text(self.place.left + share * self.place.width, self.place.top - 4.0, text, size=SMALL)
                 last = share * self.place.width + CHARACTER * len(text)
@@ -211,7 +211,8 @@ class _Frame:
 
     def _title(self) -> None:
         count = self.chart.wrong_count
-        title = self.chart.title + (f": {count:,} points beyond the limit" if count else "")
+        words = self.look.words
+        title = words.beyond.format(self.chart.title, f"{count:,}") if count else self.chart.title
         down = self.place.top - (7.0 + NUMBERS if self.layers else 7.0)
         self._text(self.place.left, down, title, color=self.look.bad if count else self.look.ink, size=TITLE,
                    weight="bold")
@@ -219,9 +220,10 @@ class _Frame:
         right = self.place.left + self.place.width
         least, most = self.chart.limits
         if len(named) < 2:
-            ends = f"{least:.6g} to {most:.6g}" if np.isfinite(least) else f"up to {most:.6g}"
+            ends = [f"{end:.6g}" for end in (least, most) if np.isfinite(end)]
             if np.isfinite(most):
-                self._text(right, down, f"limits {ends} {self.chart.y.unit}", ha="right", size=SMALL)
+                told = words.limits if len(ends) == 2 else words.limit
+                self._text(right, down, told.format(*ends, self.chart.y.unit), ha="right", size=SMALL)
             elif self.chart.unlimited:
                 self._text(right, down, self.chart.unlimited, ha="right", size=SMALL)
             return

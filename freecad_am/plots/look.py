@@ -19,6 +19,16 @@ _SCALE = np.array([
 
 
 @dataclass(frozen=True)
+class Words:
+    """What is written in a frame besides the texts of its chart, to be filled in by `format`."""
+
+    layer: str = "layer {}"
+    beyond: str = "{}: {} points beyond the limit"
+    limits: str = "limits {} to {} {}"
+    limit: str = "limits up to {} {}"
+
+
+@dataclass(frozen=True)
 class Look:
     """ink: titles; soft: all other text; grid; bad: limits and what breaks them; good: bands that are wanted; paper: the
     ground, "none" where it is that of a page. All as #rrggbb."""
@@ -29,6 +39,7 @@ class Look:
     bad: str
     good: str
     paper: str
+    words: Words = Words()
 
     def colour(self, colour: int | str) -> str:
         """The colour of a curve."""

@@ -16,6 +16,7 @@ from ...plots.look import DARK, LIGHT, Look
 from ..texts import tr
 from ..worker import Worker
 from .reading import Range, moved, told, zoomed
+from .words import of_frames
 
 if TYPE_CHECKING:
     from ...plots.draw import Place
@@ -277,7 +278,7 @@ class Canvas(QtGui.QWidget):
 def look_of(palette: Any) -> Look:
     """The look on the ground that fields of the window have."""
     ground = palette.color(QtGui.QPalette.Base)
-    return dataclasses.replace(LIGHT if ground.lightness() > 128 else DARK, paper=ground.name())
+    return dataclasses.replace(LIGHT if ground.lightness() > 128 else DARK, paper=ground.name(), words=of_frames())
 
 
 def _drawn(

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 
 from ...plots.chart import Picture
 from ...plots.draw import Range, Window, figure
 from ...plots.files import KINDS, image, values
 from ...plots.look import LIGHT
+from .words import of_frames
 
 Ranges = Mapping[int, Range]
 CSV = "csv"
@@ -23,7 +25,7 @@ def write(picture: Picture, path: str, size: tuple[int, int], across: Ranges, up
     if ending == CSV:
         content = "".join(values(picture)).encode()
     else:
-        content = image(figure(picture.charts, LIGHT, *size, Window(across, up))[0], ending)
+        content = image(figure(picture.charts, replace(LIGHT, words=of_frames()), *size, Window(across, up))[0], ending)
     unfinished = f"{path}.unfinished"
     try:
         with open(unfinished, "wb") as stream:

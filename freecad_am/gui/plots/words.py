@@ -6,7 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...plots.chart import Chart, Picture, Quantity
-from ..texts import marked, translated
+from ...plots.look import Words
+from ..texts import marked, tr, translated
 
 # all that stands alone in pictures, which `plots` draws in English for reports
 WORDS = (
@@ -31,6 +32,14 @@ WORDS = (
 )
 
 
+def of_frames() -> Words:
+    """What is written in frames."""
+    return Words(
+        layer=tr("layer {}"), beyond=tr("{}: {} points beyond the limit"), limits=tr("limits {} to {} {}"),
+        limit=tr("limits up to {} {}"),
+    )
+
+
 def in_words(picture: Picture) -> Picture:
     """A picture in the language of the window; what is a name, such as that of an axis, stays."""
 
@@ -40,8 +49,8 @@ def in_words(picture: Picture) -> Picture:
             y=Quantity(translated(chart.y.name), chart.y.unit),
             curves=tuple(replace(curve, name=translated(curve.name)) for curve in chart.curves),
             marks=tuple((value, translated(name)) for value, name in chart.marks),
-            upright=tuple((value, translated(name)) for value, name in chart.upright),
             unlimited=translated(chart.unlimited),
+            upright=tuple((value, translated(name)) for value, name in chart.upright),
         )
 
     return replace(picture, charts=tuple(map(of_chart, picture.charts)), lacking=translated(picture.lacking))
