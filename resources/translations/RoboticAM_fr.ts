@@ -1344,7 +1344,7 @@
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>CAM path in this document</source>
-        <translation>Trajectoire CAM dans ce document</translation>
+        <translation>Trajectoire CAM ici</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/toolpath_panel.py"/>
@@ -1579,7 +1579,7 @@
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>DXF file of polylines</source>
-        <translation>Fichier DXF de polylignes</translation>
+        <translation>Polylignes en DXF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -3299,7 +3299,7 @@
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>Rapid moves too</source>
-        <translation>Mouvements rapides aussi</translation>
+        <translation>Rapides aussi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3324,7 +3324,7 @@
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>Robot trajectory in this document</source>
-        <translation>Trajectoire Robot dans ce document</translation>
+        <translation>Trajectoire Robot ici</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/busy.py"/>
@@ -3384,7 +3384,7 @@
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>STEP file of wires</source>
-        <translation>Fichier STEP de fils</translation>
+        <translation>Fils en STEP</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
@@ -6285,6 +6285,26 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>least allowed</source>
         <translation>minimum permis</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/look.py"/>
+        <source>limits up to {0} {1}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>limits up to {} {}</source>
+        <translation>limite {} {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/look.py"/>
+        <source>limits {0} to {1} {2}</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>limits {} to {} {}</source>
+        <translation>limites {} à {} {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -9200,6 +9220,11 @@
         <location filename="../../freecad_am/gui/busy.py"/>
         <source>{}: {}</source>
         <translation>{} : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>{}: {} points beyond the limit</source>
+        <translation>{} : {} points au-delà de la limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
