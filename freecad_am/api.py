@@ -122,6 +122,8 @@ def make_toolpath(
     **values: Any,
 ) -> Any:
     """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`"""
+    if "bead_width" in values:  # it is meant, even where it is the default
+        values.setdefault("fill_width", "bead_width")
     return _make(doc, Toolpath, "Toolpath", label, {"Feature": feature, "Cell": cell}, [process], values)
 
 

@@ -94,7 +94,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
     strategy = _strategy(values.get("strategy") or {})
-    process = fields.build(ProcessParameters, values.get("process") or {}, "process")
+    process = _process(values.get("process") or {}, strategy)
     process = _with_bead_model(process, strategy, path)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     _refuse_direction(strategy, build_direction)
@@ -131,6 +131,14 @@ def _name(value: Any, path: str) -> str:
     if len(name.encode()) > _LONGEST_NAME:
         raise InputError("BAD_NAME", "name", f"the name is too long for a file; use at most {_LONGEST_NAME} letters")
     return name
+
+
+def _process(section: Any, strategy: Strategy) -> ProcessParameters:
+    """The process; where solids on hubs are filled a bead width that the job gives is meant, whatever it is."""
+    given = fields.mapping(section, "process")
+    if "bead_width" in given and isinstance(strategy, DevelopableParameters):
+        given = {"fill_width": "bead_width", **given}
+    return fields.build(ProcessParameters, given, "process")
 
 
 def _with_bead_model(process: ProcessParameters, strategy: Strategy, path: str) -> ProcessParameters:

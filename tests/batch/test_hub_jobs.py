@@ -76,6 +76,14 @@ def test_what_is_refused(read, more, code, where):
     assert caught.value.code == code and where in caught.value.where, caught.value.line()
 
 
+@pytest.mark.parametrize(("process", "counts"), [
+    ("", "auto"), ("process: {bead_width: 8 mm}\n", "bead_width"), ("process: {bead_width: 10 mm}\n", "bead_width"),
+    ("process: {bead_width: 8 mm, fill_width: spacing}\n", "spacing"),
+])
+def test_a_bead_width_that_is_given_is_meant(read, process, counts):
+    assert read(START + process).process.fill_width == counts
+
+
 def test_the_calibration_table_is_beside_the_job(read, tmp_path):
     assert read(START + "process: {bead_model: beads.csv}\n").process.bead_model == str(tmp_path / "beads.csv")
     assert read(START + "process: {bead_model: csw}\n").process.bead_model == "csw"

@@ -191,6 +191,16 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
         assert caught.value.code in ("BAD_VALUE", "BAD_UNIT")
 
 
+def test_a_bead_width_that_a_macro_gives_is_meant(thruster):
+    doc, hub, blades = thruster
+    feature = api.make_developable_feature(doc, blades, hub, **FAST)
+    plain, meant = api.make_toolpath(doc, feature), api.make_toolpath(doc, feature, bead_width=8)
+    assert (plain.FillWidth, meant.FillWidth) == ("auto", "bead_width") and plain.BeadWidth == meant.BeadWidth
+    assert api.result(plain).length != api.result(meant).length
+    plain.FillWidth = "bead_width"
+    assert api.recompute(doc) is None and api.result(plain).length == api.result(meant).length
+
+
 def test_a_document_keeps_the_solids_and_knows_when_they_change(thruster, tmp_path):
     doc, hub, blades = thruster
     feature = api.make_developable_feature(doc, blades, hub, **FAST)

@@ -88,6 +88,11 @@ class ProcessParameters:
         8.0, f.LENGTH, "Width of the bead; held by the bead model. Solids on hubs are filled with beads that wide.", low=0.0,
         open_low=True,
     )
+    fill_width: str = f.parameter(
+        "auto", f.CHOICE, "How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; "
+        "auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.",
+        choices=("auto", "spacing", "bead_width"), advanced=True,
+    )
     wire: WireParameters = f.group(WireParameters, "The feedstock.")
     density: float = f.parameter(
         7.85, f.NUMBER, "Density of the deposit in g/cm\u00b3; tells its mass.", low=0.0, open_low=True

@@ -25,7 +25,7 @@ from ..process.bead_model import BeadModel
 from .hub_layers import ARCS, Slice
 
 SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
-UNTOLD = ProcessParameters().bead_width  # mm; a width that nobody gave and no model holds
+USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
 INSTEAD = {"spiral": "contours", "zigzag": "lines"}  # round a hub
 
 
@@ -123,11 +123,12 @@ def spaced(strategy: DevelopableParameters, process: ProcessParameters) -> Devel
 
 
 def bead_width(strategy: DevelopableParameters, process: ProcessParameters, model: BeadModel | None) -> float:
-    """How wide (mm) beads are: as the bead model holds it or as given, else as the spacing.
+    """How wide (mm) beads count: as `process.fill_width` says.
 
     InputError BEAD_SPACING where the spacing is larger, so that stripes would stay open."""
     spacing, width = strategy.bead_spacing, process.bead_width
-    if model is None and strategy.bead_overlap is None and width == UNTOLD:
+    known = model is not None or strategy.bead_overlap is not None or width != USUAL
+    if process.fill_width == "spacing" or (process.fill_width == "auto" and not known):
         return spacing
     if spacing > width * (1.0 + 1e-9):
         raise InputError(

@@ -34,12 +34,13 @@ def box(turned, thick=24.0):
     return Body("blade", corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1.0]]), faces.astype(np.int64))
 
 
-def planned(hub, turns, thick=24.0, width=8.0, **values):
+def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
     bodies = tuple(box(turn, thick) for turn in turns)
     made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), bodies),), 0.0)
     given = {"layer_height": 12.0, "bead_spacing": 6.0, "order": "feature", **values}
     return developable.plan(
-        made, DevelopableParameters(**given), BuildDirectionParameters(), ProcessParameters(bead_width=width), None
+        made, DevelopableParameters(**given), BuildDirectionParameters(),
+        ProcessParameters(bead_width=width, fill_width=fill_width), None,
     )
 
 
@@ -63,6 +64,17 @@ def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeyp
             assert np.linalg.norm(a.points[0] - b.points[0]) < 1e-4
     planned(hub, (0.1,), fill=fill, fill_angle=0.3)
     assert len(calls) == 5 * layers, "another filling is not the same"
+
+
+@pytest.mark.parametrize(("width", "counts", "inset"), [
+    (8.0, "auto", 3.0), (8.0, "bead_width", 4.0), (8.0, "spacing", 3.0), (10.0, "auto", 5.0), (10.0, "spacing", 3.0),
+])
+def test_the_outermost_bead_ends_at_the_border_as_wide_as_it_counts(width, counts, inset):
+    """A block that is 40 mm high on a cylinder: its outermost contours lie half a bead inside of it above and below."""
+    path = planned("cylinder", (0.0,), width=width, fill_width=counts)
+    outer = [bead.points for _, _, bead in path if bead.ring == 0 and bead.kind == "contour"]
+    assert len(outer) == len(path.layers)
+    assert max(np.ptp(points[:, 2]) for points in outer) == pytest.approx(40.0 - 2.0 * inset)
 
 
 def test_beads_carry_their_kind_and_ring_through_documents():
