@@ -54,7 +54,7 @@ class QuantityField:
         self._add_mark()
         self.line.textEdited.connect(self._keep)
         self.line.textChanged.connect(self._forget)
-        self.line.textChanged.connect(self._begin_in_sight)
+        self.line.cursorPositionChanged.connect(self._begin_in_sight)
         self.box.editingFinished.connect(self._restore)
 
     def _add_mark(self) -> None:
@@ -107,7 +107,7 @@ class QuantityField:
 
     def _begin_in_sight(self, *_: Any) -> None:
         """Where the field is too narrow for the number, its first digits are seen: '1000 m', not '000 mm'."""
-        if not self.box.hasFocus():
+        if not self.box.hasFocus() and not self.line.hasFocus():
             self.line.setCursorPosition(0)
 
     def _restore(self, *_: Any) -> None:
