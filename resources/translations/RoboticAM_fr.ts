@@ -289,6 +289,11 @@
         <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Iterations after which the optimiser gives up on a layer.</source>
         <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
@@ -1917,6 +1922,11 @@
         <translation>Pas de l&apos;angle de remplissage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Fill width</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>First bead of that layer.</source>
         <translation>Premier cordon de cette couche.</translation>
@@ -2195,6 +2205,11 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
         <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
@@ -5087,6 +5102,11 @@
         <translation>cordon {} (0 à {}), {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>bead_width</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/predicted.py"/>
         <source>beads are predicted {0} to {1} mm high, {2} mm in the mean, at layers of {3} mm; set strategy.layer_height to what the beads make{4}</source>
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
@@ -6289,7 +6309,7 @@
     <message>
         <location filename="../../freecad_am/plots/look.py"/>
         <source>limits up to {0} {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>limite {0} {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -6299,7 +6319,7 @@
     <message>
         <location filename="../../freecad_am/plots/look.py"/>
         <source>limits {0} to {1} {2}</source>
-        <translation type="unfinished"></translation>
+        <translation>limites {0} à {1} {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -6945,6 +6965,11 @@
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>something else is being computed; wait until that is done, or cancel it</source>
         <translation>autre chose est en cours de calcul ; attendez que ce soit fini, ou annulez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>spacing</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
