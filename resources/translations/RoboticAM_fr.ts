@@ -291,7 +291,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.</source>
-        <translation type="unfinished"></translation>
+        <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -1924,7 +1924,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Fill width</source>
-        <translation type="unfinished"></translation>
+        <translation>Largeur de remplissage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -2209,7 +2209,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.</source>
-        <translation type="unfinished"></translation>
+        <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
@@ -5104,7 +5104,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>bead_width</source>
-        <translation type="unfinished"></translation>
+        <translation>largeur de cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/predicted.py"/>
@@ -6969,7 +6969,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>spacing</source>
-        <translation type="unfinished"></translation>
+        <translation>distance des cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
