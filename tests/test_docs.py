@@ -159,3 +159,19 @@ def test_decisions_are_numbered_and_whole():
         for heading in ("**Status**", "**Context**", "**Decision**", "**Consequences**"):
             assert heading in text, f"{path.name} lacks {heading}"
         assert f"decisions/{path.name}" in (DOCS / "architecture.md").read_text(encoding="utf-8"), path.name
+
+
+def test_every_tool_has_a_page_and_the_index_lists_it():
+    source = (ROOT / "freecad_am" / "gui" / "commands.py").read_text(encoding="utf-8")
+    tools = re.findall(r'Tool\(\s*"(\w+)", marked\("([^"]+)"\)', source)
+    pages = [(name, f"{icon.replace('_', '-')}.md") for icon, name in tools]
+    index = (DOCS / "tools" / "README.md").read_text(encoding="utf-8")
+    row = r"^\| !\[\]\(\.\./\.\./resources/icons/(\w+)\.svg\) \| \[([^\]]+)\]\(([\w-]+\.md)\)"
+    listed = re.findall(row, index, re.MULTILINE)
+    assert sorted((name, page) for _, name, page in listed) == sorted(pages)
+    assert all(page == f"{icon.replace('_', '-')}.md" for icon, _, page in listed)
+    groups = re.search(r"^GROUPS = \((.*?)^\)", source, re.DOTALL | re.MULTILINE)[1]
+    commands = dict(re.findall(r'"(\w+)": Tool\(\s*"(\w+)"', source))
+    assert [icon for icon, _, _ in listed] == [commands[name] for name in re.findall(r'"(\w+)"', groups)]
+    for name, page in pages:
+        assert (DOCS / "tools" / page).read_text(encoding="utf-8").splitlines()[0] == f"# {name.rstrip('…')}", page

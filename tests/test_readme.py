@@ -93,8 +93,9 @@ def test_packages_are_those_the_launcher_installs():
 def test_tools_have_the_names_of_the_toolbar():
     source = (ROOT / "freecad_am" / "gui" / "commands.py").read_text(encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    tools = re.findall(r'Tool\("\w+", "([^"]+)"', source)
-    assert tools and all(f"**{tool}**" in readme for tool in tools)
+    tools = re.findall(r'Tool\(\s*"\w+", marked\("([^"]+)"\)', source)
+    assert len(tools) == len(re.findall(r"\bTool\(", source.split("def register")[1]))
+    assert [tool for tool in tools if f"**{tool}**" not in readme and f"**[{tool}]" not in readme] == []
 
 
 def test_posts_and_machines_are_told():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writes the parts of the examples beside this script (Chalvin 2020, eqs. 20 to 22; Chalvin 2019, eq. 1), in `walls` and
-in `thruster` (Dai 2020).
+"""Writes the parts of the examples beside this script (Chalvin 2020, eqs. 20 to 22; Chalvin 2019, eq. 1), in `walls`, and
+in `thruster` and `rotor` (after Dai 2020).
 
 Each wall is a surface, so that the wall deposited has exactly the radius of the equation.
 Run it in any Python that finds FreeCAD: python3 resources/examples/make_examples.py
@@ -9,6 +9,7 @@ Run it in any Python that finds FreeCAD: python3 resources/examples/make_example
 from __future__ import annotations
 
 import parts_of_revolution
+import rotor_parts
 import shells_on_parts
 import step_files
 import thruster_parts
@@ -16,6 +17,7 @@ import tubes_on_pipes
 
 WALLS = step_files.HERE / "walls"
 THRUSTER = step_files.HERE / "thruster"
+ROTOR = step_files.HERE / "rotor"
 PLAIN = (
     parts_of_revolution.hemisphere, parts_of_revolution.laval_nozzle, parts_of_revolution.intake_funnel,
     tubes_on_pipes.tube_on_pipe, tubes_on_pipes.pipe,
@@ -45,4 +47,7 @@ if __name__ == "__main__":
     THRUSTER.mkdir(exist_ok=True)
     step_files.write_step(THRUSTER / "spindle.step", thruster_parts.spindle())
     thruster_parts.blades().exportBrep(str(THRUSTER / "blades.brep"))
+    ROTOR.mkdir(exist_ok=True)
+    step_files.write_step(ROTOR / "hub.step", rotor_parts.hub())
+    rotor_parts.blades().exportBrep(str(ROTOR / "blades.brep"))
     step_files.write_stl(WALLS / "scanned-pipe.stl", tubes_on_pipes.pipe_mesh())

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A lesson: a page of docs/tutorials, done step by step as its reader does it, and the pictures that the page shows.
+
+Every click and key goes through the X server. Headings of the page are the steps; a picture is taken within the step that
+shows it. At its end a lesson fails when the page has a step or a picture that was not done.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import FreeCAD as App
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = ROOT / "docs" / "tutorials"
+DIALOG = 30  # s until a dialog has come and gone
+NOISY = ("Report view", "Python console", "Selection view")
+SIDES = ("Combo View", "Model", "Tasks", "Tree view", "Property view")
+TREES = ("Combo View", "Model", "Tree view")
+LIGHT = {"BackgroundColor2": 0xFFFFFFFF, "BackgroundColor3": 0xDCE3EEFF}
+SIDE = 330  # pixels that the tree and the panels get
+
+
+class Lesson:
+    """A page, how far it is done, and the hand that does it."""
+
+    def __init__(self, person, hand, name):
+        self.person, self.hand, self.name = person, hand, name
+        text = (PAGES / f"{name}.md").read_text(encoding="utf-8")
+        parts = re.split(r"^## ", text, flags=re.MULTILINE)[1:]
+        told = {part.splitlines()[0].strip(): re.findall(r"!\[[^\]]*\]\(images/([\w-]+)\.png\)", part) for part in parts}
+        self.told = {heading: pictures for heading, pictures in told.items() if re.match(r"\d+\. ", heading)}
+        self.done, self.taken = [], []
+        self.folder = Path(os.environ.get("ROBOTIC_AM_PICTURES") or person.folder) / "tutorials"
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    # ---- the page
+
+    def step(self, heading):
+        """Begin with a step of the page; it is the next one."""
+        wanted = list(self.told)[len(self.done)]
+        assert heading == wanted, f"{self.name}.md goes on with '{wanted}', not with '{heading}'"
+        self._whole_step()
+        self.done.append(heading)
+
+    def _whole_step(self):
+        """Every picture of the step before was taken."""
+        if self.done:
+            assert self.taken == self.told[self.done[-1]], f"pictures of '{self.done[-1]}'"
+        self.taken = []
+
+    def finish(self):
+        """All of the page was done."""
+        self._whole_step()
+        assert self.done == list(self.told)
+
+    def picture(self, name, path=False, legend=False, machine=False, dialog=False):
+        """What the screen shows now, as the page has it, with what has to be seen on it."""
+        from freecad_am.gui.path import legend as legends
+
+        self.taken.append(name)
+        if not dialog:
+            assert self.person.widgets.QApplication.activeModalWidget() is None
+        self.hand.do("mousemove", 700, 893)  # nothing is lit up, and no tooltip is open
+        self.person.idle(0.5)
+        screen = self.person.widgets.QApplication.primaryScreen()
+        grabbed = screen.grabWindow(0) if self.person.core.qVersion().startswith("5") else screen.grabWindow()
+        window = self.person.window
+        corner = window.mapToGlobal(self.person.core.QPoint(0, 0))
+        shown = grabbed.copy(self.person.core.QRect(corner, window.size()))
+        assert shown.save(str(self.folder / f"{name}.png"))
+        seen = self.pixels()
+        if path:
+            assert colourful(seen) > 250, f"{name}: no path is to be seen"
+        if legend:
+            assert legends.shown(App.ActiveDocument), f"{name}: there is no legend"
+            corner = seen[:220, :60]
+            assert colourful(corner) > 200, f"{name}: the legend is not to be seen"
+        if machine:
+            assert of_machine(seen) > 15000, f"{name}: the machine is not to be seen"
+
+    def pixels(self):
+        """The 3D view as the screen shows it, (height, width, 3) colours 0..255."""
+        screen = self.person.widgets.QApplication.primaryScreen()
+        view = self.person.gui.activeDocument().activeView()
+        grabbed = screen.grabWindow(0) if self.person.core.qVersion().startswith("5") else screen.grabWindow()
+        cut = grabbed.toImage().copy(self.person.core.QRect(self.hand.corner(view), self.person.core.QSize(*view.getSize())))
+        image = cut.convertToFormat(self.person.widgets.QImage.Format_RGB32)
+        rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)
+        return rows[:, : image.width(), 2::-1].astype(int)
+
+    # ---- what a hand does
+
+    def keys(self, *keys):
+        """Keys pressed with the main window in front."""
+        self.person.window.activateWindow()
+        self.person.idle(0.1)
+        self.hand.do("key", *keys)
+        self.person.idle(0.2)
+
+    def in_file_dialog(self, path, trigger):
+        """Do what brings up FreeCAD's dialog for files, type a path there and press Enter."""
+        core, widgets, watch = self.person.core, self.person.widgets, self.person.watch
+        state = {"typing": None, "entered": False}
+
+        def look():
+            dialog = widgets.QApplication.activeModalWidget()
+            if not isinstance(dialog, widgets.QFileDialog) or state["entered"]:
+                return
+            line = dialog.findChild(widgets.QLineEdit, "fileNameEdit")
+            if state["typing"] is None and line.hasFocus():
+                state["typing"] = subprocess.Popen(
+                    ["xdotool", "key", "ctrl+a", "type", "--delay", "5", str(path)])
+            elif state["typing"] is not None and state["typing"].poll() is not None and line.text() == str(path):
+                state["entered"] = True
+                subprocess.Popen(["xdotool", "key", "Return"])
+
+        timer = core.QTimer()
+        timer.timeout.connect(look)
+        watch.awaited = (widgets.QFileDialog,)
+        timer.start(100)
+        try:
+            trigger()
+            self.person.until(lambda: state["entered"], "the file dialog", DIALOG)
+            self.person.until(lambda: widgets.QApplication.activeModalWidget() is None, "the file dialog to close", DIALOG)
+        finally:
+            timer.stop()
+            watch.awaited = ()
+        self.person.idle(0.3)
+
+    def open(self, path):
+        """File, Open."""
+        self.in_file_dialog(path, lambda: self.keys("ctrl+o"))
+
+    def add(self, path):
+        """File, Import: into the same document."""
+        self.in_file_dialog(path, lambda: self.keys("ctrl+i"))
+
+    def save_as(self, path):
+        """File, Save, of a document that has no file yet."""
+        self.in_file_dialog(path, lambda: self.keys("ctrl+s"))
+        assert path.is_file()
+
+    def keep(self, path):
+        """Keep a document beside the pictures: the samples are what tutorials end with."""
+        shutil.copyfile(path, self.folder / path.name)
+
+    def menu(self, title, entry):
+        """An entry of a menu, as 'File', 'Close'."""
+        bar, menus = self.person.window.menuBar(), self.person.window.menuBar().findChildren(self.person.widgets.QMenu)
+        shown = next(menu for menu in menus if menu.title().replace("&", "") == title)
+        for of, wanted in ((bar, title), (shown, entry)):
+            actions = list(of.actions())
+            action = next(one for one in actions if one.text().replace("&", "") == wanted)
+            middle = of.mapToGlobal(of.actionGeometry(action).center())
+            self.hand.at((middle.x(), middle.y()))
+            self.person.idle(0.3)
+
+    def see_all(self):
+        """Isometric, then fit all."""
+        self.hand.click(self.person.button("Std_ViewIsometric"))
+        self.hand.click(self.person.button("Std_ViewFitAll"))
+        self.person.idle(0.3)
+
+    def zoom_to_nozzle(self, notches):
+        """Turn the wheel with the pointer on the nozzle of the simulation."""
+        from freecad_am.gui.simulation import dock
+
+        tip = np.array(dock._open[0].scene.nozzle.matrix.getValue().getValue())[3, :3]
+        view = self.person.gui.activeDocument().activeView()
+        x, y = (getattr(view, "getPointOnViewport", None) or view.getPointOnScreen)(App.Vector(*tip))
+        corner = self.hand.corner(view)
+        self.hand.do("mousemove", corner.x() + x, corner.y() + view.getSize()[1] - 1 - y)
+        for _ in range(notches):
+            self.hand.do("click", 4)
+        self.person.idle(0.3)
+
+    def tool(self, name):
+        """A tool of our toolbar, once it is no longer grey."""
+        button = self.person.button(f"RoboticAM_{name}")
+        self.person.until(button.isEnabled, f"{name} to be enabled", 5)
+        self.hand.click(button)
+
+    def ok(self, name="Ok"):
+        """A button at the top of a task panel."""
+        wanted = getattr(self.person.widgets.QDialogButtonBox, name)
+        boxes = [box for box in self.person.window.findChildren(self.person.widgets.QDialogButtonBox) if box.isVisible()]
+        button = next(box.button(wanted) for box in boxes if box.button(wanted) is not None)
+        self.reveal(button)
+        self.hand.click(button)
+        self.person.panel_closed()
+        self.person.idle(0.3)
+
+    def reveal(self, widget):
+        """Turn the wheel over the margin of a panel until all of a widget is in sight."""
+        for _ in range(40):
+            if widget.visibleRegion().boundingRect().height() >= widget.height():
+                return
+            areas = self.person.window.findChildren(self.person.widgets.QScrollArea)
+            area = next(one for one in areas if one.isVisible() and one.isAncestorOf(widget))
+            margin = area.viewport().mapToGlobal(self.person.core.QPoint(3, area.viewport().height() // 2))
+            below = widget.mapTo(area.viewport(), widget.rect().center()).y() > area.viewport().height() // 2
+            self.hand.do("mousemove", margin.x(), margin.y(), "click", 5 if below else 4)
+        raise AssertionError(f"{widget.objectName()} does not come in sight")
+
+    def enter(self, panel, name, text):
+        """Type over what a field holds, and leave it."""
+        self.reveal(self.person.field(panel, name))
+        self.hand.enter(panel, name, text)
+
+    def choose(self, panel, name, text):
+        """An entry of a list: a click opens it, its first letters find the entry, Enter takes it."""
+        box = self.person.field(panel, name)
+        self.reveal(box)
+        self.hand.click(box)
+        if not box.view().isVisible():  # the panel has moved under the pointer: a hand clicks again
+            self.person.idle(0.5)
+            self.reveal(box)
+            self.hand.click(box)
+        self.person.until(box.view().isVisible, f"the list of {name}", 5)
+        self.hand.do("type", "--delay", 20, text)
+        self.hand.do("key", "Return")
+        self.person.until(lambda: box.currentText() == text, f"{name} to be {text}", 5)
+
+    def close(self, name):
+        """A dock, by the cross in its corner."""
+        dock = self.person.panel(name)
+        self.hand.click(dock.findChild(self.person.widgets.QAbstractButton, "qt_dockwidget_closebutton"))
+
+        def gone():
+            docks = self.person.window.findChildren(self.person.widgets.QDockWidget, name)
+            return not any(one.isVisible() for one in docks)
+
+        self.person.until(gone, f"{name} to close", 5)
+
+    def unfold(self, label):
+        """The arrow before a line of the tree, by keys."""
+        self.hand.click_tree(label)
+        self.hand.do("key", "Right")
+
+    def double_click(self, label):
+        """A line of the tree."""
+        self.hand.click_tree(label)
+        self.hand.do("click", "--repeat", 2, "--delay", 60, 1)
+        self.person.idle(0.3)
+
+    def drag(self, start, end):
+        """Press at a place of the screen, move in steps as a hand does, let go at another."""
+        self.hand.do("mousemove", *start)
+        self.hand.do("mousedown", 1)
+        for share in (0.15, 0.4, 0.7, 1.0):
+            self.hand.do("mousemove", *(round(a + share * (b - a)) for a, b in zip(start, end, strict=True)))
+        self.hand.do("mouseup", 1)
+        self.person.idle(0.3)
+
+
+def colourful(pixels):
+    """How many pixels have the strong colours that only paths and legends have."""
+    return int((pixels.max(axis=2) - pixels.min(axis=2) > 110).sum())
+
+
+def of_machine(pixels):
+    """How many pixels have the greys that links of machines have in any light; the ground is lighter, and bluish."""
+    greatest, least = pixels.max(axis=2), pixels.min(axis=2)
+    return int(((greatest - least < 16) & (greatest < 215) & (least > 40)).sum())
+
+
+@pytest.fixture
+def lesson(person, hand, request):
+    """The lesson of the test's page, in a window as the pictures show it: tree and panels at the left, light ground."""
+    view = App.ParamGet("User parameter:BaseApp/Preferences/View")
+    before = {name: view.GetUnsigned(name) for name in LIGHT}
+    for name, colour in LIGHT.items():
+        view.SetUnsigned(name, colour)
+    docks = person.window.findChildren(person.widgets.QDockWidget)
+    hidden = [dock for dock in docks if dock.objectName() in NOISY and dock.isVisible()]
+    for dock in hidden:
+        dock.hide()
+    for dock in docks:
+        if dock.objectName() in TREES:
+            dock.show()
+    person.idle(0.2)
+    for dock in docks:
+        if dock.objectName() in SIDES and dock.isVisible() and dock.width() < SIDE:
+            person.window.resizeDocks([dock], [SIDE], person.core.Qt.Horizontal)
+            person.idle(0.2)
+    made = Lesson(person, hand, request.module.PAGE)
+    yield made
+    for dock in hidden:
+        dock.show()
+    for name, colour in before.items():
+        view.SetUnsigned(name, colour)

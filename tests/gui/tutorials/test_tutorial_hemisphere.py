@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the rotation about the tool by hand."""
+
+import FreeCAD as App
+
+from freecad_am import api
+from freecad_am.gui.spin_map import dock as docks
+
+PAGE = "hemisphere"
+
+
+def test_the_hemisphere(person, hand, lesson, root, tmp_path):
+    lesson.step("1. Open the part")
+    lesson.open(root / "resources" / "examples" / "hemisphere.step")
+    document = App.ActiveDocument
+    part = document.Objects[0]
+    lesson.see_all()
+    lesson.picture("hemisphere-part")
+
+    lesson.step("2. Make the job")
+    hand.click_face(part, "Face1")
+    lesson.tool("NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    assert "turn about one axis" in panel_text(person, panel)
+    lesson.picture("hemisphere-new-job")
+    steps = document.UndoCount
+    lesson.ok()
+    assert [stage.Status for stage in api.stages_of(document)] == ["up to date"] * 5
+    lesson.picture("hemisphere-job", path=True, legend=True)
+    lesson.keys("ctrl+z")
+    assert api.stages_of(document) == [] and document.UndoCount == steps
+    lesson.keys("ctrl+shift+z")
+    assert [stage.Status for stage in api.stages_of(document)] == ["up to date"] * 5
+
+    lesson.step("3. Tell what your robot can do, and choose thicker layers")
+    lesson.unfold("Job hemisphere")
+    lesson.double_click("Cell")
+    panel = person.panel("RoboticAM_Cell")
+    lesson.enter(panel, "Limits", "paper")
+    lesson.picture("hemisphere-cell", path=True)
+    lesson.ok()
+    lesson.double_click("Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    lesson.enter(panel, "LayerHeight", "5 mm")
+    lesson.ok()
+    assert document.Toolpath.Layers == 15
+    assert [stage.Status for stage in api.stages_of(document)] == ["up to date"] * 5
+
+    lesson.step("4. Look at the path")
+    hand.click_tree("Joint path")
+    lesson.tool("Path")
+    dock = person.panel("RoboticAM_PathDock")
+    lesson.enter(dock, "to_spin", "8")
+    hand.click(person.field(dock, "directions"))
+    assert document.JointPath.ViewObject.ShowDirections
+    assert "joint margin" in person.field(dock, "facts").text()
+    lesson.picture("hemisphere-path", path=True, legend=True)
+    hand.click(person.field(dock, "directions"))
+    hand.click(person.field(dock, "all"))
+    lesson.close("RoboticAM_PathDock")
+
+    lesson.step("5. Play it with the robot")
+    lesson.tool("Simulate")
+    dock = person.panel("RoboticAM_Simulation")
+    clock = person.field(dock, "clock").text()
+    lesson.choose(dock, "factor", "100 ×")
+    hand.click(person.field(dock, "play"))
+    person.idle(2.0)
+    hand.click(person.field(dock, "play"))
+    assert person.field(dock, "clock").text() != clock
+    lesson.zoom_to_nozzle(5)
+    lesson.picture("hemisphere-simulation", machine=True)
+    lesson.close("RoboticAM_Simulation")
+
+    lesson.step("6. Turn the part about the nozzle")
+    lesson.tool("SpinMap")
+    dock = person.panel("RoboticAM_SpinMap")
+    one = docks._open[0]
+    person.until(lambda: one.canvas.painted is not None, "the map", 30)
+    assert person.field(dock, "together").isChecked()
+    planned = one.board.draft_values(one.draft)
+    column = len(planned) // 2
+    start, end = (place(one.canvas, column, planned[column] + turn) for turn in (0.0, -0.5))
+    lesson.drag(start, end)
+    assert abs(one.board.draft_values(one.draft) - planned).min() > 0.2  # all of it has moved
+    assert person.field(dock, "use").isEnabled()
+    lesson.picture("hemisphere-map")
+    hand.click(person.field(dock, "use"))
+    person.until(lambda: document.JointPath.Given, "the joint path to follow the curve", 30)
+    assert document.JointPath.Status == "up to date" and document.Program.Status == "up to date"
+    hand.click(person.field(dock, "free"))
+    person.until(lambda: not document.JointPath.Given, "the planner to choose again", 30)
+    lesson.close("RoboticAM_SpinMap")
+
+    lesson.step("7. Read the program")
+    lesson.double_click("Program")
+    window = person.panel("RoboticAM_ProgramText")
+    assert person.field(window, "text").toPlainText().startswith("/PROG")
+    lesson.picture("hemisphere-program")
+    hand.click(person.field(window, "close"))
+
+    lesson.step("8. Save, and open it again")
+    saved = tmp_path / "hemisphere.FCStd"
+    lesson.save_as(saved)
+    lesson.keep(saved)
+    lesson.menu("File", "Close")
+    assert not App.listDocuments()
+    lesson.open(saved)
+    assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
+    lesson.see_all()
+    lesson.picture("hemisphere-again", path=True, legend=True)
+    lesson.finish()
+
+
+def place(canvas, column, value):
+    """Where a column of the map and a rotation are on the screen."""
+    from PySide import QtCore
+
+    there = canvas.mapToGlobal(QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value)))))
+    return there.x(), there.y()
+
+
+def panel_text(person, panel):
+    """All that a panel says."""
+    return "\n".join(label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible())

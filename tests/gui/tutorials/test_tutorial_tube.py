@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tutorial 2, step by step: a bend on a pipe, stage by stage, with layers at an equal distance everywhere."""
+
+import FreeCAD as App
+
+from freecad_am import api
+
+PAGE = "tube-on-pipe"
+
+
+def test_the_tube(person, hand, lesson, root, tmp_path):
+    examples = root / "resources" / "examples"
+    lesson.step("1. Open the tube and the pipe")
+    lesson.open(examples / "tube-on-pipe.step")
+    lesson.add(examples / "pipe.step")
+    document = App.ActiveDocument
+    tube, _ = document.Objects
+    lesson.see_all()
+    lesson.picture("tube-parts")
+
+    lesson.step("2. Say what grows on what")
+    hand.click_face(tube, "Face1")
+    hand.click_tree("pipe", "ctrl")
+    lesson.tool("WallOnPart")
+    panel = person.panel("RoboticAM_SurfaceFeature")
+    lesson.enter(panel, "LayerHeight", "5 mm")
+    first_layer(person, panel)
+    lesson.choose(panel, "Mode", "symmetry-plane")
+    lesson.enter(panel, "MaxTilt", "85 deg")
+    first_layer(person, panel)
+    lesson.picture("tube-wall", path=True)
+
+    lesson.step("3. See what is wrong with an entry")
+    lesson.enter(panel, "LayerHeight", "0 mm")
+    note = person.field(panel, "LayerHeightNote")
+    person.until(lambda: note.isVisible() and "more than 0 mm" in note.text(), "the note", 10)
+    lesson.picture("tube-error")
+    lesson.enter(panel, "LayerHeight", "5 mm")
+    first_layer(person, panel)
+    lesson.ok()
+    assert document.Feature.Status == "up to date"
+    lesson.keys("ctrl+z")
+    assert document.getObject("Feature") is None
+    lesson.keys("ctrl+shift+z")
+    assert document.Feature.Status == "up to date"
+
+    lesson.step("4. Cut it into layers")
+    hand.click_tree("Feature")
+    lesson.tool("Toolpath")
+    person.panel("RoboticAM_Toolpath")
+    lesson.ok()
+    assert document.Toolpath.Layers == 15
+    hand.click_tree("Toolpath")
+    lesson.tool("Path")
+    dock = person.panel("RoboticAM_PathDock")
+    lesson.choose(dock, "colouring", "local distance")
+    lesson.choose(dock, "look", "tubes")
+    lesson.picture("tube-layers", path=True, legend=True)
+    lesson.close("RoboticAM_PathDock")
+
+    lesson.step("5. Set the robot up")
+    lesson.tool("Cell")
+    panel = person.panel("RoboticAM_Cell")
+    lesson.enter(panel, "Limits", "paper")
+    lesson.enter(panel, "Platform", "40 mm")
+    lesson.enter(panel, "PlatformDiameter", "0 mm")
+    lesson.picture("tube-cell")
+    lesson.ok()
+    assert document.Cell.Status == "up to date"
+
+    lesson.step("6. Plan the joints")
+    lesson.tool("JointPath")
+    person.panel("RoboticAM_JointPath")
+    lesson.ok()
+    assert document.JointPath.Status == "up to date"
+    lesson.see_all()
+    lesson.picture("tube-joints", path=True, legend=True)
+
+    lesson.step("7. Look at joints and speeds")
+    hand.click_tree("Joint path")
+    lesson.tool("Plots")
+    dock = person.panel("RoboticAM_Plots")
+    lesson.choose(dock, "picture", "Joint speeds in %")
+    person.idle(1.5)
+    lesson.picture("tube-plots")
+    lesson.close("RoboticAM_Plots")
+
+    lesson.step("8. Play it")
+    lesson.tool("Simulate")
+    dock = person.panel("RoboticAM_Simulation")
+    lesson.choose(dock, "factor", "50 ×")
+    clock = person.field(dock, "clock").text()
+    hand.click(person.field(dock, "play"))
+    person.idle(2.0)
+    hand.click(person.field(dock, "play"))
+    assert person.field(dock, "clock").text() != clock
+    lesson.zoom_to_nozzle(5)
+    lesson.picture("tube-simulation", machine=True)
+    lesson.close("RoboticAM_Simulation")
+
+    lesson.step("9. Write the program, save, and open it again")
+    lesson.tool("Program")
+    panel = person.panel("RoboticAM_Program")
+    lesson.enter(panel, "ProgramName", "BRANCH")
+    lesson.ok()
+    assert document.Program.Status == "up to date"
+    lesson.double_click("Program")
+    window = person.panel("RoboticAM_ProgramText")
+    assert person.field(window, "text").toPlainText().startswith("/PROG")
+    lesson.picture("tube-program")
+    hand.click(person.field(window, "close"))
+    saved = tmp_path / "tube-on-pipe.FCStd"
+    lesson.save_as(saved)
+    lesson.keep(saved)
+    lesson.menu("File", "Close")
+    assert not App.listDocuments()
+    lesson.open(saved)
+    assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
+    lesson.finish()
+
+
+def first_layer(person, panel):
+    """Until the preview tells of the first layer."""
+    note = person.field(panel, "preview")
+    person.until(lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60)
