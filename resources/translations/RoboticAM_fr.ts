@@ -1004,7 +1004,7 @@
     <message>
         <location filename="../../freecad_am/core/slicing/standing.py"/>
         <source>. Times {0} it would reach {1}: is its file in {2}? Then export it in mm, or give scale: {3} mm with it, as part.scale (in the window: Meshes, Scale)</source>
-        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez scale: {3} mm avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
+        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
