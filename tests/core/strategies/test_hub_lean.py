@@ -104,6 +104,21 @@ def test_nowhere_does_the_torch_turn_faster(surface, fill, most):
     assert f"({most:g} deg/mm)" in told["TURN_LIMITED"].message
 
 
+@SURFACES
+@pytest.mark.parametrize("most", ["inf", "auto"])
+def test_the_lean_is_exact_at_points_and_kept_between_them(surface, most):
+    """Whatever the torch does at corners it leans by 15 deg, to rounding at the points of a bead and to 0.1 deg between."""
+    build = BuildDirectionParameters(tilt=math.radians(15.0), max_turn=most)
+    path = planned(solids(surface, box()), build=build, layer_height=6.0)
+    for _, _, bead in path:
+        lean = angle(bead.tool, normals(surface, bead.points))
+        held = lean[0]
+        assert most == "auto" or abs(held - 15.0) < 1e-9
+        assert np.abs(lean - held).max() < 1e-9
+        points, tool = finer(bead)
+        assert np.abs(angle(tool, normals(surface, points)) - held).max() < 0.1
+
+
 def test_without_a_limit_the_torch_jumps_at_corners_and_nowhere_else():
     build = BuildDirectionParameters(tilt=math.radians(12.0), max_turn="inf")
     path = planned(solids(CYLINDER, box()), build=build, layer_height=12.0)
