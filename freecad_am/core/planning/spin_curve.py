@@ -107,9 +107,13 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
         # about the middle of the bead, so that powers of large angles do not drown the rest
         middle, half = 0.5 * (low[bead] + high[bead]), 0.5 * (high[bead] - low[bead])
         share = np.vander((part.parameter - middle) / half, min(degree, len(part) - 1) + 1, increasing=True)
-        found = np.polynomial.Polynomial(np.linalg.lstsq(share, values[chosen], rcond=None)[0])
-        coefficients = found(np.polynomial.Polynomial([-middle / half, 1.0 / half])).coef
-        result[bead, : len(coefficients)] = coefficients
+        found = np.linalg.lstsq(share, values[chosen], rcond=None)[0]
+        # in the parameter itself, by Horner: the polynomials are few and short, and their class is slow
+        for order in range(len(found) - 1, -1, -1):
+            shifted = result[bead] / half
+            result[bead] *= -middle / half
+            result[bead, 1:] += shifted[:-1]
+            result[bead, 0] += found[order]
     return result
 
 

@@ -75,13 +75,15 @@ class Draft:
         known = [by_place.get(place) for place in source.places]
         points = self.live.points
         width = max([source.parameters.degree + 1, *(len(row) for row in known if row is not None)])
-        value = self._variable(points, self.live.planned)
-        self.coefficients = spin_curve.fitted(points, value, width - 1)
-        whole = len(source.planned.beads) == len(source.places)
-        for row, known_row in zip(self.coefficients, known):
-            if known_row is not None and whole:
-                row[:] = 0.0
-                row[: len(known_row)] = known_row
+        if all(row is not None for row in known) and len(source.planned.beads) == len(source.places):
+            self.coefficients = np.array([np.pad(row, (0, width - len(row))) for row in known])
+        else:
+            self.coefficients = spin_curve.fitted(points, self._variable(points, self.live.planned), width - 1)
+            whole = len(source.planned.beads) == len(source.places)
+            for row, known_row in zip(self.coefficients, known):
+                if known_row is not None and whole:
+                    row[:] = 0.0
+                    row[: len(known_row)] = known_row
         self.first = self.coefficients.copy()
         self.kind = CONSTANT if source.planned.method == CONSTANT else POLYNOMIALS
         rz = source.parameters.rz
