@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import json
 import os
-import sys
 import time
-import traceback
 from statistics import median
+
+from in_window import begin, settle
 
 FRAMES = 6
 OPENINGS = 3
@@ -38,16 +37,6 @@ class Drawn:
         while self.count == count and time.perf_counter() < start + 5.0:
             Gui.updateGui()
         return 1e3 * (time.perf_counter() - start)
-
-
-def settle(seconds: float) -> None:
-    """Let the window come to rest."""
-    import FreeCADGui as Gui
-
-    end = time.perf_counter() + seconds
-    while time.perf_counter() < end:
-        Gui.updateGui()
-        time.sleep(0.01)
 
 
 def vase(like, count: int):
@@ -168,23 +157,10 @@ def _opened(path: str, drawn: bool) -> float:
     return took
 
 
-def go() -> None:
-    """Measure, write, end FreeCAD."""
-    code = 1
-    try:
-        sys.path.insert(0, os.environ["FRAMES_OF"])
-        found = {"frames": frames(os.environ["FRAMES_JOB"]), **opening(os.environ["FRAMES_JOB"])}
-        with open(os.environ["FRAMES_TO"], "w", encoding="utf-8") as file:
-            json.dump(found, file)
-        code = 0
-    except BaseException:
-        print(traceback.format_exc(), file=sys.__stderr__)
-    finally:
-        sys.__stderr__.flush()
-        os._exit(code)
+def both() -> dict[str, object]:
+    """Frames, then opening."""
+    job = os.environ["FRAMES_JOB"]
+    return {"frames": frames(job), **opening(job)}
 
 
-if "FreeCAD" in sys.modules:
-    from PySide import QtCore
-
-    QtCore.QTimer.singleShot(0, go)
+begin(both)

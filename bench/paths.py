@@ -8,15 +8,13 @@ opening: what our results add to opening the same document without them until it
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
+import in_window
 from rows import Row
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -43,16 +41,15 @@ document.saveAs({saved!r})
 
 def run() -> list[Row]:
     """Frames for every number of points, then opening."""
-    freecad = shutil.which("freecad") or shutil.which("FreeCAD")
-    if not freecad or not shutil.which("xvfb-run"):
-        print("bench: no freecad or no xvfb-run: frames are not measured", file=sys.stderr)
+    freecad = in_window.freecad()
+    if freecad is None:
         return []
     with tempfile.TemporaryDirectory() as folder:
         saved = str(Path(folder) / "job.FCStd")
         plain = {key: value for key, value in os.environ.items() if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
         subprocess.run([sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved)], check=True, env=plain,
                        stdin=subprocess.DEVNULL)
-        found = _in_window(freecad, Path(folder), saved)
+        found = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST, FRAMES_JOB=saved)
     rows = [
         Row(f"frame of {one['points']:,} points, {one['what']}; one SoLineSet", one["ours"], one["peer"], "ms",
             REQUIRED[one["what"]])
@@ -62,20 +59,3 @@ def run() -> list[Row]:
     return [*rows, Row(
         f"opening a job of {found['points']:,} points, {found['with']:.2f} s; what results add, and what is allowed", added,
         ALLOWED, "s", 1.0)]
-
-
-def _in_window(freecad: str, folder: Path, saved: str) -> Any:
-    sys.path.insert(0, str(ROOT))
-    from tests.run import SCREEN, private_home
-
-    told = folder / "told.json"
-    env = {**private_home(folder), "FRAMES_TO": str(told), "FRAMES_OF": str(ROOT), "FRAMES_JOB": saved}
-    for name in ("VIRTUAL_ENV", "BENCH_INSIDE"):
-        env.pop(name, None)
-    window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", str(LONGEST)]
-    done = subprocess.run([*window, freecad, str(SCRIPT)], env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          check=False)
-    if not told.is_file():
-        print(done.stderr[-2000:], file=sys.stderr)
-        raise AssertionError("no frames were measured")
-    return json.loads(told.read_text(encoding="utf-8"))

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import json
-import os
-import sys
 import time
-import traceback
 from statistics import mean
+
+from in_window import begin, settle
 
 FRAMES = 40
 SIZES = ((10_000, 1.0, 140), (100_000, 1.0, 1420), (300_000, 1.0, 4280))  # points, layer height, points of a turn
@@ -96,33 +94,4 @@ def frames_of(act) -> list[float]:
     return times[3:]
 
 
-def settle(seconds: float) -> None:
-    """Let the window come to rest."""
-    import FreeCADGui as Gui
-
-    end = time.perf_counter() + seconds
-    while time.perf_counter() < end:
-        Gui.updateGui()
-        time.sleep(0.01)
-
-
-def go() -> None:
-    """Measure all sizes, write them, end FreeCAD."""
-    code = 1
-    try:
-        sys.path.insert(0, os.environ["FRAMES_OF"])
-        found = [measured(layer_height, points) for _, layer_height, points in SIZES]
-        with open(os.environ["FRAMES_TO"], "w", encoding="utf-8") as file:
-            json.dump(found, file)
-        code = 0
-    except BaseException:
-        print(traceback.format_exc(), file=sys.__stderr__)
-    finally:
-        sys.__stderr__.flush()
-        os._exit(code)
-
-
-if "FreeCAD" in sys.modules:
-    from PySide import QtCore
-
-    QtCore.QTimer.singleShot(0, go)
+begin(lambda: [measured(layer_height, points) for _, layer_height, points in SIZES])
