@@ -5144,7 +5144,7 @@
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>beyond a limit</source>
-        <translation>hors limites</translation>
+        <translation>au-delà d&apos;une limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
@@ -6579,7 +6579,7 @@
     <message>
         <location filename="../../freecad_am/gui/spin_map/painting.py"/>
         <source>not allowed, or touching</source>
-        <translation>interdit ou contact</translation>
+        <translation>non permis, ou contact</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>

@@ -20,6 +20,7 @@ HANDLE = 5.0
 TURN = 2.0 * np.pi
 MOST_SEAMS = 120
 TO_TICKS = 6
+ROW = 14.0  # pixels from one row of the legend to the next
 
 
 class Painting:
@@ -151,18 +152,30 @@ class Painting:
             at = bar.left() + bar.width() * float(scale.share(np.array([number]))[0])
             box = QtCore.QRectF(at - 20.0, 14.0, 40.0, line)
             painter.drawText(box, QtCore.Qt.AlignHCenter, f"{number:g}")
-        across = bar.right() + 14.0
-        for text, colour in self.canvas.painted.classes:
-            painter.fillRect(QtCore.QRectF(across, 5.0, 11.0, 11.0), QtGui.QColor.fromRgbF(*colour))
-            across = self._word(painter, across + 15.0, tr(text))
+        classes: list[tuple[str, Any]] = [
+            (tr(text), QtGui.QColor.fromRgbF(*colour)) for text, colour in self.canvas.painted.classes
+        ]
         if self.canvas.painted.hatched.any():
-            box = QtCore.QRectF(across, 5.0, 11.0, 11.0)
-            painter.drawRect(box)
-            painter.fillRect(box, QtGui.QBrush(ink, QtCore.Qt.BDiagPattern))
-            self._word(painter, across + 15.0, tr("not allowed, or touching"))
+            classes.append((tr("not allowed, or touching"), QtGui.QBrush(ink, QtCore.Qt.BDiagPattern)))
+        self._draw_classes(painter, classes, bar.right() + 14.0)
 
-    def _word(self, painter: Any, across: float, text: str) -> float:
-        wide = painter.fontMetrics().boundingRect(text).width() + 4.0
-        box = QtCore.QRectF(across, 2.0, wide, painter.fontMetrics().height())
+    def _draw_classes(self, painter: Any, classes: list[tuple[str, Any]], left: float) -> None:
+        """Swatches with their words, in two rows beside the ramp and its numbers where one has no room for them."""
+        across, down = left, 0.0
+        for text, fill in classes:
+            if down == 0.0 and across > left and across + 15.0 + self._wide(painter, text) > self.canvas.width():
+                across, down = left, ROW
+            box = QtCore.QRectF(across, down + 5.0, 11.0, 11.0)
+            painter.fillRect(box, fill)
+            if isinstance(fill, QtGui.QBrush):
+                painter.drawRect(box)
+            across = self._word(painter, across + 15.0, text, down)
+
+    def _wide(self, painter: Any, text: str) -> float:
+        return float(painter.fontMetrics().boundingRect(text).width()) + 4.0
+
+    def _word(self, painter: Any, across: float, text: str, down: float = 0.0) -> float:
+        wide = self._wide(painter, text)
+        box = QtCore.QRectF(across, down + 2.0, wide, painter.fontMetrics().height())
         painter.drawText(box, QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, text)
         return across + wide + 8.0
