@@ -20,6 +20,7 @@ from PySide import QtCore, QtGui
 
 from ..core.issues import InputError
 from ..objects.expressions import MARK, is_expression
+from .signals import connect
 from .texts import tr
 
 _DIGITS = 10
@@ -52,17 +53,17 @@ class QuantityField:
             self.line.setCursorPosition(0)
         self.first_text = self.line.text()
         self._add_mark()
-        self.line.textEdited.connect(self._keep)
-        self.line.textChanged.connect(self._forget)
-        self.line.cursorPositionChanged.connect(self._begin_in_sight)
-        self.box.editingFinished.connect(self._restore)
+        connect(self.line, "textEdited(QString)", self._keep)
+        connect(self.line, "textChanged(QString)", self._forget)
+        connect(self.line, "cursorPositionChanged(int,int)", self._begin_in_sight)
+        connect(self.box, "editingFinished()", self._restore)
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
         self.mark.setToolTip(tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK))
-        self.mark.triggered.connect(self._begin)
+        connect(self.mark, "triggered(bool)", self._begin)
         self._show_mark()
-        self.line.textChanged.connect(self._show_mark)
+        connect(self.line, "textChanged(QString)", self._show_mark)
 
     def read(self) -> float | str:
         """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""

@@ -53,6 +53,17 @@ def test_what_is_typed_is_what_is_read(person, window):
     assert field.read() == 3.0  # stepped from what was typed
 
 
+def test_a_number_too_long_for_its_field_shows_its_first_digits(person, window):
+    field = QuantityField(123456.5, "mm", "Length")
+    field.box.setFixedWidth(75)
+    window.addWidget(field.box)
+    person.idle(0.2)
+    assert field.line.fontMetrics().boundingRect(field.line.text()).width() > field.line.width() - 30
+    assert field.line.cursorPosition() == 0  # the end that is seen is that of the cursor
+    typed(person, field, "654321.5 mm")
+    assert field.line.cursorPosition() == 0 and field.read() == 654321.5
+
+
 @pytest.mark.parametrize("text", ["1,5 mm", "1,000", "abc", "1 inch", "2 mm mm", " "])
 def test_what_the_field_would_change_unseen_is_refused_and_stays_to_be_seen(person, window, text):
     field = QuantityField(1.0, "mm", "Layer height")
