@@ -57,6 +57,7 @@ class QuantityField:
         connect(self.line, "textChanged(QString)", self._forget)
         connect(self.line, "cursorPositionChanged(int,int)", self._begin_in_sight)
         connect(self.box, "editingFinished()", self._restore)
+        connect(self.box, "editingFinished()", self._begin_in_sight)
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
