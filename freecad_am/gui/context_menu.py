@@ -20,6 +20,7 @@ from .texts import error_line, tr
 
 Act = Callable[[], Any]
 _NAME = "RoboticAM_Menu"
+_MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
 
 
 def of_stage(menu: Any, obj: Any) -> None:
@@ -36,12 +37,25 @@ def of_stage(menu: Any, obj: Any) -> None:
     _add(menu, "Renew", tr("Compute again") if fits else tr("Renew"), lambda: renew(obj, fits))
     if kind in ("joint path", "program"):
         _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(obj), bool(obj.Key))
-    if kind == "joint path":
-        _add(menu, "WriteProgram", tr("Write program…"), lambda: _tool("Program", obj), fits)
-        _of_tool(menu, "SpinMap", tr("Map of the free rotation…"), obj)
-    if kind in ("joint path", "program"):
-        _of_tool(menu, "Plots", tr("Plots…"), obj)
+    for tool, text in _next_tools(kind):
+        _of_tool(menu, tool, text, obj, fits if tool in _MAKE_NEXT else bool(obj.Key))
     _add_inputs(menu, obj)
+
+
+def _next_tools(kind: str) -> list[tuple[str, str]]:
+    """Tools of the toolbar that take a stage of this kind, in the order of the toolbar."""
+    return {
+        "feature": [("Toolpath", tr("Cut into layers…")), ("Inspect", tr("Compare with measured points…"))],
+        "toolpath": [
+            ("JointPath", tr("Plan joint path…")), ("Plots", tr("Plots…")), ("Inspect", tr("Compare with measured points…")),
+            ("ExportPath", tr("Export path…")),
+        ],
+        "joint path": [
+            ("SpinMap", tr("Map of the free rotation…")), ("Program", tr("Write program…")), ("Plots", tr("Plots…")),
+            ("ExportPath", tr("Export path…")),
+        ],
+        "program": [("Plots", tr("Plots…"))],
+    }.get(kind, [])
 
 
 def of_job(menu: Any, group: Any) -> None:
@@ -50,6 +64,8 @@ def of_job(menu: Any, group: Any) -> None:
     _add(menu, "RenewJob", tr("Renew"), lambda: _renew_all(stages), any(obj.Status != UP_TO_DATE for obj in stages))
     paths = [obj for obj in stages if obj.Proxy.kind == "joint path" and obj.Key]
     _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(paths[-1]), bool(paths))
+    if paths:
+        _of_tool(menu, "Plots", tr("Plots…"), paths[-1], True)
     _add(menu, "Shown", tr("Show this job alone"), lambda: show_alone(group))
 
 
@@ -110,10 +126,10 @@ def go_to(obj: Any) -> None:
         obj.ViewObject.Visibility = True
 
 
-def _of_tool(menu: Any, name: str, text: str, obj: Any) -> None:
-    """An entry that uses a tool of the toolbar, where it is there."""
-    if f"RoboticAM_{name}" in Gui.listCommands():
-        _add(menu, name, text, lambda: _tool(name, obj), bool(obj.Key))
+def _of_tool(menu: Any, name: str, text: str, obj: Any, on: bool) -> None:
+    """An entry that uses a tool of the toolbar on an object; of what needs no more than this, `on` tells."""
+    command = Gui.Command.get(f"RoboticAM_{name}")
+    _add(menu, name, text, lambda: _tool(name, obj), on and command is not None and command.isActive())
 
 
 def _tool(name: str, obj: Any) -> None:

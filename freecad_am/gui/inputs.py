@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ..objects.stage import Link, Stage, stage_of
-from . import recorded
+from . import picking, recorded
 from .texts import tr, translated
 
 
@@ -19,6 +19,9 @@ class Input:
 
     label = ""
     widget: Any = None
+
+    def tell(self, text: str) -> None:
+        """Something about it; the panel shows it under the widget."""
 
     @property
     def missing(self) -> str:
@@ -66,10 +69,12 @@ class StageChoice(Input):
 
 
 class ShapeChoice(Input):
-    """A shape with some of its faces, or an axis: what is selected, renewed by a button. `present`: as the link holds it."""
+    """A shape with some of its faces, or an axis: what is selected, renewed by a button; what is not required is none again
+    where nothing is selected. `present`: as the link holds it."""
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
         self.link, self.label, self.present = link, translated(link.label), present
+        self.told = link.required or bool(present)  # whether a macro must say that there is none
         self.document = App.ActiveDocument
         self.widget = QtGui.QWidget()
         self.widget.setToolTip(translated(link.help))
@@ -90,23 +95,34 @@ class ShapeChoice(Input):
         self._show()
 
     def take(self, *_: Any) -> None:
-        """Take what is selected now."""
-        for entry in Gui.Selection.getSelectionEx(self.document.Name):
-            obj, names = entry.Object, list(entry.SubElementNames)
-            if self.link.name == "Axis":
-                self.present = (obj, names[:1])
-                break
-            if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull():
-                self.present = (obj, [name for name in names if name.startswith("Face")])
-                break
+        """Take what is selected now; what cannot be taken is told, and what was taken before stays."""
+        found = self._selected()
+        wrong = "" if found is not None else self._refusal()
+        if found is not None:
+            self.present = (found.obj, list(found.names))
+        elif not self.link.required and not Gui.Selection.getSelection(self.document.Name):
+            self.present, wrong = None, ""
         self._show()
+        self.tell(wrong)
+
+    def _selected(self) -> picking.Pick | None:
+        if self.link.name == "Axis":
+            return picking.selected_line(self.document)
+        picks = picking.selected(self.document)
+        return next((picking.with_faces(pick) for pick in picks if not picking.is_mesh(pick.obj)), None)
+
+    def _refusal(self) -> str:
+        """Why nothing is taken."""
+        meshes = [pick.obj.Label for pick in picking.selected(self.document)]
+        if meshes:
+            return tr("{} is a mesh, which has no exact faces; select a part such as of a STEP file.").format(meshes[0])
+        return picking.refused(self.document) or tr("Nothing is selected: click in the tree or the 3D view first.")
 
     def _show(self) -> None:
-        if self.present is not None:
-            text = " ".join([self.present[0].Label, *self.present[1]])
-            self.text.setText(text)
-            self.text.setCursorPosition(0)
-            self.text.setToolTip(text)
+        text = "" if self.present is None else " ".join([self.present[0].Label, *self.present[1]])
+        self.text.setText(text)
+        self.text.setCursorPosition(0)
+        self.text.setToolTip(text)
 
     @property
     def missing(self) -> str:
@@ -114,9 +130,12 @@ class ShapeChoice(Input):
             return ""
         return tr("Select the shape to deposit, or its faces, and press Use selection.")
 
+    def applied(self) -> None:
+        self.told = self.told or self.present is not None
+
     def arguments(self) -> dict[str, str]:
         if self.present is None:
-            return {self.link.key: "None"} if self.link.required else {}
+            return {self.link.key: "None"} if self.told else {}
         obj, names = self.present
         if self.link.name == "Axis":
             return {"axis": f"({recorded.reference(obj)}, {(names or [''])[0]!r})"}
@@ -142,15 +161,16 @@ class ObjectsChoice(ShapeChoice):
     """Several whole objects with a shape or a mesh: what is selected, renewed by a button; nothing selected, none."""
 
     def __init__(self, link: Link, present: Any) -> None:
-        self.objects, self.told = list(present or ()), bool(present)
+        self.objects = list(present or ())
         super().__init__(link, None, take_now=False)
+        self.told = bool(present)
         self.text.setPlaceholderText(tr("none"))
 
     def take(self, *_: Any) -> None:
         """Take what is selected now."""
-        found = Gui.Selection.getSelection(self.document.Name)
-        self.objects = [obj for obj in found if stage_of(obj) is None and (hasattr(obj, "Shape") or hasattr(obj, "Mesh"))]
+        self.objects = [pick.obj for pick in picking.selected(self.document)]
         self._show()
+        self.tell("" if self.objects else picking.refused(self.document))
 
     def _show(self) -> None:
         text = ", ".join(obj.Label for obj in self.objects)

@@ -17,6 +17,8 @@ from .texts import tr
 
 FACE, EDGE = "Face", "Edge"
 _GROUPS = ("App::Part", "App::DocumentObjectGroup")
+_LINES = ("App::Line", "PartDesign::Line")
+_SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
 _SAME = 1e-6  # mm; of two faces that are the same
 
 
@@ -39,6 +41,30 @@ def selected(document: Any) -> list[Pick]:
                 before = found.get(obj.Name, Pick(obj)).names
                 found[obj.Name] = Pick(obj, (*before, name) if name and name not in before else before)
     return list(found.values())
+
+
+def selected_line(document: Any) -> Pick | None:
+    """The first edge, datum line or axis of a sketch that is selected in a document, or a whole object where none is: what
+    something may turn about. None where nothing is selected."""
+    whole: Pick | None = None
+    for entry in Gui.Selection.getSelectionEx(document.Name, 0):
+        for path in entry.SubElementNames or ("",):
+            pick = _line(entry.Object, path)
+            if pick.names or pick.obj.TypeId in _LINES:
+                return pick
+            whole = whole or pick
+    return whole
+
+
+def _line(top: Any, path: str) -> Pick:
+    obj, name = resolved(top, path)
+    element = path.rsplit(".", maxsplit=1)[-1]
+    if name.startswith(EDGE):
+        return Pick(obj, (name,))
+    if element in _SKETCH_AXES and obj.isDerivedFrom("Sketcher::SketchObject"):
+        return Pick(obj, (element,))
+    leaf = (top.getSubObjectList(path) or [obj])[-1]  # a line of an origin, deep within its part
+    return Pick(leaf if leaf.TypeId in _LINES else obj)
 
 
 def _alone(obj: Any) -> Any:

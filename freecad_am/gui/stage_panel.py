@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import contextlib
+import functools
+import weakref
 from collections.abc import Sequence
 from typing import Any
 
@@ -20,6 +22,7 @@ from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
 from .later import Later
+from .signals import connect
 from .texts import marked, tr, translated, translated_error
 
 MOST_ISSUES = 6
@@ -55,6 +58,7 @@ class StagePanel:
             self.heading = Fold(tr("Inputs"), obj is None)
             for choice in choices:
                 self.notes[choice.label] = self.heading.add(choice.label, choice.widget)
+                choice.tell = functools.partial(type(self).tell, weakref.proxy(self), choice.label)
             self.column.addWidget(self.heading.widget)
         self.first_inputs = self._inputs()
         # by the name that errors give a parameter: its field, how the panel calls it, where it is
@@ -68,7 +72,7 @@ class StagePanel:
         for field, _, _ in self.places.values():
             line = field.widget if isinstance(field.widget, QtGui.QLineEdit) else field.widget.findChild(QtGui.QLineEdit)
             if line is not None and field.row.form in expressions.FOLLOW:
-                line.textChanged.connect(self.later_expressions.ask)
+                connect(line, "textChanged(QString)", self.later_expressions.ask)
         self._show_expressions()
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:

@@ -1532,6 +1532,11 @@
         <translation>Comparer les méthodes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Compare with measured points…</source>
+        <translation>Comparer aux points mesurés…</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Compares measured points with what was planned</source>
         <translation>Compare des points mesurés à ce qui était prévu</translation>
@@ -1575,6 +1580,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>Curve</source>
         <translation>Courbe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Cut into layers…</source>
+        <translation>Découper en couches…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -1840,6 +1850,11 @@
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>Export path</source>
         <translation>Exporter la trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Export path…</source>
+        <translation>Exporter la trajectoire…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_panel.py"/>
@@ -2852,6 +2867,11 @@
         <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>Nothing is selected: click in the tree or the 3D view first.</source>
+        <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arborescence ou la vue 3D.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
         <source>Nothing to be seen: no limit, singularity or speed comes near</source>
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
@@ -3075,6 +3095,11 @@
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
         <source>Plan constant, point-by-point and layer-by-layer on this branch, to look at</source>
         <translation>Planifier constant, point par point et couche par couche sur cette branche, pour regarder</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Plan joint path…</source>
+        <translation>Planifier la trajectoire articulaire…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
@@ -9085,6 +9110,11 @@
         <location filename="../../freecad_am/gui/guess.py"/>
         <source>{} holds {} solids</source>
         <translation>{} contient {} solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>{} is a mesh, which has no exact faces; select a part such as of a STEP file.</source>
+        <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>

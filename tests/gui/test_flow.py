@@ -237,7 +237,7 @@ def test_context_menus_do_what_they_say(person, hemisphere):
     person.select(hemisphere)
     new_job(person)
     found, _menu = entries(person, doc.JointPath)
-    assert {"Edit", "Renew", "Simulate", "WriteProgram", "Input_Toolpath", "Input_Cell"} <= set(found)
+    assert {"Edit", "Renew", "Simulate", "Program", "SpinMap", "Plots", "ExportPath", "Input_Toolpath", "Input_Cell"} <= set(found)
     found["Input_Toolpath"].trigger()
     assert [obj.Name for obj in person.gui.Selection.getSelection()] == ["Toolpath"]
     doc.Feature.LayerHeight = 3
