@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics import machine
-from freecad_am.core.simulation import robot_links, solids, table_links
+from freecad_am.core.simulation import link_rods, robot_links, solids, table_links
 
 NAMES = [name for name, _ in machine.known()]
 ROBOTS = [name for name in NAMES if not machine.load(name).is_table]
@@ -99,3 +99,27 @@ def test_of_tables_the_bearings_stand_still_and_the_last_axis_turns_the_disc_in_
         axis = chain.directions[-1]
         radius = np.linalg.norm(disc.points - (disc.points @ axis)[:, None] * axis, axis=1)
         assert radius.max() == pytest.approx(table_links.RADIUS, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_rods_hold_all_that_is_drawn_of_a_link_and_little_more(name):
+    loaded, made = links_of(name)
+    for link, rods in zip(made, link_rods.of_robot(loaded.chain)):
+        for solid in link:
+            assert any(rod.holds(solid.points).all() for rod in rods)
+        drawn = sum(volume(solid) for solid in link)
+        held = sum(np.pi * rod.length * rod.radius**2 for rod in rods)
+        # plates count as round, and tapering solids as wide as they are at most
+        assert held < 4.0 * drawn
+
+
+def test_of_links_with_a_shape_of_their_own_that_is_held():
+    loaded, _ = links_of("kuka-kr16-2")
+    block = solids.box([300.0, 0.0, 40.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], (700.0, 160.0, 120.0))
+    shapes = [None, None, (block.points, block.triangles), None, None, None, None]
+    plain, made = link_rods.of_robot(loaded.chain), link_rods.of_robot(loaded.chain, shapes)
+    inside = np.random.default_rng(1).uniform([-50, -80, -20], [650, 80, 100], (2000, 3))
+    for points in (block.points, inside):
+        assert np.any([rod.holds(points) for rod in made[2]], axis=0).all()
+    for own, before in list(zip(made, plain))[3:]:
+        assert [rod.radius for rod in own] == [rod.radius for rod in before]
