@@ -23,11 +23,12 @@ class RoboticAMWorkbench(Gui.Workbench):
 
     def Initialize(self):
         """Called when the workbench is opened for the first time."""
-        from freecad_am.gui import commands
+        from freecad_am.gui import commands, whats_this
 
         names = commands.register()
+        whats_this.install()
         self.appendToolbar("Robotic AM", names)
-        self.appendMenu("Robotic AM", names)
+        self.appendMenu("Robotic AM", [*names, "Separator", whats_this.NAME])
 
     def Activated(self):
         """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed."""

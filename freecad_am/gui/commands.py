@@ -9,7 +9,7 @@ from typing import Any
 import FreeCAD as App
 import FreeCADGui as Gui
 
-from . import icons, needs
+from . import icons, needs, whats_this
 from .texts import marked, tr
 
 _PREFIX = "RoboticAM_"
@@ -36,7 +36,7 @@ class Tool:
         """
         return {
             "Pixmap": icons.path(self.icon), "MenuText": self.text, "ToolTip": self.help, "StatusTip": self.help,
-            "CmdType": "AlterDoc NoTransaction ForEdit",
+            "CmdType": "AlterDoc NoTransaction ForEdit", "WhatsThis": whats_this.url(self.name),
         }
 
     def IsActive(self) -> bool:
