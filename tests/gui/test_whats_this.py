@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What's This, by the keys and the mouse: tools and fields lead to their page, and nobody asks for an addon."""
+
+import pytest
+
+from freecad_am.gui import commands, whats_this
+
+
+@pytest.fixture
+def shown(person):
+    """What the window for help shows: the first line of its page, and the note above."""
+
+    def look():
+        windows = [one for one in person.window.findChildren(person.widgets.QDialog, whats_this.NAME) if one.isVisible()]
+        if not windows:
+            return None
+        note = person.field(windows[0], "note")
+        return person.field(windows[0], "page").toPlainText().splitlines()[0], note.text() if note.isVisible() else ""
+
+    yield look
+    for one in whats_this._windows:
+        one.window.hide()
+
+
+def ask(person, hand, widget):
+    person.window.activateWindow()
+    person.idle(0.1)
+    hand.do("key", "shift+F1")
+    person.until(person.widgets.QWhatsThis.inWhatsThisMode, "the mode of What's This", 5)
+    hand.click(widget)
+
+
+def test_every_command_has_its_page():
+    pages = {name: whats_this.page_of(name) for group in commands.GROUPS for name in group}
+    assert whats_this.INDEX not in pages.values() and len(set(pages.values())) == len(pages) == 15
+    assert all((whats_this.PAGES / page).is_file() for page in pages.values())
+
+
+def test_a_tool_leads_to_its_page(person, hand, hemisphere, shown):
+    for command, title in (("Cell", "Cell"), ("SpinMap", "Free Rotation Map")):  # the second is greyed
+        ask(person, hand, person.button(f"RoboticAM_{command}"))
+        person.until(lambda: shown() == (title, ""), f"the page of {command}", 5)  # noqa: B023
+        assert not person.widgets.QWhatsThis.inWhatsThisMode()
+        person.screenshot("whats_this_tool")
+        whats_this._windows[-1].window.close()  # it lies over the toolbar where there is no window manager
+
+
+def test_a_field_leads_to_the_page_of_its_panel_and_is_told(person, hand, hemisphere, shown):
+    person.select(hemisphere)
+    person.click("RoboticAM_Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    field = person.field(panel, "LayerHeight")
+    ask(person, hand, field)
+    person.until(lambda: shown() is not None, "the page", 5)
+    title, note = shown()
+    assert title == "Feature" and note and note in (field.whatsThis(), field.parentWidget().whatsThis())
+    person.screenshot("whats_this_field")
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_links_lead_on_and_the_menu_leads_to_all_tools(person, hemisphere, shown):
+    from PySide import QtCore
+
+    person.gui.runCommand(whats_this.NAME)
+    assert shown() == ("Tools", "")
+    page = whats_this._windows[-1].text
+    page.setSource(page.source().resolved(QtCore.QUrl("../tutorials/README.md")))
+    assert shown()[0] == "Tutorials"
+
+
+def test_what_is_not_ours_is_left_to_freecad(person):
+    combo = person.window.findChild(person.widgets.QDockWidget)
+    assert whats_this._ours(combo) == ("", "")
