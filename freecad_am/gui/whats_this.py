@@ -15,7 +15,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from . import icons
-from .texts import marked, tr
+from .texts import tr
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "tools"
 NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
@@ -44,9 +44,9 @@ class Help:
     """The command that opens the list of tools."""
 
     def GetResources(self) -> dict[str, str]:
-        """Texts; as written, FreeCAD translates them."""
+        """Texts, in the language that the window has when the workbench is opened."""
         return {
-            "MenuText": marked("Help on Robotic AM"), "ToolTip": marked("Opens the pages of the tools"),
+            "MenuText": tr("Help on Robotic AM"), "ToolTip": tr("Opens the pages of the tools"),
             "WhatsThis": url(INDEX),
         }
 

@@ -1152,6 +1152,11 @@
         <translation>Tous les points conviennent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/whats_this.py"/>
+        <source>All tools</source>
+        <translation>Tous les outils</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
         <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
@@ -2162,6 +2167,11 @@
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/whats_this.py"/>
+        <source>Help on Robotic AM</source>
+        <translation>Aide de Robotic AM</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/view_cell.py"/>
         <source>Hide machine</source>
         <translation>Cacher la machine</translation>
@@ -3020,6 +3030,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>One pose is that of the serial zeros, where the controller shows {}.</source>
         <translation>Une pose est celle des zéros en série, où la commande montre {}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/whats_this.py"/>
+        <source>Opens the pages of the tools</source>
+        <translation>Ouvre les pages des outils</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
