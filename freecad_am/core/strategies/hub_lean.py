@@ -21,7 +21,7 @@ from ..geometry.developable import TURN, Array, Developable
 from ..geometry.region import simplified
 from ..parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
 from ..slicing.wall_direction import turn_rates
-from .spread import Line, means, too_fast
+from .spread import Line, Zones, means, too_fast
 
 Mask = NDArray[np.bool_]
 
@@ -198,6 +198,10 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
     for _ in range(ROUNDS):
         s = np.union1d(way, zones.places(way))
         values = means(line, s, zones.stretches(s))
+        more = _within_bends(line, s, zones, values, lean.most)
+        if len(more):
+            s = np.union1d(s, more)
+            values = means(line, s, zones.stretches(s))
         more = _about_normal(s, values, lean.most)
         if len(more):
             s = np.union1d(s, more)
@@ -229,10 +233,28 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
     return Held(flat, points, normal, tool, Turned(1.0, 0.0, float(apart.max()) if touched else 0.0, touched))
 
 
+def _within_bends(line: Line, s: Array, zones: Zones, values: Array, lean: float) -> Array:
+    """Places (m,) mm to add between places s (n,) with their values (n, c) where the heading bends on a short part of a long
+    segment alone: straight from one to the other it would be so far off that the torch leaned by more than FINE less."""
+    at = line.at[(line.at > s[0] + SHORT) & (line.at < s[-1] - SHORT)]
+    at = at[np.diff(at, prepend=-math.inf) >= SHORT]
+    after = np.searchsorted(s, at)
+    at = at[np.minimum(at - s[after - 1], s[after] - at) >= SHORT]
+    off = np.abs(means(line, at, zones.stretches(at))[:, 0] - np.interp(at, s, values[:, 0]))
+    found: Array = at[off > _straight_turn(lean)]
+    return found
+
+
+def _straight_turn(lean: float) -> float:
+    """How far (rad) the torch may go round the normal on a straight way from one side to the other and lean by no more than
+    FINE less."""
+    return 2.0 * math.acos(max(1.0 - 2.0 * FINE / max(math.sin(2.0 * lean), FINE), 0.0))
+
+
 def _about_normal(s: Array, values: Array, lean: float) -> Array:
     """Places (m,) mm to add where the torch goes round the normal by so much between two places s (n,) that on the straight
     way from one side to the other it would lean by more than FINE less."""
-    most = 2.0 * math.acos(max(1.0 - 2.0 * FINE / max(math.sin(2.0 * lean), FINE), 0.0))
+    most = _straight_turn(lean)
     turn, step = np.abs(np.diff(values[:, 0])), np.diff(s)
     count = np.maximum(np.minimum(np.ceil(turn / most), step / SHORT), 1.0).astype(np.intp)
     start = np.repeat(np.arange(len(step)), count - 1)
