@@ -318,6 +318,7 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     document.Sphere.ViewObject.Visibility = False
     person.click("RoboticAM_Path")
     panel = person.panel(dock.NAME)
+    person.field(panel, "single").setChecked(False)  # as another test may have left it
     view = person.gui.activeDocument().activeView()
     view.viewFront()
     person.gui.SendMsgToActiveView("ViewFit")
