@@ -47,6 +47,17 @@ def of(obj: Any, row: Row) -> str:
     return f"{MARK}{text}" if text else ""
 
 
+def broken(obj: Any) -> str:
+    """What to do about an expression of an object that gives nothing any more, '' where there is none such: FreeCAD then
+    computes nothing, and tells nobody but the report view."""
+    for name, text in getattr(obj, "ExpressionEngine", ()):
+        try:
+            obj.evalExpression(text)
+        except Exception:  # FreeCAD's own errors share no base
+            return f"{name} follows the expression {text}, which gives nothing any more; give {name} a value or another one"
+    return ""
+
+
 def _bare(value: str) -> str:
     return value.strip().removeprefix(MARK).strip()
 

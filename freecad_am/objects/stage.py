@@ -23,7 +23,7 @@ import FreeCAD as App
 
 from ..brep.kernel import told
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
-from . import hooks, progress, properties, staleness, store
+from . import expressions, hooks, progress, properties, staleness, store
 from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 
@@ -246,7 +246,7 @@ class Stage:
             broken = _broken(getattr(obj, link.name))
             if broken:
                 return f"{broken} links to nothing, what it showed is gone or was not loaded; choose another {link.name}"
-        return ""
+        return expressions.broken(obj)
 
     def _store(
         self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float

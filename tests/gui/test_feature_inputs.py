@@ -46,15 +46,16 @@ def scene(person):
     return doc
 
 
-def pixel_of(person, hand, wanted):
-    """A place of the screen where the 3D view tells what is wanted, sought in a grid."""
+def pixel_of(person, hand, wanted, room=0):
+    """A place of the screen where the 3D view tells what is wanted, sought in a grid, and around it within `room`."""
     view = person.gui.activeDocument().activeView()
     width, height = view.getSize()
     for step in (16, 7, 3):
         for y in range(8, height - 8, step):
             for x in range(8, width - 8, step):
-                info = view.getObjectInfo((x, y))
-                if info and wanted(info):
+                around = ((0, 0), (room, 0), (-room, 0), (0, room), (0, -room))[: 5 if room else 1]
+                infos = (view.getObjectInfo((x + dx, y + dy)) for dx, dy in around)
+                if all(info and wanted(info) for info in infos):
                     where = hand.corner(view) + person.core.QPoint(x, height - 1 - y)
                     if view.graphicsView().isAncestorOf(person.widgets.QApplication.widgetAt(where)):
                         return where.x(), where.y()
@@ -96,7 +97,12 @@ def done(person, hand):
 def test_a_face_clicked_in_an_assembly_is_a_face_of_its_body(person, hand, scene):
     panel = open_panel(person, hand)
     scene.Link.ViewObject.hide()
-    hand.at(pixel_of(person, hand, lambda info: info["Object"] in ("Body", "Cone") and info["Component"].startswith("Face")))
+    scene.Box.ViewObject.hide()
+
+    def on_body(info):
+        return info["Object"] in ("Body", "Cone") and info["Component"].startswith("Face")
+
+    hand.at(pixel_of(person, hand, on_body, 6))
     person.until(lambda: person.gui.Selection.getSelectionEx(scene.Name, 0), "something to be selected", 5)
     picked = person.gui.Selection.getSelectionEx(scene.Name, 0)[0]
     assert picked.Object.Name == "Outer"
@@ -143,7 +149,8 @@ def test_the_line_of_an_origin_deep_in_the_tree_is_the_axis(person, hand, scene)
     person.select(scene.Profile)
     panel = open_panel(person, hand)
     person.gui.Selection.clearSelection()
-    person.gui.Selection.addSelection(scene.Name, "Outer", f"Body.{scene.Body.Origin.Name}.{origin.Name}.")  # as a click in the tree does
+    path = f"Body.{scene.Body.Origin.Name}.{origin.Name}."
+    person.gui.Selection.addSelection(scene.Name, "Outer", path)  # as a click in the tree does
     use(person, hand, panel, "UseAxis")
     assert person.field(panel, "Axis").text() == origin.Label
     person.gui.Selection.clearSelection()

@@ -57,3 +57,17 @@ def test_a_parameter_cannot_follow_itself_and_words_follow_nothing(doc, part):
         api.change(feature, spacing="=Sheet.height")
     assert feature.ExpressionEngine == [] and feature.LayerHeight.Value == 5.0
     assert App.ActiveDocument is doc
+
+
+def test_an_expression_that_lost_what_it_follows_is_told_until_it_is_mended(doc, part, sheet):
+    feature = api.make_feature(doc, part, layer_height="=Sheet.height / 2")
+    toolpath = api.make_toolpath(doc, feature)
+    doc.removeObject("Sheet")
+    doc.recompute()
+    assert feature.Status == "failed" and toolpath.Status != "up to date"
+    assert feature.Message.startswith("LayerHeight follows the expression Sheet.height / 2, which gives nothing any more")
+    with pytest.raises(InputError, match="gives nothing any more"):
+        api.recompute(feature)
+    api.change(feature, layer_height=7)
+    doc.recompute()
+    assert (feature.Status, toolpath.Status, feature.Message) == ("up to date", "up to date", "")

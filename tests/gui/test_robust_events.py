@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What may go wrong while things are open: undo, redo, copies, closed documents, with every dock and panel looking on."""
+
+import subprocess
+import threading
+from pathlib import Path
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.brep import kernel_process
+from freecad_am.objects.job_group import grouped, is_group
+
+EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
+DOCKS = ("Path", "Plots", "SpinMap", "Simulate")
+
+
+@pytest.fixture
+def job(person, hemisphere):
+    """The document of a job of few layers, in its group."""
+    doc = hemisphere.Document
+    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    toolpath = api.make_toolpath(doc, feature, cell)
+    api.make_program(doc, api.make_joint_path(doc, toolpath, cell), name="CUP")
+    grouped(doc, "Job of a cup", api.stages_of(doc))
+    return doc
+
+
+def statuses(doc):
+    return [obj.Status for obj in api.stages_of(doc)]
+
+
+def docks(person):
+    return [dock for dock in person.window.findChildren(person.widgets.QDockWidget)
+            if dock.objectName().startswith("RoboticAM") and dock.isVisible()]
+
+
+@pytest.fixture
+def watched(person, job):
+    """The job, with all docks that look at it open."""
+    for name in DOCKS:
+        person.select(job.JointPath)
+        person.gui.runCommand(f"RoboticAM_{name}")
+        person.idle(0.4)
+    yield job
+    for dock in docks(person):
+        dock.close()
+    person.idle(0.2)
+
+
+def focus(person, hand):
+    """Click beside the part, so that the keys go to the 3D view."""
+    view = person.gui.activeDocument().activeView()
+    corner = hand.corner(view)
+    hand.at((corner.x() + 6, corner.y() + view.getSize()[1] - 6))
+
+
+def test_undo_and_redo_of_all_stages_under_open_docks(person, hand, watched):
+    names, keys = [obj.Name for obj in api.stages_of(watched)], [obj.Key for obj in api.stages_of(watched)]
+    assert len(docks(person)) >= 3
+    steps = watched.UndoCount
+    for _ in range(steps):
+        focus(person, hand)
+        hand.do("key", "ctrl+z")
+        person.idle(0.3)
+    assert api.stages_of(watched) == []
+    person.idle(0.5)
+    for _ in range(steps):
+        focus(person, hand)
+        hand.do("key", "ctrl+shift+z")
+        person.idle(0.3)
+    assert [obj.Name for obj in api.stages_of(watched)] == names
+    watched.recompute()
+    assert [obj.Key for obj in api.stages_of(watched)] == keys and set(statuses(watched)) == {"up to date"}
+    person.idle(0.5)
+
+
+def test_a_stage_deleted_under_open_docks(person, watched):
+    watched.openTransaction("Delete")
+    watched.removeObject("JointPath")
+    watched.commitTransaction()
+    person.idle(0.5)
+    watched.recompute()
+    person.idle(0.5)
+    watched.undo()
+    person.idle(0.5)
+    watched.recompute()
+    assert set(statuses(watched)) == {"up to date"}
+
+
+def test_a_document_closed_under_open_docks(person, watched):
+    other = App.newDocument("Other")
+    App.closeDocument(watched.Name)
+    person.idle(1.0)
+    ball = other.addObject("Part::Sphere", "Ball")
+    ball.Angle1 = 0
+    other.recompute()
+    api.make_all(other, ball)
+    person.idle(0.5)
+    for name in DOCKS:
+        person.select(other.JointPath)
+        person.gui.runCommand(f"RoboticAM_{name}")
+        person.idle(0.4)
+    assert len(statuses(other)) >= 4
+
+
+def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatch):
+    """The preview's call of the kernel is in another process: it ends with the panel."""
+    monkeypatch.setattr(kernel_process, "FEW", 0)
+    doc = App.newDocument("Preview")
+    blades = api.open_part(doc, str(EXAMPLES / "thruster" / "blades.brep"))
+    spindle = api.open_part(doc, str(EXAMPLES / "thruster" / "spindle.step"))
+    person.gui.Selection.clearSelection()
+    for part in (blades, spindle):
+        person.gui.Selection.addSelection(doc.Name, part.Name)
+    person.click("RoboticAM_SolidsOnHub")
+    panel = person.panel("RoboticAM_DevelopableFeature")
+    person.until(lambda: [one for one in threading.enumerate() if one.name == "Kernel process"], "the preview to begin", 20)
+    App.newDocument("Other")
+    App.closeDocument(doc.Name)
+    person.idle(0.5)
+    if person.gui.Control.activeDialog():
+        person.press("Cancel")
+    person.panel_closed()
+    del panel
+    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the work to end", 20)
+    assert len(kernel_process._idle) <= 1 and not kernel_process._unable
+
+
+def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
+    """FreeCAD's own program is none; without another one the window would wait for the kernel as before."""
+    monkeypatch.setattr(kernel_process, "FEW", 0)
+    doc = App.newDocument("Kernel")
+    pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
+    tube = api.open_part(doc, str(EXAMPLES / "tube-on-pipe.step"))
+    feature = api.make_surface_feature(doc, tube, ["Face1"], pipe)
+    assert feature.Status == "up to date" and not kernel_process._unable
+    assert [process.popen.poll() for process in kernel_process._idle] == [None]
+
+
+def test_a_job_copied_by_keys_into_another_document(person, hand, job):
+    """FreeCAD asks what to copy along, as for everything that has inputs; Return takes all of it."""
+    other = App.newDocument("Copy")
+    person.gui.ActiveDocument = person.gui.getDocument(job.Name)
+    App.setActiveDocument(job.Name)
+    person.idle(0.3)
+    person.select(next(obj for obj in job.Objects if is_group(obj)))
+    asked = []
+
+    def answer():
+        box = person.widgets.QApplication.activeModalWidget()
+        if box is not None and box.objectName() != "RoboticAM_Progress":
+            asked.append(box.windowTitle())
+            subprocess.Popen(["xdotool", "key", "Return"])
+
+    timer = person.core.QTimer()
+    timer.setInterval(400)
+    timer.timeout.connect(answer)
+    timer.start()
+    person.gui.runCommand("Std_Copy")
+    person.idle(0.5)
+    person.gui.ActiveDocument = person.gui.getDocument(other.Name)
+    App.setActiveDocument(other.Name)
+    person.idle(0.3)
+    person.gui.runCommand("Std_Paste")
+    person.idle(0.5)
+    timer.stop()
+    other.recompute()
+    assert len(asked) <= 1 and len(api.stages_of(other)) == 5 and set(statuses(other)) == {"up to date"}
+    assert all(link.Document == other for obj in api.stages_of(other) for link in obj.OutList)
+    App.closeDocument(job.Name)
+    person.idle(0.3)
+    api.change(other.getObject(api.stages_of(other, "feature")[0].Name), layer_height=20)
+    assert set(statuses(other)) == {"up to date"}
+
+
+def test_a_parameter_follows_a_spreadsheet_until_that_goes(person, hand, job):
+    sheet = job.addObject("Spreadsheet::Sheet", "Sizes")
+    sheet.set("A1", "=12 mm")
+    sheet.setAlias("A1", "height")
+    job.recompute()
+    api.change(job.Feature, layer_height="=Sizes.height")
+    layers = job.Toolpath.Layers
+    sheet.set("A1", "=6 mm")
+    job.recompute()
+    assert job.Toolpath.Layers > layers and set(statuses(job)) == {"up to date"}
+    job.openTransaction("Delete")
+    job.removeObject("Sizes")
+    job.commitTransaction()
+    job.recompute()
+    assert job.Feature.Status == "failed" and "Sizes.height" in job.Feature.Message
+    person.idle(0.3)
+    person.double_click(job.Feature)
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    hand.enter(panel, "LayerHeight", "7 mm")
+    person.press("Ok")
+    person.panel_closed()
+    assert job.Feature.LayerHeight.Value == 7.0 and set(statuses(job)) == {"up to date"}
+    while job.getObject("Sizes") is None:
+        job.undo()
+    job.recompute()
+    person.idle(0.3)
+    assert job.Feature.LayerHeight.Value == 6.0 and set(statuses(job)) == {"up to date"}
