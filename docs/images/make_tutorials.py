@@ -4,7 +4,7 @@ with into resources/examples/samples.
 
     python3 docs/images/make_tutorials.py [PAGE...]
 
-Needs what the tests of the window need, and Pillow. Pictures are kept with 256 colours, which takes a fifth of the room.
+Needs what the tests of the window need, and Pillow.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -24,14 +25,15 @@ SAMPLES = ROOT / "resources" / "examples" / "samples"
 GALLERY = ROOT / "docs" / "images" / "gallery"
 SMALL = {  # the pictures of the gallery, and which part of each
     "hemisphere-job": "view", "tube-wall": "all", "tube-layers": "above", "hemisphere-map": "all",
-    "hemisphere-simulation": "left", "tube-plots": "all", "rotor-speeds": "above", "rotor-axes": "left",
+    "hemisphere-simulation": "left", "tube-plots": "all", "rotor-speeds": "above", "rotor-axes": "middle",
 }
 PARTS = {  # pixels: the window without toolbars, the 3D view alone, above a dock, left of one
-    "all": (0, 97, 1398, 870), "view": (334, 98, 1398, 686), "above": (334, 98, 1260, 610), "left": (334, 98, 1040, 488),
+    "all": (0, 97, 1398, 870), "view": (334, 98, 1398, 845), "above": (334, 98, 1270, 590), "left": (334, 98, 1040, 640),
+    "middle": (334, 220, 1040, 845),
 }
-WIDE = 420
+HIGH = 240
+COLOURS, EXACT = 256, 96  # of a picture: how many, and how many of them the most frequent as they are
 RECORDED = ("hemisphere", "tube-on-pipe")  # the documents that are kept
-COLOURS = 256
 
 
 def main(pages: list[str]) -> int:
@@ -55,19 +57,23 @@ def main(pages: list[str]) -> int:
 
 
 def keep(path: Path) -> None:
-    """Write a picture with few colours; edges of text stay as they are, for nothing is dithered."""
+    """Write a picture with few colours, which takes a third of the room: the plain ones of the window stay as they are."""
     with Image.open(path) as picture:
-        few = picture.convert("RGB").quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-        few.save(PICTURES / path.name, optimize=True)
+        whole = picture.convert("RGB")
+    colours, counts = np.unique(np.asarray(whole).reshape(-1, 3), axis=0, return_counts=True)
+    ranked = colours[np.argsort(-counts, kind="stable")]
+    rest = Image.fromarray(ranked[None, EXACT:]).quantize(COLOURS - EXACT, method=Image.Quantize.MAXCOVERAGE)
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([*ranked[:EXACT].ravel().tolist(), *rest.getpalette()[: 3 * (COLOURS - EXACT)]])
+    whole.quantize(palette=palette, dither=Image.Dither.NONE).save(PICTURES / path.name, optimize=True)
 
 
 def shrink(path: Path, part: str) -> None:
     """Write a part of a picture for the gallery."""
     with Image.open(path) as picture:
         cut = picture.convert("RGB").crop(PARTS[part])
-        small = cut.resize((WIDE, round(WIDE * cut.height / cut.width)), Image.Resampling.LANCZOS)
-        small.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-            GALLERY / path.name, optimize=True)
+        small = cut.resize((round(HIGH * cut.width / cut.height), HIGH), Image.Resampling.LANCZOS)
+        small.save(GALLERY / path.name, optimize=True)
 
 
 if __name__ == "__main__":

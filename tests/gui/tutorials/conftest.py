@@ -21,7 +21,8 @@ DIALOG = 30  # s until a dialog has come and gone
 NOISY = ("Report view", "Python console", "Selection view")
 SIDES = ("Combo View", "Model", "Tasks", "Tree view", "Property view")
 TREES = ("Combo View", "Model", "Tree view")
-LIGHT = {"BackgroundColor2": 0xFFFFFFFF, "BackgroundColor3": 0xDCE3EEFF}
+PLAIN = {"Simple": True, "Gradient": False, "RadialGradient": False}
+GROUND = 0xEEF2F7FF  # plain and light: what gets lighter and darker takes room in pictures
 SIDE = 330  # pixels that the tree and the panels get
 
 
@@ -105,10 +106,15 @@ class Lesson:
     def in_file_dialog(self, path, trigger):
         """Do what brings up FreeCAD's dialog for files, type a path there and press Enter."""
         core, widgets, watch = self.person.core, self.person.widgets, self.person.watch
-        state = {"typing": None, "entered": False}
+        state = {"typing": None, "entered": False, "asked": False}
 
         def look():
             dialog = widgets.QApplication.activeModalWidget()
+            if isinstance(dialog, widgets.QDialog) and dialog.windowTitle().startswith("STEP") and not state["asked"]:
+                state["asked"] = True  # FreeCAD 1.0 asks for the code page of a STEP file
+                button = dialog.findChild(widgets.QDialogButtonBox).button(widgets.QDialogButtonBox.Ok)
+                middle = button.mapToGlobal(button.rect().center())
+                subprocess.Popen(["xdotool", "mousemove", str(middle.x()), str(middle.y()), "click", "1"])
             if not isinstance(dialog, widgets.QFileDialog) or state["entered"]:
                 return
             line = dialog.findChild(widgets.QLineEdit, "fileNameEdit")
@@ -121,7 +127,7 @@ class Lesson:
 
         timer = core.QTimer()
         timer.timeout.connect(look)
-        watch.awaited = (widgets.QFileDialog,)
+        watch.awaited = (widgets.QDialog,)
         timer.start(100)
         try:
             trigger()
@@ -273,9 +279,10 @@ def of_machine(pixels):
 def lesson(person, hand, request):
     """The lesson of the test's page, in a window as the pictures show it: tree and panels at the left, light ground."""
     view = App.ParamGet("User parameter:BaseApp/Preferences/View")
-    before = {name: view.GetUnsigned(name) for name in LIGHT}
-    for name, colour in LIGHT.items():
-        view.SetUnsigned(name, colour)
+    before, ground = {name: view.GetBool(name, name == "Gradient") for name in PLAIN}, view.GetUnsigned("BackgroundColor")
+    view.SetUnsigned("BackgroundColor", GROUND)
+    for name, value in PLAIN.items():
+        view.SetBool(name, value)
     docks = person.window.findChildren(person.widgets.QDockWidget)
     hidden = [dock for dock in docks if dock.objectName() in NOISY and dock.isVisible()]
     for dock in hidden:
@@ -292,5 +299,6 @@ def lesson(person, hand, request):
     yield made
     for dock in hidden:
         dock.show()
-    for name, colour in before.items():
-        view.SetUnsigned(name, colour)
+    view.SetUnsigned("BackgroundColor", ground)
+    for name, value in before.items():
+        view.SetBool(name, value)
