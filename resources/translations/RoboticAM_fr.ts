@@ -1539,7 +1539,7 @@
     <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
         <source>Compare with measured points…</source>
-        <translation>Comparer aux points mesurés…</translation>
+        <translation>Comparer à des points mesurés…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -2879,7 +2879,7 @@
     <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>Nothing is selected: click in the tree or the 3D view first.</source>
-        <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arborescence ou la vue 3D.</translation>
+        <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -8230,6 +8230,11 @@
         <location filename="../../freecad_am/core/slicing/equidistant.py"/>
         <source>{0} edges have not two faces, one at ({1}, {2}, {3}) mm from the hub&apos;s base; close the mesh</source>
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/expressions.py"/>
+        <source>{0} follows the expression {1}, which gives nothing any more; give {2} a value or another one</source>
+        <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/expressions.py"/>
