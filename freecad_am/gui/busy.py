@@ -16,6 +16,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..objects import progress
+from .signals import connect
 from .texts import tr, translated
 from .worker import Worker
 
@@ -87,7 +88,7 @@ def _attend(worker: Worker, title: str, dialog: _Dialog) -> None:
 
 
 def _run(loop: Any, flags: Any) -> None:
-    (getattr(loop, "exec_", None) or loop.exec)(flags)  # Qt 5, Qt 6
+    (getattr(loop, "exec", None) or loop.exec_)(flags)  # Qt 6, Qt 5
 
 
 class _Dialog:
@@ -134,7 +135,7 @@ class _Dialog:
         self.box.setCancelButton(self.button)
         for escape in self.box.findChildren(QtGui.QShortcut):  # also where the main window keeps the focus
             escape.setContext(QtCore.Qt.ApplicationShortcut)
-            escape.activatedAmbiguously.connect(self.cancel)  # Qt makes one for each Cancel it was given
+            connect(escape, "activatedAmbiguously()", self.cancel)  # Qt makes one for each Cancel it was given
         self.box.setMinimumWidth(_WIDTH)
         self.box.canceled.connect(self.cancel)
         self.tell(title, None, "")

@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a panel does once nothing has been typed for a moment, and what it computes beside the window."""
+"""What a panel does once nothing has been typed for a moment, and what it computes beside the window.
+
+Neither keeps the panel: one that refers to itself in a circle is there until Python collects cycles, with its fields, long
+after FreeCAD has deleted what they show. FreeCAD 1.0 and 1.1 then take such a field for whatever comes to be at its place
+in memory, and the next panel cannot be made, or FreeCAD crashes.
+"""
 
 from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
 from typing import Any
+from weakref import WeakMethod
 
 from PySide import QtCore
 
@@ -17,10 +23,10 @@ _GONE = (RuntimeError, ReferenceError)  # fields of a closed panel, objects of a
 
 
 class Later:
-    """Calls a function some time after it was last asked to, unless the panel is gone by then."""
+    """Calls a method some time after it was last asked to, unless the panel is gone by then."""
 
     def __init__(self, form: Any, act: Callable[[], None]) -> None:
-        self.act = act
+        self.act = WeakMethod(act)
         self.timer = QtCore.QTimer(form)
         self.timer.setSingleShot(True)
         self.timer.setInterval(WAIT)
@@ -37,8 +43,10 @@ class Later:
             self._act()
 
     def _act(self) -> None:
+        act = self.act()
         with contextlib.suppress(*_GONE):  # FreeCAD has taken fields of a closed panel away before the timer
-            self.act()
+            if act is not None:
+                act()
 
 
 class Background:
@@ -61,7 +69,7 @@ class Background:
         """End what goes on, if anything does; once or more often."""
         if self.worker is not None:
             self.worker.cancel()
-            self.worker = None
+            self.worker = self.show = None
         with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
             self.timer.stop()
 
@@ -70,10 +78,10 @@ class Background:
         self._look()
 
     def _look(self) -> None:
-        worker = self.worker
-        if worker is None or not worker.ended.is_set() or self.show is None:
+        worker, show = self.worker, self.show
+        if worker is None or not worker.ended.is_set() or show is None:
             return
-        self.worker = None
+        self.worker = self.show = None
         self.timer.stop()
         with contextlib.suppress(*_GONE):
-            self.show(worker)
+            show(worker)

@@ -15,6 +15,7 @@ from ..objects.toolpath import Toolpath
 from . import inputs
 from .fit_plot import FitPlot, speeds_told, told
 from .later import Later
+from .signals import connect
 from .stage_panel import StagePanel
 from .texts import tr, translated_error
 
@@ -46,7 +47,8 @@ class ToolpathPanel(StagePanel):
             fold.add_below(field.widget, more)
         self.later = Later(self.form, self._show_fit)
         field.widget.editTextChanged.connect(lambda *_: self._soon(True))
-        self.places[WIDTH][0].widget.findChild(QtGui.QLineEdit).textChanged.connect(lambda *_: self._soon(False))
+        width = self.places[WIDTH][0].widget.findChild(QtGui.QLineEdit)
+        connect(width, "textChanged(QString)", lambda *_: self._soon(False))
         self._show_fit()
 
     def _choose(self, *_: Any) -> None:

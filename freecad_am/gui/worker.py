@@ -44,11 +44,15 @@ class Worker:
         self._thread.start()
 
     def result(self) -> Any:
-        """What the work, which has ended, returned; raises what it raised, Cancelled when it was."""
+        """What the work, which has ended, returned; raises what it raised, once, and Cancelled when it was."""
         if self._cancelled:
             raise Cancelled
-        if self._error is not None:
-            raise self._error
+        error, self._error = self._error, None
+        if error is not None:
+            try:
+                raise error
+            finally:
+                del error  # its traceback refers to here, and to the panel that asked
         return self._value
 
     def cancel(self) -> None:

@@ -58,8 +58,9 @@ class Person:
 
         self.gui, self.core, self.widgets = FreeCADGui, QtCore, QtGui
         self.window = FreeCADGui.getMainWindow()
-        binding = "shiboken2" if QtCore.qVersion().startswith("5") else "shiboken6"
-        self.forget = importlib.import_module(binding).invalidate
+        self.qt = importlib.import_module("shiboken2" if QtCore.qVersion().startswith("5") else "shiboken6")
+        deferred = QtCore.QEvent.DeferredDelete
+        self.deferred = int(getattr(deferred, "value", deferred))  # Qt 6, Qt 5
         self.folder = folder
 
     # ---- time
@@ -68,6 +69,8 @@ class Person:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.widgets.QApplication.processEvents(self.core.QEventLoop.AllEvents, 20)
+            # a test is one event to Qt, which deletes between two what is to be deleted later
+            self.core.QCoreApplication.sendPostedEvents(None, self.deferred)
             time.sleep(0.002)
 
     def until(self, condition, what, seconds=20):
@@ -138,7 +141,7 @@ class Person:
         finally:
             # Python keeps what the window has found, and would take for it whatever comes to be at its place later
             for box in boxes:
-                self.forget(box)
+                self.qt.invalidate(box)
         raise AssertionError(f"no button {standard_button} is to be seen")
 
     def will_answer(self, standard_button):

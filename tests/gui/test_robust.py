@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What may go wrong around a job: it is told in words, without a traceback and without a dialog nobody asked for."""
 
+import gc
 import json
 import os
 import shutil
@@ -184,6 +185,43 @@ def test_a_document_closed_while_a_panel_is_open(person, job, command):
             person.press("Cancel")
     person.panel_closed()
     assert api.stages_of(App.getDocument("Other")) == []
+
+
+def test_closed_panels_leave_nothing_behind(person, job):
+    """Fields are gone with their panel, not when Python collects cycles, or never: they would be taken for later ones."""
+
+    def dead():
+        wrappers = [obj for obj in gc.get_objects() if isinstance(obj, person.core.QObject)]
+        return [obj for obj in wrappers if not person.qt.isValid(obj)]
+
+    def press(name):
+        """Not by what the main window finds, which it keeps."""
+        wanted = getattr(person.widgets.QDialogButtonBox, name)
+        boxes = [box for box in person.widgets.QApplication.allWidgets() if isinstance(box, person.widgets.QDialogButtonBox)]
+        next(box.button(wanted) for box in boxes if box.isVisible() and box.button(wanted) is not None).click()
+        person.idle()
+
+    person.idle(0.5)
+    gc.collect()
+    gc.disable()
+    try:
+        before = len(dead())
+        for command in (*TOOLS, "ExportPath", "Inspect"):
+            for standard_button in ("Cancel", "Ok"):
+                person.select(job.Sphere)
+                person.click(f"RoboticAM_{command}")
+                person.idle(0.5)  # for what is done a moment later
+                press(standard_button)
+                if person.gui.Control.activeDialog():  # OK was refused
+                    press("Cancel")
+                person.panel_closed()
+                for _ in range(20):  # threads may be at work that were cancelled
+                    if len(dead()) <= before:
+                        break
+                    person.idle(0.2)
+                assert len(dead()) <= before, (command, standard_button, {type(obj).__name__ for obj in dead()[before:]})
+    finally:
+        gc.enable()
 
 
 def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monkeypatch):
