@@ -19,6 +19,7 @@ from .path_view import PathView
 from .slider_row import Row
 
 NAME = "RoboticAM_PathDock"
+LINES = 3
 _LAYER_PAGE, _POINT_PAGE = 10, 100
 
 
@@ -52,6 +53,9 @@ class PathDock(Follower):
         self.facts = QtGui.QLabel()
         self.facts.setObjectName("facts")
         self.facts.setWordWrap(True)
+        self.facts.setAlignment(QtCore.Qt.AlignTop)
+        # room for as many lines as they have at most, or the 3D view would change its size with them
+        self.facts.setMinimumHeight(LINES * self.facts.fontMetrics().lineSpacing())
         column.addLayout(self._choices())
         column.addWidget(self.controls)
         grid = QtGui.QGridLayout(self.controls)
