@@ -2,6 +2,7 @@
 """The tree by mouse and keys: what is dragged where it belongs and where not, and what is deleted and brought back."""
 
 import subprocess
+import time
 
 import pytest
 
@@ -80,8 +81,14 @@ def delete(person, hand, label):
     (obj,) = person.gui.Selection.getSelection()
     document, name = obj.Document, obj.Name
     asked = yes_by_mouse(person)
-    hand.do("key", "Delete")
-    person.until(lambda: document.getObject(name) is None, f"{label} to be deleted", 10)
+    for _ in range(3):  # on a busy machine the click may still be at work when the key comes: a person presses it again
+        hand.do("key", "Delete")
+        end = time.monotonic() + 4.0
+        while document.getObject(name) is not None and time.monotonic() < end:
+            person.idle(0.1)
+        if document.getObject(name) is None:
+            break
+    assert document.getObject(name) is None, f"{label} is not deleted"
     person.idle(0.5)
     asked.pop(0).stop()
     return asked
