@@ -67,7 +67,9 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(pers
             dialog.findChild(person.widgets.QDialogButtonBox).button(person.widgets.QDialogButtonBox.Ok).click()
 
     person.core.QTimer.singleShot(300, act)
+    person.watch.awaited = (person.widgets.QDialog,)
     person.gui.showPreferences("Robotic AM", 0)
+    person.watch.awaited = ()
     person.idle(0.3)
     assert done == [True]
     assert preferences.machine() == "kuka-kr16-2" and preferences.process() == {"travel_speed": 12.0}
