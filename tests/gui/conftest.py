@@ -289,7 +289,7 @@ class Hand:
         tree.scrollToItem(item)
         self.person.idle(0.1)
         place = tree.visualItemRect(item).center()
-        place.setX(tree.visualItemRect(item).left() + 25)
+        place.setX(tree.visualItemRect(item).left() + 48)  # on its text: before it FreeCAD 1.0 has an eye, which hides
         where = tree.viewport().mapToGlobal(place)
         return where.x(), where.y()
 
