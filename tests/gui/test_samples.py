@@ -30,7 +30,8 @@ def test_a_sample_is_there_at_once(person, root, tmp_path, monkeypatch, name):
         (stage.Proxy.kind, "up to date") for stage in stages
     ]
     assert {stage.Proxy.kind for stage in stages} == {"cell", "feature", "toolpath", "joint path", "program"}
-    assert computed == [] and [obj.Label for obj in document.Objects if "Touched" in obj.State] == []
+    # FreeCAD 1.0 touches imported shapes of earlier versions, for its names of faces; our stages stay as they are
+    assert computed == [] and [stage.Label for stage in stages if "Touched" in stage.State] == []
     assert document.Toolpath.Layers == len(api.result(document.Toolpath).layers) == SAMPLES[name]
     assert np.isfinite(api.result(document.JointPath).motion.joints).all()
     assert api.result(document.Program).files

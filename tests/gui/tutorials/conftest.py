@@ -157,14 +157,18 @@ class Lesson:
 
     def menu(self, title, entry):
         """An entry of a menu, as 'File', 'Close'."""
-        bar, menus = self.person.window.menuBar(), self.person.window.menuBar().findChildren(self.person.widgets.QMenu)
-        shown = next(menu for menu in menus if menu.title().replace("&", "") == title)
-        for of, wanted in ((bar, title), (shown, entry)):
-            actions = list(of.actions())
-            action = next(one for one in actions if one.text().replace("&", "") == wanted)
-            middle = of.mapToGlobal(of.actionGeometry(action).center())
-            self.hand.at((middle.x(), middle.y()))
-            self.person.idle(0.3)
+        bar = self.person.window.menuBar()
+        opener = self._click_entry(bar, title)
+        self._click_entry(opener.menu(), entry)
+
+    def _click_entry(self, shown, wanted):
+        """Click an entry of the menu bar or of an open menu; the entry."""
+        titles = {action.text().replace("&", "").split("\t")[0]: action for action in shown.actions()}
+        assert wanted in titles, f"no '{wanted}' among {list(titles)}"
+        middle = shown.mapToGlobal(shown.actionGeometry(titles[wanted]).center())
+        self.hand.at((middle.x(), middle.y()))
+        self.person.idle(0.3)
+        return titles[wanted]
 
     def see_all(self):
         """Isometric, then fit all."""
