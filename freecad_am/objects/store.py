@@ -148,7 +148,8 @@ class _Reader:
             return self.slice(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
         if "s" in tree:
             dtype, start, rows, sides, columns = tree["s"]
-            turned = self.slice(start, rows * sides * columns).astype(_DTYPES[dtype], copy=False).reshape(sides, rows, columns)
+            numbers = self.slice(start, rows * sides * columns).astype(_DTYPES[dtype], copy=False)
+            turned = numbers.reshape(sides, rows, columns)
             return np.ascontiguousarray(turned.transpose(1, 0, 2))
         if "b" in tree:
             length, start = tree["b"]

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..issues import NOTE, Issue
-from ..kinematics.cell import Cell
 from ..kinematics.arm_contact import NONE
+from ..kinematics.cell import Cell
 from ..motion import Motion
 from .arm import ArmTouches
 from .pace import Pace
@@ -31,8 +31,9 @@ TOUCHES = "touches"
 @dataclass(frozen=True)
 class Finding:
     """What is to be seen at a row, the first of a run of rows. kind: one of the words above. label: the limit or axis it
-    is about, or an issue's message, or the axis that moves the link ('base' of the first) that touches `other`. value, than: worst margin in degrees or mm and 0; condition and its threshold; speeds
-    achieved and asked, mm/s, of the run's worst row."""
+    is about, or an issue's message, or the axis that moves the link ('base' of the first) that touches `other`. value,
+    than: worst margin in degrees or mm and 0; condition and its threshold; speeds achieved and asked, mm/s, of the run's
+    worst row."""
 
     row: int
     kind: str
