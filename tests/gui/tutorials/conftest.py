@@ -253,8 +253,9 @@ class Lesson:
         self.hand.do("key", "Right")
 
     def double_click(self, label):
-        """A line of the tree."""
+        """A line of the tree, some time after the click that brings it in sight: three clicks in a row are another thing."""
         self.hand.click_tree(label)
+        self.person.idle(0.6)
         self.hand.do("click", "--repeat", 2, "--delay", 60, 1)
         self.person.idle(0.3)
 
