@@ -50,7 +50,9 @@ def main(pages: list[str]) -> int:
                 keep(path)
             GALLERY.mkdir(exist_ok=True)
             for name, part in SMALL.items():
-                shrink(Path(folder) / "tutorials" / f"{name}.png", part)
+                taken = Path(folder) / "tutorials" / f"{name}.png"
+                if taken.exists():
+                    shrink(taken, part)
             SAMPLES.mkdir(exist_ok=True)
             for path in (Path(folder) / "tutorials").glob("*.FCStd"):
                 if path.stem in RECORDED:

@@ -198,10 +198,12 @@ class Lesson:
     def ok(self, name="Ok"):
         """A button at the top of a task panel."""
         wanted = getattr(self.person.widgets.QDialogButtonBox, name)
-        boxes = [box for box in self.person.window.findChildren(self.person.widgets.QDialogButtonBox) if box.isVisible()]
-        button = next(box.button(wanted) for box in boxes if box.button(wanted) is not None)
+        boxes = self.person.window.findChildren(self.person.widgets.QDialogButtonBox)
+        button = next(box.button(wanted) for box in boxes if box.isVisible() and box.button(wanted) is not None)
         self.reveal(button)
         self.hand.click(button)
+        for box in boxes:  # what Python keeps of them would stand for whatever comes to be at their place later
+            self.person.qt.invalidate(box)
         self.person.panel_closed()
         self.person.idle(0.3)
 

@@ -4,6 +4,7 @@
 import FreeCAD as App
 
 from freecad_am import api
+from freecad_am.gui.plots import dock as plots
 
 PAGE = "tube-on-pipe"
 
@@ -80,8 +81,9 @@ def test_the_tube(person, hand, lesson, root, tmp_path):
     hand.click_tree("Joint path")
     lesson.tool("Plots")
     dock = person.panel("RoboticAM_Plots")
+    person.until(lambda: drawn(plots._dock) > 1, "the angles", 20)
     lesson.choose(dock, "picture", "Joint speeds in %")
-    person.idle(1.5)
+    person.until(lambda: drawn(plots._dock) == 1, "all speeds in one picture", 20)  # angles have one for each axis
     lesson.picture("tube-plots")
     lesson.close("RoboticAM_Plots")
 
@@ -117,6 +119,11 @@ def test_the_tube(person, hand, lesson, root, tmp_path):
     lesson.open(saved)
     assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
     lesson.finish()
+
+
+def drawn(dock):
+    """How many charts the canvas of the plots shows, 0 while they are being made."""
+    return len(dock.canvas.drawn.places) if dock.building.worker is None and dock.canvas.ready else 0
 
 
 def first_layer(person, panel):
