@@ -177,6 +177,10 @@ def test_figures_and_names_stay_as_they_are():
     assert phrases.translated("wall", upper) == "WALL"
     assert phrases.translated("{x} is no key y", upper) == "{x} IS NO KEY y"
     assert phrases.translated("of none of these", upper) == "of none of these"
+    phrases = Phrases(["{0} is no {1}", "cell", "joint", "; up to {0} mm off"], ["cell"])
+    assert phrases.translated("<joint> is no joint", upper) == "<joint> IS NO joint"  # a word of a file
+    assert phrases.translated("Box is no cell", upper) == "Box IS NO CELL"
+    assert phrases.translated("Box; up to 2.5 mm off", upper) == "Box; UP TO 2.5 MM OFF"
 
 
 def test_the_template_that_says_more_is_meant():

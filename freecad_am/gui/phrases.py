@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 _FIELD = re.compile(r"\{(\d+)\}")
+_BREAK = re.compile(r"[:;.] ")
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,9 @@ class Template:
 class Phrases:
     """All templates, those that say most first."""
 
-    def __init__(self, templates: Iterable[str]) -> None:
+    def __init__(self, templates: Iterable[str], words: Iterable[str] = ()) -> None:
+        """words: those of the templates without a place that are ours wherever they stand alone; others may be names."""
+        self.words = frozenset(words)
         known = [Template(text) for text in dict.fromkeys(templates)]
         self.plain = {one.literals[0] for one in known if not one.fields}
         self.templates = sorted((one for one in known if one.fields), key=lambda one: -one.weight)
@@ -84,16 +87,15 @@ class Phrases:
 
     def _inner(self, value: str, translate: Callable[[str], str]) -> str:
         """What was put into a text: words of ours, else a name or a number, which stay."""
-        ours = " " in value or (value.islower() and value in self.plain)
-        return self.translated(value, translate) if ours else value
+        return self.translated(value, translate) if " " in value or value in self.words else value
 
     def _apart(self, text: str, translate: Callable[[str], str]) -> str:
-        """A text after the place it is about, 'Box: it is empty'; itself where what follows is of no template either."""
-        at = text.find(": ")
-        while at >= 0:
-            if self.find(text[at + 2:]) is not None:
-                return translate("{}: {}").format(
-                    self._inner(text[:at], translate), self.translated(text[at + 2:], translate)
-                )
-            at = text.find(": ", at + 1)
+        """A text after the place it is about, 'Box: it is empty', or added to one, 'Box; it is empty'; itself where what
+        follows is of no template either."""
+        for at in (match.start() for match in _BREAK.finditer(text)):
+            before = self._inner(text[:at], translate)
+            if text[at] == ":" and self.find(text[at + 2:]) is not None:
+                return translate("{}: {}").format(before, self.translated(text[at + 2:], translate))
+            if self.find(text[at:]) is not None:
+                return before + self.translated(text[at:], translate)
         return text

@@ -14,6 +14,7 @@ from ..core.issues import AmError
 from .phrases import Phrases
 
 CONTEXT = "RoboticAM"
+KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as messages call them
 FOLDER = Path(__file__).resolve().parents[2] / "resources" / "translations"
 
 
@@ -70,4 +71,4 @@ def _translated(text: str, language: str) -> str:
 
 @lru_cache(maxsize=1)
 def _phrases() -> Phrases:
-    return Phrases(json.loads((FOLDER / "messages.json").read_text(encoding="utf-8")))
+    return Phrases(json.loads((FOLDER / "messages.json").read_text(encoding="utf-8")), KINDS)

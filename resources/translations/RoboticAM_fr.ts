@@ -5777,6 +5777,11 @@
         <translation>il ne repose pas sur le moyeu : il passe à {0} à côté de la face, près de {1} ; déplacez-le, ou choisissez sa base{2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/patch.py"/>
+        <source>it does not turn about the axis</source>
+        <translation>elle ne tourne pas autour de l&apos;axe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>it ends before the last move does</source>
         <translation>il finit avant le dernier mouvement</translation>
@@ -5810,6 +5815,11 @@
         <location filename="../../freecad_am/brep/wall.py"/>
         <source>it has an edge along its seam; walls with edges cannot be deposited yet</source>
         <translation>elle a une arête le long de sa couture ; les parois à arêtes ne peuvent pas encore être déposées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch.py"/>
+        <source>it has an edge but no area, so the file is damaged or it does not turn about the axis</source>
+        <translation>elle a une arête mais pas d&apos;aire, donc le fichier est endommagé ou elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/first_layer.py"/>
@@ -5947,6 +5957,11 @@
         <translation>il est comprimé d&apos;une façon que 3MF ne permet pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/patch.py"/>
+        <source>it is cut out or slanted: an edge runs neither around nor along it</source>
+        <translation>elle est découpée ou oblique : une arête n&apos;en fait pas le tour et ne court pas le long d&apos;elle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
         <source>it is cut short after {0} of {1} vertices; export it again</source>
         <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
@@ -6060,6 +6075,11 @@
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>it is not a project in millimetres</source>
         <translation>ce n&apos;est pas un projet en millimètres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch.py"/>
+        <source>it is not of revolution</source>
+        <translation>elle n&apos;est pas de révolution</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall.py"/>
@@ -6727,6 +6747,11 @@
         <translation>ouverte, {:.1f} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>opw gives</source>
+        <translation>opw donne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
         <source>out of reach</source>
         <translation>hors d&apos;atteinte</translation>
@@ -7270,6 +7295,11 @@
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
         <source>the instruction {0} is not understood</source>
         <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>the joint frames give</source>
+        <translation>les repères articulaires donnent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
@@ -7935,6 +7965,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>turn</source>
         <translation>tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>turn rate</source>
+        <translation>rotation par longueur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/surface_directions.py"/>

@@ -51,7 +51,7 @@ class Code:
 
 
 def assigned(statement: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
-    """Names that a statement gives values, with those; of pairs one by one."""
+    """Names that a statement gives values, or entries, with those; of pairs one by one."""
     if isinstance(statement, (ast.AnnAssign, ast.AugAssign)):
         if isinstance(statement.target, ast.Name) and statement.value is not None:
             yield statement.target.id, statement.value
@@ -59,6 +59,8 @@ def assigned(statement: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
         for target in statement.targets:
             if isinstance(target, ast.Name):
                 yield target.id, statement.value
+            elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
+                yield target.value.id, ast.Dict([target.slice], [statement.value])
             elif isinstance(target, ast.Tuple):
                 values = statement.value.elts if isinstance(statement.value, ast.Tuple) else [statement.value]
                 values = values if len(values) == len(target.elts) else [statement.value] * len(target.elts)

@@ -18,7 +18,8 @@ from sources import ROOT, Code, Function, Module, assigned, called
 # what of a call is told to the user: positions of its arguments
 MAKERS: dict[str, set[int]] = {
     "AmError": {1, 2}, "InputError": {1, 2}, "InfeasibleError": {1, 2}, "Issue": {2}, "report": {1}, "progress": {1},
-    "Band": {0}, "Row": {0, 3}, "Chart": {0}, "Quantity": {0}, "Curve": {0}, "Entry": {0},
+    "Band": {0}, "Row": {0, 3},
+    "Patch": {3}, "Chart": {0}, "Quantity": {0}, "Curve": {0}, "Entry": {0},
 }
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}
 _MOST_CASES = 16
@@ -109,8 +110,8 @@ class Templates:
             for loop in node.generators:
                 self._collect(loop.iter, module, function, depth - 1)
         elif isinstance(node, ast.Dict):
-            for value in node.values:
-                self._collect(value, module, function, depth - 1)
+            for part in (*node.keys, *node.values):
+                self._collect(part, module, function, depth - 1)
         elif isinstance(node, (ast.Tuple, ast.List, ast.Set, ast.BoolOp, ast.Starred)):
             for child in ast.iter_child_nodes(node):
                 self._collect(child, module, function, depth - 1)
