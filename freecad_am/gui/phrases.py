@@ -98,4 +98,6 @@ class Phrases:
                 return translate("{}: {}").format(before, self.translated(text[at + 2:], translate))
             if self.find(text[at:]) is not None:
                 return before + self.translated(text[at:], translate)
-        return text
+        parts = text.split("; ")
+        known = len(parts) > 1 and any(self.find(part) is not None for part in parts)
+        return "; ".join(self._inner(part, translate) for part in parts) if known else text

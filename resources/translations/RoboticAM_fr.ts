@@ -3647,6 +3647,11 @@
         <translation>Solides sur moyeu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>Solid{0} ({1} to {2})</source>
+        <translation>Solid{0} ({1} à {2})</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Source</source>
         <translation>Source</translation>
@@ -5022,6 +5027,11 @@
         <translation>au moins {0} et au plus {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>at most {0}</source>
+        <translation>au plus {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/speeds.py"/>
         <source>at {0} short places, {1} mm in all, the deposit is slowed, here to {2} mm/s, for the axes go no faster; up to {3} mm of the bead more than meant lie there{4}</source>
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
@@ -5382,6 +5392,16 @@
         <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>coordinates in {0}</source>
+        <translation>coordonnées en {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>coordinates in {0}, as the file names no unit</source>
+        <translation>coordonnées en {0}, car le fichier ne nomme pas d&apos;unité</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>counter-clockwise</source>
         <translation>sens antihoraire</translation>
@@ -5547,6 +5567,11 @@
         <translation>de {0} à {1} deg</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <source>front splits in {0}</source>
+        <translation>front se divise en {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>front-down-flip</source>
         <translation>avant-bas-retourné</translation>
@@ -5565,6 +5590,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>front-up-noflip</source>
         <translation>avant-haut-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <source>fronts split in {0} each</source>
+        <translation>fronts se divisent chacun en {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/quantity.py"/>
@@ -6690,6 +6720,11 @@
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>of the shape</source>
         <translation>de la forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>of {0} points {1} are kept, evenly</source>
+        <translation>de {0} points {1} sont gardés, également répartis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -8138,6 +8173,16 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>x, y and z are the first three columns</source>
+        <translation>x, y et z sont les trois premières colonnes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>x, y and z are the first three columns of the others</source>
+        <translation>x, y et z sont les trois premières colonnes des autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>x, y and z by their headings</source>
         <translation>x, y et z d&apos;après leurs titres</translation>
     </message>
@@ -8270,6 +8315,11 @@
         <location filename="../../freecad_am/objects/expressions.py"/>
         <source>{0} follows the expression {1}, which gives nothing any more; give {2} a value or another one</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/front_tree.py"/>
+        <source>{0} fronts merge</source>
+        <translation>{0} fronts se rejoignent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/expressions.py"/>
@@ -8835,6 +8885,11 @@
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>{0} points were left out of the fit, the farthest off; the figures have them</source>
         <translation>{0} points ont été laissés hors de l&apos;ajustement, les plus écartés ; les chiffres les contiennent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>{0} points without finite coordinates are left out</source>
+        <translation>{0} points sans coordonnées finies sont laissés de côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>

@@ -23,7 +23,7 @@ MAKERS: dict[str, set[int]] = {
 }
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}
 _MOST_CASES = 16
-_DEPTH = 8
+_DEPTH = 11
 _WORD = re.compile(r"[^\W\d_]{2,}")
 # neither a text nor what holds some
 _OPAQUE = {"len", "round", "float", "int", "sum", "max", "min", "abs", "degrees", "repr", "type", "set", "range"}
@@ -217,7 +217,15 @@ def _values(name: str, function: Function) -> list[ast.expr]:
             names = [one.id for one in ast.walk(node.target) if isinstance(one, ast.Name)]
             if name in names:
                 found.append(node.iter)
+        elif isinstance(node, ast.Call) and _adds_to(node, name):
+            found.append(node.args[-1])
     return found
+
+
+def _adds_to(call: ast.Call, name: str) -> bool:
+    """Whether a call puts something more into a list of this name."""
+    holder = call.func.value if isinstance(call.func, ast.Attribute) else None
+    return getattr(holder, "id", "") == name and called(call) in ("append", "insert", "extend") and bool(call.args)
 
 
 def says_something(template: str) -> bool:
