@@ -99,7 +99,7 @@ class Lesson:
     def keys(self, *keys):
         """Keys pressed with the main window in front."""
         self.person.window.activateWindow()
-        self.person.idle(0.1)
+        self.hand.do("windowfocus", int(self.person.window.winId()))  # as a window manager does, of which there is none
         self.hand.do("key", *keys)
         self.person.idle(0.2)
 
@@ -111,7 +111,7 @@ class Lesson:
         def look():
             dialog = widgets.QApplication.activeModalWidget()
             if isinstance(dialog, widgets.QDialog) and dialog.windowTitle().startswith("STEP") and not state["asked"]:
-                state["asked"] = True  # FreeCAD 1.0 asks for the code page of a STEP file
+                state["asked"] = True  # FreeCAD 1.0 and later ask how to read a STEP file
                 button = dialog.findChild(widgets.QDialogButtonBox).button(widgets.QDialogButtonBox.Ok)
                 middle = button.mapToGlobal(button.rect().center())
                 subprocess.Popen(["xdotool", "mousemove", str(middle.x()), str(middle.y()), "click", "1"])
@@ -144,7 +144,7 @@ class Lesson:
 
     def add(self, path):
         """File, Import: into the same document."""
-        self.in_file_dialog(path, lambda: self.keys("ctrl+i"))
+        self.in_file_dialog(path, lambda: self.menu("File", "Import"))
 
     def save_as(self, path):
         """File, Save, of a document that has no file yet."""
@@ -163,7 +163,7 @@ class Lesson:
 
     def _click_entry(self, shown, wanted):
         """Click an entry of the menu bar or of an open menu; the entry."""
-        titles = {action.text().replace("&", "").split("\t")[0]: action for action in shown.actions()}
+        titles = {action.text().replace("&", "").split("\t")[0].rstrip(".…"): action for action in shown.actions()}
         assert wanted in titles, f"no '{wanted}' among {list(titles)}"
         middle = shown.mapToGlobal(shown.actionGeometry(titles[wanted]).center())
         self.hand.at((middle.x(), middle.y()))
