@@ -65,7 +65,8 @@ def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
     menu = next(
         menu for menu in person.window.menuBar().findChildren(person.widgets.QMenu) if menu.title() == "Robotic AM"
     )
-    assert [action.isSeparator() for action in menu.actions()] == [name == "|" for name in names]
+    help = [True, False]  # below all tools
+    assert [action.isSeparator() for action in menu.actions()] == [name == "|" for name in names] + help
     assert menu.toolTipsVisible()
 
 
