@@ -127,7 +127,6 @@ class _Dialog:
         self.text, self.bar, self.button = QtGui.QLabel(), QtGui.QProgressBar(), QtGui.QPushButton(tr("Cancel"))
         self.text.setObjectName("text")
         self.bar.setObjectName("bar")
-        self.bar.setMinimumWidth(_WIDTH)
         self.button.setObjectName("cancel")
         self.button.setToolTip(tr("Ends the computation; the document stays as it was before"))
         self.box.setLabel(self.text)

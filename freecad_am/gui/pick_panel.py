@@ -175,8 +175,8 @@ class PickPanel(StagePanel):
     def _renew(self) -> None:
         """Begin to compute what is entered, in place of what was before."""
         self.background.cancel()
-        refused = self.marked if self.shown == self.refused else set()
-        for place in set(self.notes) - self.following - refused:
+        refused = set(self.marked) if self.shown == self.refused else set()
+        for place in set(self.notes) - set(self.told) - refused:
             self.tell(place, "")
         lacking = self._lacking()
         if lacking is not None:

@@ -147,6 +147,6 @@ def export(obj: Any, window: Any = None) -> str:
         App.Console.PrintError(error_line(error))
         return translated_error(error)
     preferences.keep("ExportFolder", folder)
-    text = tr("{} files written to {}").format(len(paths), folder)
+    text = tr("Files written to {}: {}").format(folder, len(paths))
     Gui.getMainWindow().statusBar().showMessage(text, 5000)
     return text

@@ -14,6 +14,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from ..core.issues import AmError, InputError
+from ..core.parameters.field import check_value
 from ..objects import expressions, preferences
 from ..objects.progress import Cancelled
 from ..objects.rows import group_of, rows
@@ -50,8 +51,8 @@ class StagePanel:
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
         self.error = self._note("error", WRONG)
-        self.marked: set[str] = set()  # places with an error of OK or Apply
-        self.following: set[str] = set()  # those with what an expression gives
+        self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
+        self.told: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
         self.heading: Any = None
         self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
         if choices:
@@ -68,12 +69,12 @@ class StagePanel:
         self.findings = self._note("findings", "palette(text)")
         self.column.addStretch(1)
         self._show_findings()
-        self.later_expressions = Later(self.form, self._show_expressions)
+        self.later_entries = Later(self.form, self._judge_entries)
         for field, _, _ in self.places.values():
-            line = field.widget if isinstance(field.widget, QtGui.QLineEdit) else field.widget.findChild(QtGui.QLineEdit)
-            if line is not None and field.row.form in expressions.FOLLOW:
-                connect(line, "textChanged(QString)", self.later_expressions.ask)
-        self._show_expressions()
+            own = [field.widget] if isinstance(field.widget, QtGui.QLineEdit) else []
+            for line in own or field.widget.findChildren(QtGui.QLineEdit):
+                connect(line, "textChanged(QString)", self.later_entries.ask)
+        self._judge_entries()
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
             self.say(missing[0])
@@ -168,7 +169,7 @@ class StagePanel:
         if not place:
             self.say(translated_error(error))
             return
-        self.marked.add(place)
+        self.marked[place] = self._entry(place)
         self.tell(place, text)
         widget = self._unfolded(place)
         widget.setFocus()
@@ -200,30 +201,41 @@ class StagePanel:
         self.heading.heading.setChecked(True)
         return next(choice.widget for choice in self.choices if choice.label == place)
 
-    def _show_expressions(self) -> None:
-        """Under each field with an expression what that gives now."""
+    def _entry(self, place: str) -> str:
+        """What is entered at a place, to be compared; '' for an input."""
+        try:
+            return repr(self.places[place][0].value) if place in self.places else ""
+        except InputError as error:
+            return error.message
+
+    def _judge_entries(self) -> None:
+        """Tell under each field what its expression gives or is wrong as typed; an error of OK goes with its entry."""
+        for place, entry in list(self.marked.items()):
+            if self._entry(place) != entry:
+                del self.marked[place]
+                self.tell(place, "")
         for place, (field, _, _) in self.places.items():
-            if field.row.form not in expressions.FOLLOW:
-                continue
-            with contextlib.suppress(InputError, ReferenceError):
-                text = self._given(field)
-                if text is not None:
-                    self.tell(place, text[0], text[1])
-                    self.following.add(place)
-                elif place in self.following:
-                    self.following.discard(place)
+            with contextlib.suppress(ReferenceError):
+                judged = self._judged(field)
+                if judged is not None:
+                    self.tell(place, *judged)
+                    self.told[place] = judged[0]
+                elif self.told.pop(place, None) == self.notes[place].text():
                     self.tell(place, "")
 
-    def _given(self, field: fields.Field) -> tuple[str, bool] | None:
-        """What the expression in a field gives, or what is wrong with it; None where there is none."""
-        value = field.value
-        if not expressions.is_expression(value):
-            return None
+    def _judged(self, field: fields.Field) -> tuple[str, bool] | None:
+        """What the expression in a field gives, or what is wrong with what it holds; None where there is nothing to tell."""
         try:
-            found = self._evaluated(field, value)
+            value = field.value
+            if field.row.form not in expressions.FOLLOW:
+                return None
+            if expressions.is_expression(value):
+                found = self._evaluated(field, value)
+                return f"= {getattr(found, 'UserString', found)}", False
+            check_value(field.row.spec, field.row.inner(value, field.label), field.label)
         except InputError as error:
             return translated(error.message), True
-        return f"= {getattr(found, 'UserString', found)}", False
+        return None
 
     def _evaluated(self, field: fields.Field, value: str) -> Any:
         """An expression's value now, in the unit that a plain entry would have."""

@@ -180,12 +180,18 @@ class Stage:
 
     def _compute(self, obj: Any, key: str) -> bool:
         """Compute and store; whether the inputs are others by then."""
-        started, changes = time.perf_counter(), self.changes
+        started, changes, label = time.perf_counter(), self.changes, obj.Label
         work = self.prepare(obj)
 
         def packed() -> tuple[Outcome, list[float], str]:
-            outcome = work()
-            return outcome, *store.pack(outcome.value, key)
+            try:
+                outcome = work()
+                return outcome, *store.pack(outcome.value, key)
+            except MemoryError:
+                raise InputError(
+                    "NO_MEMORY", label, "there is not enough memory to compute it; give larger steps, such as layer height "
+                    "and chord error, or a smaller part"
+                ) from None
 
         try:
             made = hooks.carry_out(packed, obj.Label)

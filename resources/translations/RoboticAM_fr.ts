@@ -1927,6 +1927,16 @@
         <translation>Fichier</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Files written to {}: {}</source>
+        <translation>Fichiers écrits dans {} : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>Files written: {}</source>
+        <translation>Fichiers écrits : {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Fill</source>
         <translation>Remplissage</translation>
@@ -1973,8 +1983,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>
-        <source>First make a feature: Feature…, Wall on Part… or Solids on Hub….</source>
-        <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce… ou Solides sur moyeu….</translation>
+        <source>First make a feature: Feature…, Wall on Part… and Solids on Hub… do so.</source>
+        <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce… et Solides sur moyeu… le font.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>
@@ -7872,6 +7882,11 @@
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>there is not enough memory to compute it; give larger steps, such as layer height and chord error, or a smaller part</source>
+        <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>there is nothing to be seen in these layers</source>
         <translation>il n&apos;y a rien à voir dans ces couches</translation>
@@ -9195,16 +9210,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>{} counts the other way (sign)</source>
         <translation>{} compte dans l&apos;autre sens (signe)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>{} files written</source>
-        <translation>{} fichiers écrits</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
-        <source>{} files written to {}</source>
-        <translation>{} fichiers écrits dans {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>

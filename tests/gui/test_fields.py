@@ -76,6 +76,21 @@ def test_what_the_field_would_change_unseen_is_refused_and_stays_to_be_seen(pers
     assert field.read() == 3.0
 
 
+def test_what_is_wrong_is_told_while_typing_and_only_as_long_as_it_is_there(person, hemisphere):
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    note = person.field(panel, "PlatformDiameterNote")
+    for text, told in (("abc", "'abc' is not understood"), ("-5", "-5 mm is out of range"), ("1e9", "1e+09 mm is out")):
+        person.type(panel, "PlatformDiameter", text)
+        person.until(lambda told=told: note.isVisible() and note.text().startswith(told), told, 5)
+    person.press("Ok")  # refused
+    assert note.isVisible() and not any(obj.TypeId.startswith("App::FeatureP") for obj in hemisphere.Document.Objects)
+    person.type(panel, "PlatformDiameter", "100 mm")
+    person.until(lambda: not note.isVisible(), "the error to go with what was wrong", 5)
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_an_error_is_told_with_the_name_in_the_panel_and_its_group_opens(person, hemisphere):
     api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
     person.click("RoboticAM_Toolpath")

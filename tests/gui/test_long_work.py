@@ -286,7 +286,8 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
 
     def look(dialog):
         def read():
-            seen.append((person.field(dialog, "text").text(), person.field(dialog, "bar").value()))
+            bar = person.field(dialog, "bar")
+            seen.append((person.field(dialog, "text").text(), bar.value(), bar.geometry().right() < dialog.rect().right()))
             person.screenshot("progress")
             person.field(dialog, "cancel").click()
 
@@ -297,6 +298,7 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
         api.make_toolpath(feature.Document, feature)
     watcher.stop()
     assert seen[0][0] == "Toolpath: counting" and seen[0][1] > 0
+    assert seen[0][2]  # nothing of the bar is cut off
 
 
 def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):

@@ -110,6 +110,22 @@ def test_a_bad_parameter_fails_and_what_follows_waits(job, capfd):
     assert statuses(job) == [OK] * 5
 
 
+def test_too_little_memory_is_told_and_the_last_result_stays(job, monkeypatch):
+    def too_much(obj):
+        def work():
+            raise MemoryError("Unable to allocate 444. PiB")
+
+        return work
+
+    key = job.toolpath.Key
+    monkeypatch.setattr(job.toolpath.Proxy, "prepare", too_much)
+    job.feature.LayerHeight = 9
+    with pytest.raises(InputError, match="Toolpath: there is not enough memory") as caught:
+        api.recompute(job.doc)
+    assert caught.value.code == "NO_MEMORY" and job.toolpath.Status == FAILED
+    assert job.toolpath.Key == key
+
+
 def test_a_failed_document_can_be_saved_opened_and_cured(job, tmp_path):
     job.cell.Machine = "no such robot"
     job.doc.recompute()

@@ -50,7 +50,9 @@ class CellParameters:
     platform: float | Pose = f.parameter(
         5.0, f.LENGTH, "From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it."
     )
-    platform_diameter: float = f.parameter(113.0, f.LENGTH, "Diameter of the platform; counts in clearance.", low=0.0)
+    platform_diameter: float = f.parameter(
+        113.0, f.LENGTH, "Diameter of the platform; counts in clearance.", low=0.0, high=10_000.0
+    )
     mount: str = f.parameter(
         "auto", f.CHOICE, "Which frame sits on the platform: the feature's own, or that of the part file.",
         choices=("auto", "feature", "part"),

@@ -73,7 +73,7 @@ def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
     """
     for field in dataclasses.fields(owner):
         if field.name not in skip:
-            _check_one(spec_of(field), getattr(owner, field.name), f"{prefix}.{field.name}")
+            check_value(spec_of(field), getattr(owner, field.name), f"{prefix}.{field.name}")
 
 
 def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
@@ -81,7 +81,8 @@ def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError
     return InputError("BAD_VALUE", key, f"{value!r} is not known; use one of {', '.join(choices)}")
 
 
-def _check_one(spec: Spec, value: Any, key: str) -> None:
+def check_value(spec: Spec, value: Any, key: str) -> None:
+    """Check one value, in inner units, against its `Spec`. Raises InputError 'BAD_VALUE' naming `key`."""
     if spec.kind == GROUP or (value is None and spec.optional) or (isinstance(value, str) and value in spec.words):
         return
     if spec.kind == CHOICE:

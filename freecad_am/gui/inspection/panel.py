@@ -111,7 +111,7 @@ class InspectionPanel(StagePanel):
             folder = QtGui.QFileDialog.getExistingDirectory(Gui.getMainWindow(), tr("Save figures"), first)
             if folder:
                 paths = api.export(self.obj, folder)
-                Gui.getMainWindow().statusBar().showMessage(tr("{} files written").format(len(paths)), 5000)
+                Gui.getMainWindow().statusBar().showMessage(tr("Files written: {}").format(len(paths)), 5000)
         except AmError as error:
             self.say(translated_error(error))
         except ReferenceError:
