@@ -2,13 +2,26 @@
 """Runs pytest inside the FreeCAD main window:  PYTEST_ARGUMENTS="-q tests/gui" freecad tests/gui_runner.py
 
 Arguments come by environment because FreeCAD opens every further word of its command line as a file. The exit
-status is pytest's; the script never returns to FreeCAD's main loop.
+status is pytest's; the script never returns to FreeCAD's main loop. FAILED_TESTS names a file that gets the tests that failed,
+one a line.
 """
 
 import io
 import os
 import shlex
 import sys
+
+
+class Failures:
+    """Notes the tests that failed, for who may want to run them again."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def pytest_runtest_logreport(self, report):
+        if report.failed and self.path:
+            with open(self.path, "a", encoding="utf-8") as file:
+                file.write(report.nodeid + "\n")
 
 
 def run():
@@ -20,7 +33,9 @@ def run():
         sys.stderr = sys.__stderr__ or os.fdopen(2, "w")
         import pytest
 
-        status = int(pytest.main(shlex.split(os.environ.get("PYTEST_ARGUMENTS", ""))))
+        status = int(pytest.main(
+            shlex.split(os.environ.get("PYTEST_ARGUMENTS", "")), plugins=[Failures(os.environ.get("FAILED_TESTS"))]
+        ))
     except BaseException:
         import traceback
 
