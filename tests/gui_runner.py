@@ -2,8 +2,8 @@
 """Runs pytest inside the FreeCAD main window:  PYTEST_ARGUMENTS="-q tests/gui" freecad tests/gui_runner.py
 
 Arguments come by environment because FreeCAD opens every further word of its command line as a file. The exit
-status is pytest's; the script never returns to FreeCAD's main loop. FAILED_TESTS names a file that gets the tests that failed,
-one a line.
+status is pytest's; the script never returns to FreeCAD's main loop. FAILED_TESTS names a file that gets the tests that
+failed, one a line.
 """
 
 import io
