@@ -87,12 +87,19 @@ class ShapeChoice(Input):
         button = QtGui.QPushButton(tr("Use selection"))
         button.setObjectName(f"Use{link.name}")
         button.setToolTip(tr("Takes what is selected now. {}").format(translated(link.help)))
-        button.clicked.connect(self.take)
+        button.clicked.connect(self._take_selected)
         row.addWidget(self.text)
         row.addWidget(button)
         if take_now and present is None:
             self.take()
         self._show()
+
+    def _take_selected(self, *_: Any) -> None:
+        """The button was pressed, perhaps after the document was closed."""
+        try:
+            self.take()
+        except ReferenceError:
+            self.tell(tr("The document or object of this panel is gone; cancel and open the panel again."))
 
     def take(self, *_: Any) -> None:
         """Take what is selected now; what cannot be taken is told, and what was taken before stays."""

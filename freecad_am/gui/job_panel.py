@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import FreeCAD as App
@@ -107,6 +108,8 @@ class JobPanel:
             picks, wrong = picking.selected(self.document), picking.refused(self.document)
         except (ReferenceError, RuntimeError, NameError):  # the document is closed
             self.close()
+            with contextlib.suppress(RuntimeError):  # so is the panel
+                self.say(tr(CLOSED))
             return
         if picks and picks != self.picks:
             self.picks, self.asked = picks, ""

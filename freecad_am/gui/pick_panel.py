@@ -19,7 +19,7 @@ from .colours import WRONG
 from .later import Background
 from .pick_field import PickField
 from .preview import Draft, Preview
-from .stage_panel import StagePanel
+from .stage_panel import CLOSED, StagePanel
 from .texts import tr, translated, translated_error
 from .wall_nodes import WallNodes
 from .worker import Worker
@@ -132,7 +132,11 @@ class PickPanel(StagePanel):
         field = self.armed
         if field is None or not self.is_open:
             return
-        picks = picking.selected(self.document)
+        try:
+            picks = picking.selected(self.document)
+        except ReferenceError:
+            self._gone()
+            return
         for pick in picks:
             following = self._following(field)
             if field.take(pick):
@@ -161,7 +165,13 @@ class PickPanel(StagePanel):
                 self.shown = now
                 self._renew()
         except ReferenceError:
-            self.close()
+            self._gone()
+
+    def _gone(self) -> None:
+        """The document or the object is no more: say so, before anything else is clicked or typed."""
+        self.close()
+        with contextlib.suppress(RuntimeError):  # so is the panel
+            self.say(tr(CLOSED))
 
     def _entered(self) -> Any:
         texts = []
@@ -170,7 +180,7 @@ class PickPanel(StagePanel):
                 texts.append((field.row.name, field.value))
             except InputError as error:
                 texts.append((field.row.name, error.message))
-        return self._inputs(), texts
+        return self.document.Name, self._inputs(), texts
 
     def _renew(self) -> None:
         """Begin to compute what is entered, in place of what was before."""

@@ -3897,7 +3897,7 @@
         <translation>Le document est fermé ; ouvrez-le de nouveau pour enregistrer ses chiffres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/inputs.py"/>
         <source>The document or object of this panel is gone; cancel and open the panel again.</source>
         <translation>Le document ou l&apos;objet de ce panneau a disparu ; annulez et ouvrez le panneau de nouveau.</translation>
     </message>

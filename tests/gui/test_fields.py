@@ -136,6 +136,18 @@ def test_a_panel_stays_with_its_document(person, hemisphere):
     assert doc.getObject("Cell") is not None and other.getObject("Cell") is None
 
 
+def test_use_selection_after_the_document_was_closed_says_so(person, hemisphere):
+    App.newDocument("Other")
+    App.setActiveDocument(hemisphere.Document.Name)
+    person.click("RoboticAM_Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    App.closeDocument(hemisphere.Document.Name)
+    person.field(panel, "UseSource").click()
+    person.until(lambda: "is gone" in person.panel_error(panel), "the panel to say so", 5)
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_a_panel_whose_object_is_gone_says_so(person, hemisphere):
     feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
     person.double_click(feature)
