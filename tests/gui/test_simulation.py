@@ -228,6 +228,21 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     assert not simulation.scene.machine.bad.all()
 
 
+def test_a_robot_that_reaches_nothing_stands_in_one_piece(person, hemisphere):
+    path = job(hemisphere)
+    path.Cell.DepositionPoint = App.Placement(App.Vector(5000, -630, 650), App.Rotation())
+    hemisphere.Document.recompute()
+    assert path.Status == "infeasible"
+    panel, simulation = opened(person, path)
+    person.screenshot("simulation_out_of_reach")
+    assert person.field(panel, "doing").text() == "out of reach"
+    cell, scene = simulation.run.cell, simulation.scene
+    base = frames.inverse(matrix(scene.machine.transforms[0]))
+    drawn = np.array([base @ matrix(transform) for transform in scene.machine.transforms])
+    want = cell.machine.chain.links(np.zeros(6))
+    assert np.abs(drawn - frames.inverse(want[0]) @ want).max() < 5e-3
+
+
 def test_a_link_that_touches_turns_red_and_is_told(person, hemisphere):
     # so wide a platform meets the forearm wherever the wrist is bent much
     path = job(hemisphere, limits="paper", platform_diameter=320.0)

@@ -18,7 +18,7 @@ from pivy import coin
 
 from ...core.geometry import frames
 from ...core.kinematics.arm_contact import NONE
-from ...core.simulation.placing import at_rest, placing
+from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
 from ..lines import Array, Lines
@@ -59,6 +59,7 @@ class Scene:
             part.addChild(child)
         for child in (self.machine.node, nozzle, part):
             self.root.addChild(child)
+        self._place(rest)  # where the machine stays as long as no point is reached
         self._fill()
         self.camera, self.camera_text = view.getCameraNode().copy(), view.getCamera()
         self.graph = view.getSceneGraph()
@@ -91,10 +92,7 @@ class Scene:
     def show(self, row: int, joints: Array, position: Array, running: bool, bad: NDArray[np.bool_]) -> None:
         """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
         if np.isfinite(joints).all():
-            place = placing(self.run.cell, joints)
-            self.machine.pose(self.to_view @ place.links)
-            move(self.part, self.to_view @ place.part)
-            move(self.nozzle, self.to_view @ place.nozzle)
+            self._place(placing(self.run.cell, joints))
         self.machine.paint(bad)
         done = int(self.rows_before[row if running else row + 1])
         if done != self.deposit.end:
@@ -104,6 +102,11 @@ class Scene:
         self.last.show(growing)
         if growing:
             self.last.set(np.stack([motion.position[row - 1], position]), [2])
+
+    def _place(self, place: Placing) -> None:
+        self.machine.pose(self.to_view @ place.links)
+        move(self.part, self.to_view @ place.part)
+        move(self.nozzle, self.to_view @ place.nozzle)
 
     # ---- the end
 
