@@ -98,6 +98,23 @@ def test_the_picture_is_what_core_computes(person, hemisphere):
     assert docks._open == []
 
 
+def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere):
+    """Axes with limits have room for a whole turn from some seams only: what is feasible must not look lost."""
+    path = job(hemisphere, limits="maker")
+    planned = api.result(path).joint_path
+    toolpath = api.result(path.Toolpath)
+    moved = [
+        (other.layer, other.index) for (_, _, bead), other in zip(toolpath, planned.beads)
+        if np.linalg.norm(bead.points[0] - other.bead.points[0]) > 1.0
+    ]
+    assert moved
+    _, one = opened(person, path)
+    followed = one.draft.followed(live=False)
+    sums = spin_curve.sums(followed)
+    assert (sums.lost, sums.wound) == (0, 0) and sums.margin >= 0.0
+    np.testing.assert_allclose(followed.joints, np.concatenate([bead.joints for bead in planned.beads]), atol=1e-9)
+
+
 def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):
     path = job(hemisphere)
     panel, one = opened(person, path)

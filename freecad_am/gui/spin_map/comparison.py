@@ -38,9 +38,10 @@ class Comparison:
         return self.background.worker is not None
 
     def start(self, source: Source, task: Task) -> None:
-        """Plan the beads of a joint path by all methods."""
+        """Plan the beads of the toolpath, from their own seams, by all methods."""
+        beads = tuple(bead for _, _, bead in source.toolpath)
         self.background.start(
-            lambda: spin_curve.compared(task, source.beads, source.places, progress.report), self._show
+            lambda: spin_curve.compared(task, beads, source.places, progress.report), self._show
         )
         self.timer.start()
         self._tell()

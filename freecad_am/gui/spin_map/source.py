@@ -32,7 +32,8 @@ from ..link_meshes import meshes_of
 @dataclass(frozen=True)
 class Source:
     """All that is read of the document. objects: names of those it was read from. beads: of the toolpath, with their places
-    (layer, index). width: mm of beads that tell none. shapes: meshes that a user gave the links of the robot."""
+    (layer, index), from the seams that the plan moved them to. width: mm of beads that tell none. shapes: meshes that a user
+    gave the links of the robot."""
 
     document: str
     name: str
@@ -87,6 +88,18 @@ def source_of(obj: Any) -> Source:
         document=obj.Document.Name, name=obj.Name, title=obj.Label,
         objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))), cell=cell,
         parameters=obj.Proxy.parameters(obj, JointParameters), toolpath=toolpath, planned=value.joint_path,
-        beads=tuple(bead for _, _, bead in toolpath), places=tuple((layer, index) for layer, index, _ in toolpath),
+        beads=_as_run(toolpath, value.joint_path), places=tuple((layer, index) for layer, index, _ in toolpath),
         width=obj.Toolpath.Proxy.parameters(obj.Toolpath, ProcessParameters).bead_width, shapes=meshes_of(cell.machine),
     )
+
+
+def _as_run(toolpath: Toolpath, planned: JointPath) -> tuple[Bead, ...]:
+    """The beads of a toolpath as the plan runs them: it may start a closed one elsewhere, where an axis then has the room
+    for it that it has not from its own seam. Those that it runs in pieces, as they are."""
+    run = {(path.layer, path.index): path.bead for path in planned.beads}
+    whole = len(run) == len(planned.beads) == sum(1 for _ in toolpath)
+    found = []
+    for layer, index, bead in toolpath:
+        other = run.get((layer, index), bead)
+        found.append(other if whole and bead.closed and len(other) == len(bead) else bead)
+    return tuple(found)
