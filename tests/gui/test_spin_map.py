@@ -112,7 +112,10 @@ def test_a_plan_that_moves_seams_is_shown_as_it_runs(person, hemisphere):
     followed = one.draft.followed(live=False)
     sums = spin_curve.sums(followed)
     assert (sums.lost, sums.wound) == (0, 0) and sums.margin >= 0.0
-    np.testing.assert_allclose(followed.joints, np.concatenate([bead.joints for bead in planned.beads]), atol=1e-9)
+    for bead, start, end in zip(planned.beads, one.source.starts, one.source.starts[1:]):
+        shown = followed.joints[start:end]
+        for at in (0, -1):  # between them the plan may have more points
+            np.testing.assert_allclose(shown[at], bead.joints[at], atol=1e-9)
 
 
 def test_what_the_mouse_is_over_is_told(person, hemisphere, hand):

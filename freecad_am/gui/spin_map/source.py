@@ -28,6 +28,8 @@ from ...objects.stage import stage_of
 from ..lines import Array
 from ..link_meshes import meshes_of
 
+MOVED = 1e-9  # of a bead's parameter, from where its seam is another one
+
 
 @dataclass(frozen=True)
 class Source:
@@ -101,5 +103,6 @@ def _as_run(toolpath: Toolpath, planned: JointPath) -> tuple[Bead, ...]:
     found = []
     for layer, index, bead in toolpath:
         other = run.get((layer, index), bead)
-        found.append(other if whole and bead.closed and len(other) == len(bead) else bead)
+        moved = whole and bead.closed and abs(float(other.parameter[0] - bead.parameter[0])) > MOVED
+        found.append(other if moved else bead)
     return tuple(found)
