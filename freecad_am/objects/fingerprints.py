@@ -2,8 +2,8 @@
 """Shapes and meshes as texts that change with them, but not with the last digits that saving drops.
 
 A stage asks for those of its inputs at each recompute, whatever was touched. So the last ones are kept: those of shapes as
-long as the kernel's own object behind them is the same one, which is never changed in place; those of meshes, which are,
-by their bytes.
+long as the kernel's own object behind them, and those of their faces, are the same ones: a macro may put further shapes
+into a compound in place, but no face is changed so; those of meshes, which are, by their bytes.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ def fingerprint(source: Any) -> str:
 def shape_fingerprint(source: Any) -> str:
     """The text of an object's shape, where it stands in the document. InputError NO_SHAPE."""
     shape = shape_of(source)
-    rest = (shape.Orientation, shape.Placement.toMatrix().A, outer_placement(source).toMatrix().A)
+    parts = tuple(part.hashCode() for part in shape.Faces or shape.Edges or shape.Vertexes)
+    rest = (parts, shape.Orientation, shape.Placement.toMatrix().A, outer_placement(source).toMatrix().A)
     for k, (kept, decided, text) in enumerate(_shapes):
         if kept.isPartner(shape) and decided == rest:
             _shapes.insert(0, _shapes.pop(k))

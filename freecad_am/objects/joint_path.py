@@ -25,6 +25,7 @@ from ..core.simulation.totals import MM3_PER_CM3, totals
 from ..core.toolpath import Toolpath
 from . import progress, user_machines
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
+from .staleness import UP_TO_DATE
 
 JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves
 
@@ -76,7 +77,7 @@ class JointPath(Stage):
         """Tell the programs of the joint path what makes them impossible, before long work for them begins."""
         programs = [found for found in obj.InList if (stage := stage_of(found)) is not None and stage.kind == "program"]
         toolpath, cell = obj.Toolpath, obj.Cell
-        if not programs or stage_of(toolpath) is None or stage_of(cell) is None:
+        if not programs or stage_of(toolpath) is None or stage_of(cell) is None or cell.Status != UP_TO_DATE:
             return
         with contextlib.suppress(AmError):  # what is wrong with these they say themselves
             resolved = cells.resolve(cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders())

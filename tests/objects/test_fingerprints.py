@@ -96,6 +96,17 @@ def test_a_shape_turned_inside_out_is_another_one(doc, made):
     assert fingerprint(part) != before and fingerprint(part) == anew(part)
 
 
+def test_a_compound_that_a_macro_adds_to_is_another_one(doc):
+    """The kernel's object behind it stays the same one."""
+    compound = Part.makeCompound([Part.makeBox(1, 1, 1)])
+    made = doc.addObject("Part::Feature", "Compound")
+    made.Shape = compound
+    before = fingerprint(made)
+    compound.add(Part.makeBox(1, 1, 1, App.Vector(5, 0, 0)))
+    made.Shape = compound
+    assert len(made.Shape.Faces) == 12 and fingerprint(made) != before
+
+
 def test_undo_brings_the_first_one_back(doc, made):
     doc.UndoMode = 1
     box, _, _ = nested(doc)
