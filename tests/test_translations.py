@@ -190,6 +190,32 @@ def test_the_template_that_says_more_is_meant():
     assert Template("{0} is not {1}").values("a number") is None
 
 
+class Counted(Phrases):
+    """Phrases that count how often a text is looked up."""
+
+    count = 0
+
+    def find(self, text):
+        self.count += 1
+        assert self.count < 1000, "the work doubles with each break"
+        return super().find(text)
+
+
+@pytest.mark.parametrize("mark", [": ", "; ", ". ", "; a: b. "], ids=["colon", "semicolon", "stop", "mixed"])
+@pytest.mark.parametrize("last", ["of none of these", "no such file"], ids=["foreign", "ours"])
+def test_the_work_does_not_double_with_each_break(mark, last):
+    phrases = Counted(["no such file", ". no such file", "it has {0} faces"])
+    before = "".join(f"Part {at}{mark}" for at in range(40))
+    told = "NO SUCH FILE" if last == "no such file" else last
+    assert phrases.translated(before + last, upper) == before + told
+    assert phrases.count > 40
+
+
+def test_each_part_of_a_long_text_is_translated():
+    phrases = Counted(["no such file", "it has {0} faces"])
+    assert phrases.translated("; ".join(["no such file"] * 41), upper) == "; ".join(["NO SUCH FILE"] * 41)
+
+
 MISTAKES = {
     "out of range": lambda: RevolutionParameters(layer_height=-1.0),
     "no number": lambda: RevolutionParameters(chord_error=math.nan),

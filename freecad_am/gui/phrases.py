@@ -93,11 +93,11 @@ class Phrases:
         """A text after the place it is about, 'Box: it is empty', or added to one, 'Box; it is empty'; itself where what
         follows is of no template either."""
         for at in (match.start() for match in _BREAK.finditer(text)):
-            before = self._inner(text[:at], translate)
             if text[at] == ":" and self.find(text[at + 2:]) is not None:
-                return translate("{}: {}").format(before, self.translated(text[at + 2:], translate))
-            if self.find(text[at:]) is not None:
-                return before + self.translated(text[at:], translate)
+                before, after = self._inner(text[:at], translate), self.translated(text[at + 2:], translate)
+                return translate("{}: {}").format(before, after)
+            if self.find(text[at:]) is not None:  # only now what stands before: at each break it would double the work
+                return self._inner(text[:at], translate) + self.translated(text[at:], translate)
         parts = text.split("; ")
         known = len(parts) > 1 and any(self.find(part) is not None for part in parts)
         return "; ".join(self._inner(part, translate) for part in parts) if known else text
