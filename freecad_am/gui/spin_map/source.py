@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -27,8 +28,6 @@ from ...objects.joint_path import planned_of
 from ...objects.stage import stage_of
 from ..lines import Array
 from ..link_meshes import meshes_of
-
-MOVED = 1e-9  # of a bead's parameter, from where its seam is another one
 
 
 @dataclass(frozen=True)
@@ -96,13 +95,15 @@ def source_of(obj: Any) -> Source:
 
 
 def _as_run(toolpath: Toolpath, planned: JointPath) -> tuple[Bead, ...]:
-    """The beads of a toolpath as the plan runs them: it may start a closed one elsewhere, where an axis then has the room
-    for it that it has not from its own seam. Those that it runs in pieces, as they are."""
+    """The beads of a toolpath from the seams of the plan: it may start a closed one elsewhere, where an axis then has the
+    room for it that it has not from its own seam. Layers with beads that it runs in pieces are as they are."""
     run = {(path.layer, path.index): path.bead for path in planned.beads}
-    whole = len(run) == len(planned.beads) == sum(1 for _ in toolpath)
+    pieces, beads = Counter(path.layer for path in planned.beads), Counter(layer for layer, _, _ in toolpath)
     found = []
     for layer, index, bead in toolpath:
-        other = run.get((layer, index), bead)
-        moved = whole and bead.closed and abs(float(other.parameter[0] - bead.parameter[0])) > MOVED
-        found.append(other if moved else bead)
+        other = run.get((layer, index))
+        if other is not None and bead.closed and pieces[layer] == beads[layer]:
+            away = np.linalg.norm(bead.points[:-1] - other.points[0], axis=1)
+            bead = bead.started_at(int(away.argmin()))
+        found.append(bead)
     return tuple(found)
