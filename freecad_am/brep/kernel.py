@@ -20,19 +20,20 @@ from ..core.issues import InputError
 
 # since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
+FAULTY = "BAD_SHAPE"
 SAMPLES = 720  # of an edge that may cross itself
 CROSSED = 1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
 
 
 @contextmanager
 def told(label: str) -> Iterator[None]:
-    """Faults of the geometry kernel within, as an InputError BAD_SHAPE that names `label`."""
+    """Faults of the geometry kernel within, as an InputError FAULTY that names `label`."""
     try:
         yield
     except FAULTS as error:
         what = " ".join(str(error).split()) or type(error).__name__
         raise InputError(
-            "BAD_SHAPE", label, f"the geometry kernel cannot work with this shape ({what}); repair it (Part, Check "
+            FAULTY, label, f"the geometry kernel cannot work with this shape ({what}); repair it (Part, Check "
             "geometry), or draw its faces anew",
         ) from error
 
@@ -51,7 +52,7 @@ def refuse_bare(named: Sequence[tuple[str, Any]], owner: Index, label: str) -> N
                     "it without crossings, or divide it there and deposit its parts one after the other",
                 )
         raise InputError(
-            "BAD_SHAPE", f"{label} {name}", "the geometry kernel cannot divide this face into triangles; repair it (Part, "
+            FAULTY, f"{label} {name}", "the geometry kernel cannot divide this face into triangles; repair it (Part, "
             "Check geometry), or draw it anew",
         )
 

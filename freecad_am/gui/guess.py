@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..brep import hub as hubs
+from ..brep import kernel
 from ..brep.revolution import find_wall
 from ..core.issues import InputError
 from ..objects.shapes import global_shape, taken
@@ -66,8 +67,11 @@ def of_one(pick: Pick) -> Guess | Callable[[], Guess]:
 
     def work() -> Guess:
         try:
-            find_wall(shape, faces, label=label)
+            with kernel.told(label):
+                find_wall(shape, faces, label=label)
         except InputError as error:
+            if error.code == kernel.FAULTY:
+                raise
             return _not_turned(pick, label, shape, faces, error)
         told = tr("the faces picked turn about one axis") if faces else tr("{} turns about one axis").format(label)
         return Guess(REVOLUTION, told, (picking.with_faces(pick),))

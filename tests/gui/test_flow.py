@@ -262,3 +262,18 @@ def test_context_menus_do_what_they_say(person, hemisphere):
     assert menus.for_selection() == ["RoboticAM_NewJob"]
     person.select(doc.Cell)
     assert menus.for_selection() == []
+
+
+def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
+    """Its faults must not be taken for those of a panel that is gone."""
+    def fail(*_, **__):
+        raise RuntimeError("Bnd_Box is void")
+
+    monkeypatch.setattr("freecad_am.gui.guess.find_wall", fail)
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    person.until(lambda: "Bnd_Box is void" in person.field(panel, "reason").text(), "what is wrong", 10)
+    person.press("Ok")
+    assert person.gui.Control.activeDialog() and hemisphere.Document.Objects == [hemisphere]
+    person.press("Cancel")
