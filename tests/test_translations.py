@@ -7,14 +7,17 @@ import math
 import re
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from freecad_am import api
 from freecad_am.core.issues import AmError, Issue
 from freecad_am.core.kinematics import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.gui.phrases import Phrases, Template
+from freecad_am.objects import progress
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "resources" / "translations"
@@ -235,3 +238,76 @@ def test_errors_of_the_core_are_recognised(mistake, phrases):
 def test_the_place_of_a_finding_is_recognised(phrases):
     where = Issue("error", "X", "it is there", 3, 1, 4).where
     assert phrases.find(where)[0].text == "layer {0} bead {1} point {2}"
+
+
+# ---- what stages say
+
+
+@pytest.fixture
+def told(phrases, french):
+    """What a panel shows in French of a message."""
+    return lambda text: phrases.translated(text, lambda source: french["RoboticAM"].get(source, source))
+
+
+@pytest.fixture
+def stages(doc):
+    """A cell, a feature and a toolpath of them."""
+    part = doc.addObject("Part::Sphere", "Sphere")
+    part.Angle1 = 0
+    doc.recompute()
+    cell, feature = api.make_cell(doc), api.make_feature(doc, part, layer_height=2)
+    return SimpleNamespace(part=part, cell=cell, feature=feature, toolpath=api.make_toolpath(doc, feature, cell))
+
+
+def test_what_became_stale_is_told_in_french(stages, told):
+    stages.feature.LayerHeight = 3
+    assert told(stages.feature.Message) == f"LayerHeight a changé{NO_BREAK}; recalculez"
+    assert told(stages.toolpath.Message) == f"Feature a changé{NO_BREAK}; recalculez"
+    stages.toolpath.Proxy.execute(stages.toolpath)
+    assert told(stages.toolpath.Message) == f"attend Feature{NO_BREAK}; recalculez"
+
+
+def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, monkeypatch):
+    def cancelled(obj):
+        raise progress.Cancelled
+
+    cell = stages.cell
+    prepare = cell.Proxy.prepare
+    cell.PlatformDiameter = 100
+    monkeypatch.setattr(cell.Proxy, "prepare", cancelled)
+    with pytest.raises(progress.Cancelled):
+        cell.Proxy.renew(cell)
+    assert told(cell.Message) == f"annulé{NO_BREAK}; recalculez"
+
+    def overtaken(obj):
+        work = prepare(obj)
+        obj.PlatformDiameter = 120
+        return work
+
+    monkeypatch.setattr(cell.Proxy, "prepare", overtaken)
+    cell.Proxy.renew(cell)
+    assert told(cell.Message) == f"une entrée a changé pendant le calcul{NO_BREAK}; recalculez"
+
+
+def test_a_missing_input_is_told_in_french(stages, told):
+    stages.toolpath.Feature = None
+    assert told(stages.toolpath.Message) == f"Feature manque{NO_BREAK}; choisissez l'élément à déposer"
+    for link in (link for stage in collect.STAGES for link in stage.links if link.required):
+        help_ = f"{link.help[0].lower()}{link.help[1:].rstrip('.')}"
+        text = told(f"{link.name} is missing; choose {help_}")
+        assert text.startswith(f"{link.name} manque") and help_ not in text
+
+
+def written_out(text: ast.expr) -> str:
+    """A literal text, with a name for each thing put in; '' for what is no literal."""
+    parts = text.values if isinstance(text, ast.JoinedStr) else [text]
+    words = [part.value if isinstance(part, ast.Constant) else "Ab" for part in parts]
+    return "".join(words) if isinstance(text, (ast.Constant, ast.JoinedStr)) else ""
+
+
+def test_each_message_that_stages_are_given_is_recognised(phrases):
+    tree = ast.parse((ROOT / "freecad_am" / "objects" / "stage.py").read_text(encoding="utf-8"))
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and collect.called(node) == "_say"]
+    texts = list(filter(None, (written_out(call.args[2]) for call in calls)))
+    assert len(texts) >= 3 and "waits for Ab; recompute" in texts
+    assert [text for text in texts if phrases.find(text) is None] == []

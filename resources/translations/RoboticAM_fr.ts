@@ -4967,6 +4967,11 @@
         <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>an input changed while it was computed; recompute</source>
+        <translation>une entrée a changé pendant le calcul ; recalculez</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>analogue inputs are whole numbers, not {0}; change below, gain or zero so that it is one</source>
         <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
@@ -5260,6 +5265,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>building moves and events</source>
         <translation>construction des mouvements et événements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>cancelled; recompute</source>
+        <translation>annulé ; recalculez</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
@@ -7207,6 +7217,11 @@
         <translation>le tableau d&apos;étalonnage ne peut pas être lu ({0}) ; donnez none, csw ou le chemin d&apos;un tableau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>the cell that runs it</source>
+        <translation>la cellule qui l&apos;exécute</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>the circle at {0} mm was not measured all round: {1} deg between neighbours</source>
         <translation>le cercle à {0} mm n&apos;a pas été mesuré sur tout le tour : {1} deg entre voisins</translation>
@@ -7282,6 +7297,16 @@
         <translation>les faces choisies tournent autour d&apos;un même axe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>the feature to deposit</source>
+        <translation>l&apos;élément à déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>the feature, toolpath, or object with a shape or mesh that was measured</source>
+        <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>the file is missing</source>
         <translation>le fichier manque</translation>
@@ -7345,6 +7370,11 @@
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>the joint frames give</source>
         <translation>les repères articulaires donnent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>the joint path to write</source>
+        <translation>la trajectoire articulaire à écrire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
@@ -7612,6 +7642,11 @@
         <translation>la forme est vide ; choisissez un objet qui a une forme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/feature.py"/>
+        <source>the shape to deposit, or some of its faces</source>
+        <translation>la forme à déposer, ou certaines de ses faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/substrate.py"/>
         <source>the solid around {0} is turned inside out (volume {1} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)</source>
         <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
@@ -7630,6 +7665,11 @@
         <location filename="../../freecad_am/core/strategies/hub_layers.py"/>
         <source>the solid reaches over the end of the hub&apos;s axis, at {0}, where equidistant surfaces have an apex or an end; let it end beside the axis</source>
         <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/developable_feature.py"/>
+        <source>the solids or closed meshes to deposit; or a part and the faces of its hub, where both are one solid</source>
+        <translation>les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
@@ -7680,6 +7720,11 @@
         <location filename="../../freecad_am/verify.py"/>
         <source>the tool is turned otherwise than planned</source>
         <translation>l&apos;outil est tourné autrement que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>the toolpath to run</source>
+        <translation>la trajectoire d&apos;outil à exécuter</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -7740,6 +7785,11 @@
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>the wall meets {0} in no curve that a layer can start from (shorter than a few {1} mm); let it reach in all around, or choose the edges to start from</source>
         <translation>la paroi ne rencontre {0} en aucune courbe d&apos;où une couche puisse partir (plus courte que quelques fois {1} mm) ; faites-la pénétrer sur tout le tour, ou choisissez les arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>the wall to deposit, or its faces</source>
+        <translation>la paroi à déposer, ou ses faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
@@ -8102,6 +8152,11 @@
         <translation>attend {0} : {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>waits for {0}; recompute</source>
+        <translation>attend {0} ; recalculez</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
         <source>waits, deposit on</source>
         <translation>attend, dépôt en marche</translation>
@@ -8305,6 +8360,11 @@
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/staleness.py"/>
+        <source>{0} changed; recompute</source>
+        <translation>{0} a changé ; recalculez</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>

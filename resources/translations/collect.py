@@ -110,6 +110,8 @@ class Collected:
             self.messages.setdefault(link.label, place)
             self.messages.setdefault(link.help, place)
             self.properties.setdefault(link.help, place)
+            if link.required:  # 'Cell is missing; choose the cell that runs it'
+                self.messages.setdefault(f"{link.help[0].lower()}{link.help[1:].rstrip('.')}", place)
         for section in stage.sections:
             self.messages.setdefault(section.group, place)
             for row in rows(section.cls):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 from itertools import product
 from string import Formatter
 
@@ -21,6 +22,7 @@ MAKERS: dict[str, set[int]] = {
     "Band": {0}, "Row": {0, 3},
     "Patch": {3}, "Chart": {0}, "Quantity": {0}, "Curve": {0}, "Entry": {0},
 }
+PROPERTY = "Message"  # of stages: what it is set to is told
 KEYWORDS = {"message", "where", "lacking", "text", "label", "short", "name"}
 _MOST_CASES = 16
 _DEPTH = 11
@@ -43,11 +45,19 @@ class Templates:
         while self._learn():
             pass
         for module in code.modules:
-            for call in module.calls():
-                for argument in self._told(call):
-                    self._collect(argument, module, module.around[id(call)], _DEPTH)
+            for node, texts in self._telling(module):
+                for text in texts:
+                    self._collect(text, module, module.around[id(node)], _DEPTH)
 
     # ---- which functions pass on a message
+
+    def _telling(self, module: Module) -> Iterator[tuple[ast.AST, list[ast.expr]]]:
+        """The nodes that tell something, calls and settings of a stage's message, with what they tell."""
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.Call):
+                yield node, self._told(node)
+            elif isinstance(node, ast.Assign) and any(getattr(target, "attr", "") == PROPERTY for target in node.targets):
+                yield node, [node.value]
 
     def _told(self, call: ast.Call) -> list[ast.expr]:
         """The arguments of a call that are told."""
@@ -62,15 +72,13 @@ class Templates:
         """Add functions that put a parameter into a message; False when there are no more."""
         before = sum(map(len, self.makers.values()))
         for module in self.code.modules:
-            for call in module.calls():
-                function = module.around[id(call)]
+            for teller, texts in self._telling(module):
+                function = module.around[id(teller)]
                 if function is None:
                     continue
                 names = [one.arg for one in function.args.args]
                 names = names[1:] if names[:1] in (["self"], ["cls"]) else names
-                used = {
-                    node.id for argument in self._told(call) for node in ast.walk(argument) if isinstance(node, ast.Name)
-                }
+                used = {node.id for text in texts for node in ast.walk(text) if isinstance(node, ast.Name)}
                 for at, name in enumerate(names):
                     if name in used and self._is_text(function, name):
                         self.makers.setdefault(function.name, set()).add(at)
