@@ -2,6 +2,8 @@
 """Paths layer by layer and point by point, as lines and as tubes, coloured by what the machine has left."""
 
 import dataclasses
+import gc
+import weakref
 
 import FreeCAD as App
 import numpy as np
@@ -362,6 +364,23 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
     hand.at(where(view, hand, aim[facing[0]]))
     person.idle(0.3)
     assert proxy.shown is None
+
+
+def test_nothing_of_a_path_is_kept_once_its_document_is_closed(person, joint_path):
+    document = joint_path.Document
+    document.Toolpath.ViewObject.Visibility = True
+    person.click("RoboticAM_Path")
+    front(person)
+    views = [obj.ViewObject.Proxy for obj in (document.Toolpath, joint_path)]
+    assert all(len(view.rows) for view in views)
+    kept = [weakref.ref(one) for view in views for one in (view, view.rows, view.clicks, view.path, view.legend)]
+    del views
+    gc.collect()
+    assert all(one() is not None for one in kept)  # the document has them
+    App.closeDocument(document.Name)
+    person.idle(0.5)
+    gc.collect()
+    assert [one() for one in kept if one() is not None] == []
 
 
 def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant():

@@ -7,6 +7,7 @@ the mouse the foremost ones count, for they hide the others, and of these the ne
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -39,6 +40,7 @@ class ClickNode:
     what is drawn about them reaches, and the width of beads, mm; `clicked` is called with the number of one of them.
 
     The scene hears of a button that goes down; when it comes up again FreeCAD's selection may keep that to itself.
+    Whoever wants to hear of clicks must hold this: the scene does not.
     """
 
     def __init__(
@@ -47,9 +49,11 @@ class ClickNode:
     ) -> None:
         self.wanted, self.seen, self.clicked = wanted, seen, clicked
         self.node = coin.SoEventCallback()
-        self.node.addEventCallback(coin.SoMouseButtonEvent.getClassTypeId(), self._event, None)
+        # pivy never gives back what it is handed here, so that is no more than a weak reference
+        self.node.addEventCallback(coin.SoMouseButtonEvent.getClassTypeId(), _event, weakref.ref(self))
 
-    def _event(self, data: Any, node: Any) -> None:
+    def event(self, node: Any) -> None:
+        """The scene has heard of a button of the mouse."""
         event = node.getEvent()
         if coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1) and self.wanted():
             self._wait(_sight(node.getAction()), _pair(event.getPosition()), QtGui.QCursor.pos())
@@ -64,6 +68,12 @@ class ClickNode:
         found = nearest(*self.seen(), sight, place)
         if found is not None:
             self.clicked(found)
+
+
+def _event(listener: weakref.ref[ClickNode], node: Any) -> None:
+    there = listener()
+    if there is not None:
+        there.event(node)
 
 
 def _sight(action: Any) -> Sight:

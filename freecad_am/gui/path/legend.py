@@ -8,6 +8,7 @@ whatever the view's camera does, and comes and goes with its path. Those that ar
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
 import FreeCAD as App
@@ -44,7 +45,7 @@ class Legend:
         corner, pick, callback = coin.SoTranslation(), coin.SoPickStyle(), coin.SoCallback()
         corner.translation = (-1.0, 1.0, 0.0)
         pick.style = coin.SoPickStyle.UNPICKABLE
-        callback.setCallback(self._look, None)
+        callback.setCallback(_look, weakref.ref(self))  # pivy never gives back what it is handed here
         bounds = coin.SoResetTransform()  # it counts in no bounding box
         bounds.whatToReset = coin.SoResetTransform.BBOX
         on_top = coin.SoAnnotation()
@@ -56,11 +57,6 @@ class Legend:
     def node(self) -> Any:
         """The node to add to a scene."""
         return self.switch
-
-    def _look(self, data: Any, action: Any) -> None:
-        # the camera is no node of the scene: rays of the mouse must not go through it
-        if action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
-            self.camera.doAction(action)
 
     def show(self, entry: Entry, left: int) -> int:
         """Show this, `left` px from the edge; its width with the margin, px."""
@@ -76,6 +72,13 @@ class Legend:
         """Show nothing."""
         self.entry = None
         self.switch.whichChild = coin.SO_SWITCH_NONE
+
+
+def _look(legend: weakref.ref[Legend], action: Any) -> None:
+    there = legend()
+    # the camera is no node of the scene: rays of the mouse must not go through it
+    if there is not None and action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
+        there.camera.doAction(action)
 
 
 def _picture(entry: Entry, left: int) -> Any:
