@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A process that has the geometry kernel to itself, run as a script by `kernel_process`, which tells the protocol.
 
-It ends with the process that started it, and when it is asked nothing for a while.
+It ends when it is asked nothing for a while, and when whoever started it is gone: at once where it waits to be asked, after
+the call where it is at work.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ IDLE = 300.0  # s
 
 def serve(asked: BinaryIO, told: BinaryIO) -> None:
     """Answer until nothing is asked any more."""
-    for entry in pickle.load(asked):
+    for entry in _heard(asked):
         if entry not in sys.path:
             sys.path.append(entry)
     import FreeCAD
@@ -26,11 +27,7 @@ def serve(asked: BinaryIO, told: BinaryIO) -> None:
 
     _tell(told, tuple(FreeCAD.Version()[:3]))
     while True:
-        leave = threading.Timer(IDLE, os._exit, (0,))
-        leave.daemon = True
-        leave.start()
-        module, function, path, rest = pickle.load(asked)
-        leave.cancel()
+        module, function, path, rest = _heard(asked)
         try:
             shape = Part.Shape()
             shape.importBinary(path)
@@ -38,6 +35,16 @@ def serve(asked: BinaryIO, told: BinaryIO) -> None:
         except Exception as error:
             answer = False, _portable(error)
         _tell(told, answer)
+
+
+def _heard(asked: BinaryIO) -> Any:
+    """What is asked next; if that is nothing for long, this process ends."""
+    leave = threading.Timer(IDLE, os._exit, (0,))
+    leave.daemon = True
+    leave.start()
+    heard = pickle.load(asked)
+    leave.cancel()
+    return heard
 
 
 def _tell(told: BinaryIO, answer: Any) -> None:

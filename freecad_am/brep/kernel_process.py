@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import weakref
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
@@ -30,6 +31,7 @@ T = TypeVar("T")
 
 HOST = Path(__file__).with_name("kernel_host.py")
 LOOK_EVERY = 0.05  # s; how soon a thread that waits is ended
+ENDED_BY_SYSTEM = -9  # what Popen tells of SIGKILL, which Linux gives where memory does not suffice
 START = 60.0  # s that a process may take to be there
 QUICK = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
 FEW = 24  # faces, of such surfaces alone: sooner divided than sent
@@ -41,13 +43,13 @@ _unable = False
 def beside(function: Callable[..., T], shape: Any, *rest: Any) -> T:
     """What `function(shape, *rest)` returns or raises; it must be a function of a module, and return no shapes.
 
-    Raises RuntimeError where the kernel crashes on the shape.
+    Raises RuntimeError where the kernel crashes on the shape, MemoryError where the system ends it for lack of memory.
     """
     if _unable or threading.current_thread() is threading.main_thread() or _is_quick(shape):
         return function(shape, *rest)
     with _written(shape) as path:
         for _ in range(2):
-            process = _idle.pop() if _idle else _started()
+            process = _free() or _started()
             if process is None:
                 return function(shape, *rest)
             try:
@@ -68,6 +70,14 @@ def beside(function: Callable[..., T], shape: Any, *rest: Any) -> T:
                 return found
             raise answer
     return function(shape, *rest)
+
+
+def _free() -> _Process | None:
+    """A process that has nothing to do, None where there is none."""
+    try:
+        return _idle.pop()
+    except IndexError:  # asked beforehand, another thread might take the last one in between
+        return None
 
 
 def _is_quick(shape: Any) -> bool:
@@ -93,22 +103,19 @@ class _Left(Exception):
 
 
 class _Process:
-    """A Python that runs `kernel_host`; another thread listens to it, so that one who waits can be ended at any moment."""
+    """A Python that runs `kernel_host`; another thread listens to it, so that one who waits can be ended at any moment.
+
+    It is ended at the latest when nobody holds this any more: a thread that is ended may lose it between any two steps.
+    """
 
     def __init__(self, python: str) -> None:
         self.popen: Any = subprocess.Popen(
             [python, str(HOST)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
+        self.kill = weakref.finalize(self, _kill, self.popen)
         self.told: queue.Queue[Any] = queue.Queue()
-        threading.Thread(target=self._listen, name="Kernel process", daemon=True).start()
-
-    def _listen(self) -> None:
-        try:
-            while True:
-                self.told.put((pickle.load(self.popen.stdout),))
-        except Exception:  # it has ended, in the midst of an answer or between two
-            self.told.put(None)
+        threading.Thread(target=_listen, args=(self.popen.stdout, self.told), name="Kernel process", daemon=True).start()
 
     def ask(self, question: Any) -> None:
         """Send a question. Raises _Left where nobody is there."""
@@ -119,8 +126,8 @@ class _Process:
             raise _Left from None
 
     def answer(self, longest: float = float("inf")) -> Any:
-        """Wait for its answer. Raises _Left where it went before it was asked, RuntimeError where it crashed; queue.Empty
-        after `longest` s."""
+        """Wait for its answer. Raises _Left where it went before it was asked, RuntimeError where it crashed, MemoryError
+        where the system ended it; queue.Empty after `longest` s."""
         waited = 0.0
         while waited < longest:
             try:
@@ -130,39 +137,52 @@ class _Process:
                 continue
             if told is not None:
                 return told[0]
-            if self.popen.wait() == 0:
+            code = self.popen.wait()
+            if code == 0:
                 raise _Left
+            if code == ENDED_BY_SYSTEM:
+                raise MemoryError
             raise RuntimeError("it crashed")
         raise queue.Empty
 
     def end(self) -> None:
         """End it, whatever it is doing."""
-        with contextlib.suppress(OSError):
-            self.popen.kill()
+        self.kill()
         for stream in (self.popen.stdin, self.popen.stdout):
             with contextlib.suppress(OSError, ValueError):
                 stream.close()
-        self.popen.wait()
+
+
+def _kill(popen: Any) -> None:
+    with contextlib.suppress(OSError):
+        popen.kill()
+    popen.wait()
+
+
+def _listen(stream: Any, told: queue.Queue[Any]) -> None:
+    try:
+        while True:
+            told.put((pickle.load(stream),))
+    except Exception:  # it has ended, in the midst of an answer or between two
+        told.put(None)
 
 
 def _started() -> _Process | None:
     """A process that is ready to be asked; None where there can be none, which is not tried again."""
     global _unable
     for python in _pythons():
+        process = None
         try:
             process = _Process(python)
-        except OSError:
-            continue
-        try:
             process.ask(_search_path())
             if process.answer(START) == tuple(FreeCAD.Version()[:3]):
-                return process
-            process.end()
-        except (_Left, RuntimeError, queue.Empty):
-            process.end()
-        except BaseException:  # the thread is being ended
-            process.end()
-            raise
+                found, process = process, None
+                return found
+        except (OSError, _Left, RuntimeError, queue.Empty):
+            continue
+        finally:  # also where the thread is being ended
+            if process is not None:
+                process.end()
     _unable = True
     return None
 

@@ -3,6 +3,9 @@
 
 import ctypes
 import os
+import signal
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -27,6 +30,10 @@ def pid_of(shape):
 
 def crash(shape):
     os.abort()
+
+
+def be_killed(shape):
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def fail(shape, error):
@@ -67,6 +74,23 @@ def in_thread(function, *arguments):
 
 def flat(value):
     return [array for entry in value for array in (flat(entry) if isinstance(entry, (tuple, list)) else [entry])]
+
+
+class Ended(BaseException):
+    """The order to end, which may come between any two steps."""
+
+
+def is_gone(pid):
+    """Whether a process that was started here ends soon."""
+    patience = time.monotonic() + 20
+    while time.monotonic() < patience:
+        try:
+            if os.waitpid(pid, os.WNOHANG)[0]:
+                return True
+        except ChildProcessError:  # it has been waited for
+            return True
+        time.sleep(0.02)
+    return False
 
 
 @pytest.fixture(autouse=True)
@@ -117,6 +141,21 @@ def test_a_crash_of_the_kernel_is_an_error_and_the_next_call_has_another_process
     assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
 
 
+def test_a_process_that_the_system_ends_had_too_little_memory(slow_part):
+    with pytest.raises(MemoryError):
+        in_thread(kernel_process.beside, be_killed, slow_part)
+    assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
+
+
+def test_another_thread_may_take_the_process_that_was_free(slow_part, monkeypatch):
+    class Taken(list):
+        def __bool__(self):  # there was one when it was asked
+            return True
+
+    monkeypatch.setattr(kernel_process, "_idle", Taken())
+    assert in_thread(kernel_process.beside, pid_of, slow_part) != os.getpid()
+
+
 def test_a_process_that_has_left_is_replaced(slow_part):
     first = in_thread(kernel_process.beside, pid_of, slow_part)
     (process,) = kernel_process._idle
@@ -140,9 +179,6 @@ def test_without_another_python_the_call_is_made_here(slow_part, monkeypatch):
 
 
 def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
-    class Ended(BaseException):
-        pass
-
     told, ended = tmp_path / "pid", []
 
     def run():
@@ -162,3 +198,58 @@ def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
     assert ended and not thread.is_alive() and not kernel_process._idle
     with pytest.raises(ProcessLookupError):
         os.kill(int(told.read_text(encoding="utf-8")), 0)
+
+
+@pytest.mark.parametrize("when", ["before it is listened to", "once it is made", "as it is asked"])
+def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, monkeypatch, when):
+    pids, popen, made, start = [], subprocess.Popen, kernel_process._Process, threading.Thread.start
+
+    def begun(*arguments, **options):
+        process = popen(*arguments, **options)
+        pids.append(process.pid)
+        return process
+
+    def listened(thread):
+        if thread.name == "Kernel process":
+            raise Ended
+        start(thread)
+
+    class Made(made):
+        def __init__(self, python):
+            super().__init__(python)
+            if when == "once it is made":
+                raise Ended
+
+        def ask(self, question):
+            raise Ended
+
+    monkeypatch.setattr(subprocess, "Popen", begun)
+    monkeypatch.setattr(kernel_process, "_Process", Made)
+    if when == "before it is listened to":
+        monkeypatch.setattr(threading.Thread, "start", listened)
+    ended = []
+
+    def run():
+        try:
+            kernel_process.beside(pid_of, slow_part)
+        except Ended:
+            ended.append(True)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join(20)
+    assert ended and len(pids) == 1 and is_gone(pids[0])
+    assert not kernel_process._idle and not kernel_process._unable
+
+
+def test_a_process_that_nobody_holds_any_more_is_ended(slow_part):
+    in_thread(kernel_process.beside, pid_of, slow_part)
+    pid = kernel_process._idle.pop().popen.pid
+    assert is_gone(pid)
+
+
+def test_a_process_that_is_asked_nothing_leaves_from_the_beginning():
+    host = ("import sys; from freecad_am.brep import kernel_host; kernel_host.IDLE = 0.2; "
+            "kernel_host.serve(sys.stdin.buffer, sys.stdout.buffer)")
+    with subprocess.Popen([sys.executable, "-c", host], stdin=subprocess.PIPE, cwd=EXAMPLES.parent.parent) as process:
+        assert process.wait(20) == 0
