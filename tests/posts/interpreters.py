@@ -57,6 +57,7 @@ def _unpack() -> bool:
         if not _done(["apt-get", "download", "-q", *PACKAGES], cwd=folder):
             return False
         shutil.rmtree(UNPACKED, ignore_errors=True)
+        UNPACKED.parent.mkdir(parents=True, exist_ok=True)
         return all(_done(["dpkg-deb", "-x", str(package), str(UNPACKED)]) for package in Path(folder).glob("*.deb"))
 
 
