@@ -29,7 +29,7 @@ OF_VERSION = (
 # foreign interpreters read the texts of programs, which the golden files hold equal in all versions
 NOT_OF_VERSION = "tests/posts/test_interpreters.py"
 FAILED, NO_TESTS, UNABLE = 1, 5, 77  # statuses of pytest, and of tests/versions/run.sh
-FEW = 4  # tests of the window that are run again when they failed
+FEW = 8  # tests of the window that are run again when they failed
 SCREEN = "-screen 0 1400x900x24 -dpi 96 -nolisten tcp"
 PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
 <FCParameters><FCParamGroup Name="Root"><FCParamGroup Name="BaseApp"><FCParamGroup Name="Preferences">

@@ -33,7 +33,7 @@ def windows(monkeypatch):
         ((1, ENDED.format(2, 5), ["a", "b"]), (1, ENDED.format(1, 1), ["b"]), 1, 1, 6),
         ((1, ENDED.format(2, 5), ["a", "b"]), (0, "1 passed, 1 skipped in 1.00s", []), 1, 1, 6),
         ((1, ENDED.format(2, 5), ["a", "b"]), (1, CRASHED, []), 1, 2, 5),
-        ((1, ENDED.format(5, 5), list("abcde")), None, 1, 5, 5),
+        ((1, ENDED.format(9, 5), list("abcdefghi")), None, 1, 9, 5),
         ((1, CRASHED, ["a"]), None, 1, 0, 0),
         ((139, CRASHED, ["a"]), None, 139, 0, 0),
     ],

@@ -249,7 +249,12 @@ class Hand:
         self.do(*keys, "click", "1", *released)
 
     def click(self, widget):
-        """Click in the middle of a widget, once it no longer moves."""
+        """Click in the middle of a widget, once it no longer moves; one of a panel is scrolled to."""
+        around = widget.parentWidget()
+        while around is not None:
+            if isinstance(around, self.person.widgets.QScrollArea):
+                around.ensureWidgetVisible(widget)
+            around = around.parentWidget()
         def middle():
             centre = widget.mapToGlobal(widget.rect().center())
             return centre.x(), centre.y()
@@ -365,7 +370,7 @@ def person(tmp_path, capfd, request):
     someone = Person(tmp_path)
     watch = someone.watch = ModalWatch(someone.core, someone.widgets)
     someone.open_workbench()
-    place = someone.window.geometry()
+    place, layout = someone.window.geometry(), someone.window.saveState()
     mark = f"watching {request.node.name}"
     App.Console.PrintError(mark + "\n")
     someone.until(lambda: mark in someone.console(), "the report view to show errors", 5)
@@ -381,6 +386,8 @@ def person(tmp_path, capfd, request):
         if dock.objectName().startswith("RoboticAM"):
             dock.close()
     someone.idle()
-    someone.window.setGeometry(place)  # docks that needed more room have made it wider
+    someone.window.setGeometry(place)  # docks that needed more room have made it wider, and panels and tree lower
+    someone.window.restoreState(layout)
+    someone.idle(0.1)
     assert not watch.texts, f"dialogs nobody asked for: {watch.texts}"
     assert "Traceback" not in text, text[-3000:]
