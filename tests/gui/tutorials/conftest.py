@@ -15,6 +15,8 @@ import FreeCAD as App
 import numpy as np
 import pytest
 
+from freecad_am import api
+
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = ROOT / "docs" / "tutorials"
 DIALOG = 30  # s until a dialog has come and gone
@@ -155,6 +157,15 @@ class Lesson:
         """Keep a document beside the pictures: the samples are what tutorials end with."""
         shutil.copyfile(path, self.folder / path.name)
 
+    def save_and_open_again(self, path):
+        """Save to a new file, close, and open it: nothing is lost, and nothing is to be computed."""
+        self.save_as(path)
+        self.keep(path)
+        self.menu("File", "Close")
+        assert not App.listDocuments()
+        self.open(path)
+        assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
+
     def menu(self, title, entry):
         """An entry of a menu, as 'File', 'Close'."""
         bar = self.person.window.menuBar()
@@ -175,6 +186,18 @@ class Lesson:
         self.hand.click(self.person.button("Std_ViewIsometric"))
         self.hand.click(self.person.button("Std_ViewFitAll"))
         self.person.idle(0.3)
+
+    def play(self, factor, notches):
+        """Play for a while with the simulation, then come closer to the nozzle."""
+        self.tool("Simulate")
+        dock = self.person.panel("RoboticAM_Simulation")
+        self.choose(dock, "factor", factor)
+        clock = self.person.field(dock, "clock").text()
+        self.hand.click(self.person.field(dock, "play"))
+        self.person.idle(2.0)
+        self.hand.click(self.person.field(dock, "play"))
+        assert self.person.field(dock, "clock").text() != clock
+        self.zoom_to_nozzle(notches)
 
     def zoom_to_nozzle(self, notches):
         """Turn the wheel with the pointer on the nozzle of the simulation."""

@@ -60,15 +60,7 @@ def test_the_hemisphere(person, hand, lesson, root, tmp_path):
     lesson.close("RoboticAM_PathDock")
 
     lesson.step("5. Play it with the robot")
-    lesson.tool("Simulate")
-    dock = person.panel("RoboticAM_Simulation")
-    clock = person.field(dock, "clock").text()
-    lesson.choose(dock, "factor", "100 ×")
-    hand.click(person.field(dock, "play"))
-    person.idle(2.0)
-    hand.click(person.field(dock, "play"))
-    assert person.field(dock, "clock").text() != clock
-    lesson.zoom_to_nozzle(5)
+    lesson.play("100 ×", 5)
     lesson.picture("hemisphere-simulation", machine=True)
     lesson.close("RoboticAM_Simulation")
 
@@ -100,13 +92,7 @@ def test_the_hemisphere(person, hand, lesson, root, tmp_path):
     hand.click(person.field(window, "close"))
 
     lesson.step("8. Save, and open it again")
-    saved = tmp_path / "hemisphere.FCStd"
-    lesson.save_as(saved)
-    lesson.keep(saved)
-    lesson.menu("File", "Close")
-    assert not App.listDocuments()
-    lesson.open(saved)
-    assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
+    lesson.save_and_open_again(tmp_path / "hemisphere.FCStd")
     lesson.see_all()
     lesson.picture("hemisphere-again", path=True, legend=True)
     lesson.finish()

@@ -5,8 +5,6 @@ import re
 
 import FreeCAD as App
 
-from freecad_am import api
-
 PAGE = "rotor"
 
 
@@ -68,15 +66,7 @@ def test_the_rotor(person, hand, lesson, root, tmp_path):
     person.panel("RoboticAM_JointPath")
     lesson.ok()
     assert document.JointPath.Status == "up to date"
-    lesson.tool("Simulate")
-    dock = person.panel("RoboticAM_Simulation")
-    lesson.choose(dock, "factor", "100 ×")
-    clock = person.field(dock, "clock").text()
-    hand.click(person.field(dock, "play"))
-    person.idle(2.0)
-    hand.click(person.field(dock, "play"))
-    assert person.field(dock, "clock").text() != clock
-    lesson.zoom_to_nozzle(3)
+    lesson.play("100 ×", 3)
     lesson.picture("rotor-axes", machine=True)
     lesson.close("RoboticAM_Simulation")
 
@@ -96,13 +86,7 @@ def test_the_rotor(person, hand, lesson, root, tmp_path):
     hand.click(person.field(window, "close"))
 
     lesson.step("8. Save, and open it again")
-    saved = tmp_path / "rotor.FCStd"
-    lesson.save_as(saved)
-    lesson.keep(saved)
-    lesson.menu("File", "Close")
-    assert not App.listDocuments()
-    lesson.open(saved)
-    assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
+    lesson.save_and_open_again(tmp_path / "rotor.FCStd")
     lesson.see_all()
     lesson.picture("rotor-again", path=True, legend=True)
     lesson.finish()

@@ -3,7 +3,6 @@
 
 import FreeCAD as App
 
-from freecad_am import api
 from freecad_am.gui.plots import dock as plots
 
 PAGE = "tube-on-pipe"
@@ -88,15 +87,7 @@ def test_the_tube(person, hand, lesson, root, tmp_path):
     lesson.close("RoboticAM_Plots")
 
     lesson.step("8. Play it")
-    lesson.tool("Simulate")
-    dock = person.panel("RoboticAM_Simulation")
-    lesson.choose(dock, "factor", "50 ×")
-    clock = person.field(dock, "clock").text()
-    hand.click(person.field(dock, "play"))
-    person.idle(2.0)
-    hand.click(person.field(dock, "play"))
-    assert person.field(dock, "clock").text() != clock
-    lesson.zoom_to_nozzle(5)
+    lesson.play("50 ×", 5)
     lesson.picture("tube-simulation", machine=True)
     lesson.close("RoboticAM_Simulation")
 
@@ -111,13 +102,7 @@ def test_the_tube(person, hand, lesson, root, tmp_path):
     assert person.field(window, "text").toPlainText().startswith("/PROG")
     lesson.picture("tube-program")
     hand.click(person.field(window, "close"))
-    saved = tmp_path / "tube-on-pipe.FCStd"
-    lesson.save_as(saved)
-    lesson.keep(saved)
-    lesson.menu("File", "Close")
-    assert not App.listDocuments()
-    lesson.open(saved)
-    assert [stage.Status for stage in api.stages_of(App.ActiveDocument)] == ["up to date"] * 5
+    lesson.save_and_open_again(tmp_path / "tube-on-pipe.FCStd")
     lesson.finish()
 
 
