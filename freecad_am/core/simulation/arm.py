@@ -13,6 +13,7 @@ from ..motion import Motion
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 # joints are looked at whenever the fastest of them has turned by so many rad (or moved by so many mm), at so many places at
 # most: of longer motions at fewer places of each turn
@@ -46,11 +47,10 @@ def arm_touches(motion: Motion, arm: ArmContact) -> ArmTouches:
     joints, row, step = places(motion.joints)
     before: Index = np.cumsum(motion.deposit) - motion.deposit
     found = arm.touches(joints, before[row])
-    # rows that lie closer than the places looked at are as the next of these is
-    here = np.minimum(np.searchsorted(row, np.arange(n)), len(row) - 1) if len(row) else np.zeros(0, dtype=np.int64)
-    if len(here):
-        link[:], what[:] = found.link[here], found.what[here]
-        link[~motion.reachable], what[~motion.reachable] = NONE, NONE
+    # rows that lie closer than the places looked at are as the next of these is: every run of rows ends with one
+    known = np.flatnonzero(motion.reachable)
+    here = np.searchsorted(row, known)
+    link[known], what[known] = found.link[here], found.what[here]
     # and of the places of a row the first one that touches counts
     rows, first = np.unique(row[found.any], return_index=True)
     link[rows], what[rows] = found.link[found.any][first], found.what[found.any][first]
@@ -58,21 +58,24 @@ def arm_touches(motion: Motion, arm: ArmContact) -> ArmTouches:
 
 
 def places(joints: Array) -> tuple[Array, Index, float]:
-    """Joints (k, axes) along a motion (n, axes) at even steps of the joint that moves most, the rows (k,) whose segments
-    they are on, and the step. Between rows that are not both reachable there are none."""
+    """Joints (k, axes) along a motion (n, axes), the rows (k,) whose segments they are on, rising, and the step, rad.
+
+    They are at even steps of the joint that moves most, and at both ends of every run of rows with joint values, be it of
+    one row alone; on the way between two runs, which nobody knows, there are none.
+    """
     n = len(joints)
-    if n == 0:
-        return joints, np.zeros(0, dtype=np.int64), STEP
-    moved = np.nan_to_num(np.abs(np.diff(joints, axis=0, prepend=joints[:1])).max(axis=1))
+    known: Mask = np.asarray(np.isfinite(joints).all(axis=1))
+    goes_on = known & np.append(False, known[:-1])[:n]  # from the row before
+    moved = np.where(goes_on, np.abs(np.diff(joints, axis=0, prepend=joints[:1])).max(axis=1, initial=0.0), 0.0)
     way = np.cumsum(moved)
-    step = max(STEP, float(way[-1]) / MOST)
-    at = np.arange(0.0, way[-1] + step, step)
-    at[-1] = way[-1]
-    row = np.searchsorted(way, at, side="left")
-    before = np.maximum(row - 1, 0)
-    share = np.divide(at - way[before], moved[row], out=np.ones(len(at)), where=moved[row] > 0.0)[:, None]
-    seen = joints[before] * (1.0 - share) + joints[row] * share
-    whole = share[:, 0] == 1.0
-    seen[whole] = joints[row[whole]]
-    kept = np.isfinite(seen).all(axis=1)
-    return seen[kept], row[kept], step
+    whole = float(way[-1]) if n else 0.0
+    step = max(STEP, whole / MOST)
+    at = np.arange(step, whole, step)
+    inner = np.searchsorted(way, at, side="left")  # rows that move, so that both of their ends are known
+    share = (at - way[inner - 1]) / moved[inner]
+    ends = np.flatnonzero(known & ~(goes_on & np.append(goes_on[1:], False)[:n]))
+    row = np.concatenate([inner, ends])
+    share = np.concatenate([share, np.ones(len(ends))])[:, None]
+    seen = np.where(share < 1.0, joints[row - 1] * (1.0 - share) + joints[row] * share, joints[row])
+    order = np.lexsort((share[:, 0], row))
+    return seen[order], row[order], step

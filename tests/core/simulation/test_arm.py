@@ -25,10 +25,10 @@ def test_places_are_on_the_motion_and_no_farther_apart_than_a_step(a_motion):
     joints = a_motion(3).joints.copy()
     joints[11] = np.nan
     seen, row, step = arms.places(joints)
-    moves = set(np.flatnonzero(np.diff(joints, axis=0, prepend=joints[:1]).any(axis=1))) - {11, 12}
-    assert step == arms.STEP and (np.diff(row) >= 0).all() and set(row) - {0} == moves
+    moves = set(np.flatnonzero(np.diff(joints, axis=0, prepend=joints[:1]).any(axis=1))) - {11}
+    assert step == arms.STEP and (np.diff(row) >= 0).all() and set(row) - {0} == moves  # 12 begins anew
     for q, k in zip(seen, row):
-        before = joints[max(k - 1, 0)]
+        before = joints[max(k - 1, 0)] if k != 12 else joints[k]
         way = joints[k] - before
         share = float((q - before) @ way / (way @ way)) if way.any() else 1.0
         assert np.abs(before + share * way - q).max() < 1e-9 and -1e-12 < share < 1 + 1e-12
@@ -70,6 +70,47 @@ def test_rows_nearer_than_a_step_are_told_too(a_motion, contact):
     # the border may be as far off as a step
     away = np.abs(joints[:, 4] - joints[np.argmax(each.any), 4])
     assert (found.link[away > found.step] == each.link[away > found.step]).all()
+
+
+def with_gaps(joints, random):
+    """Joints (n, 6) that bend the wrist to and fro by steps fine and coarse, some rows of them unreachable."""
+    steps = np.radians(random.choice([0.1, 0.7, 4.0, 20.0], len(joints)) * random.choice([-1.0, 1.0], len(joints)))
+    bent = np.radians(115.0) + np.radians(40.0) * np.sin(np.cumsum(steps))
+    joints = np.tile([0.2, 0.1, 0.1, 0.0, 0.0, 0.0], (len(joints), 1))
+    joints[:, 4] = bent
+    joints[random.uniform(size=len(joints)) < 0.4] = np.nan
+    return joints
+
+
+def runs(joints):
+    """First rows and ends of the runs of rows with joint values."""
+    edge = np.flatnonzero(np.diff(np.r_[False, np.isfinite(joints[:, 0]), False]))
+    return edge[::2], edge[1::2]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_between_gaps_every_row_is_told_as_looking_everywhere_tells_it(a_motion, contact, seed):
+    motion = a_motion(seed, layers=3, beads=2, points=40)
+    joints = with_gaps(motion.joints, np.random.default_rng(seed))
+    found = arms.arm_touches(dataclasses.replace(motion, joints=joints), contact)
+    finest, seen = np.radians(0.05), 0
+    for start, end in zip(*runs(joints)):
+        run = joints[start:end]
+        way = np.r_[0.0, np.cumsum(np.abs(np.diff(run, axis=0)).max(axis=1))]
+        s = np.unique(np.r_[np.arange(0.0, way[-1], finest), way])
+        bad = contact.touches(np.stack([np.interp(s, way, axis) for axis in run.T], axis=1)).any
+        for k, row in enumerate(range(start, end)):
+            low, high = way[max(k - 1, 0)], min(way[k] + found.step, way[-1])
+            here = bad[(s >= low) & (s <= high)]
+            told = found.link[row] != NONE
+            assert here.any() or not told, (seed, row)  # nothing else is told, least of all what is across a gap
+            # what is bad for a step, or up to the end of the run, cannot be stepped over: it is told here or there
+            ahead = bad[(s >= way[k]) & (s <= high)]
+            there = start + np.searchsorted(way, high)
+            assert (found.link[row : there + 1] != NONE).any() or not ahead.all(), (seed, row)
+        seen += end - start == 1 and bool(bad.any())
+    assert (found.link[np.isnan(joints[:, 0])] == NONE).all()
+    assert seen  # lone rows that touch are among them
 
 
 def test_the_deposit_of_a_motion_has_the_size_of_its_beads(a_motion):
