@@ -3,10 +3,14 @@
 
 A result says many things twice: a motion repeats the points, directions and joints of its beads, a tool axis is mostly
 the build direction. The window of a zip file is too short to notice. Columns that are the same in many rows are runs of
-one number, which is kept once, for FreeCAD reads number by number. Numbers are compared bit by bit.
+one number, which is kept once, for FreeCAD reads number by number. Numbers are compared bit by bit. They are put back where
+they are asked for only: a view needs a third of them, and new memory is what takes the time.
 """
 
 from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,21 +40,6 @@ def without_runs(numbers: Array) -> tuple[Array, Index]:
     return numbers[keep], np.column_stack([place[edges[:-1][long]], count[long]]).astype(np.int64)
 
 
-def with_runs(rest: Array, runs: Index) -> Array:
-    """The numbers of which runs were left out. ValueError where rest and runs do not make them."""
-    place, count = runs.T
-    if (place < 0).any() or (place >= len(rest)).any() or (np.diff(place) <= 0).any() or (count < 1).any():
-        raise ValueError("its runs are damaged")
-    numbers, end, taken = np.empty(len(rest) + int(count.sum()) - len(count)), 0, 0
-    for at, size in zip((place + 1).tolist(), (count - 1).tolist()):
-        numbers[end : end + at - taken] = rest[taken:at]
-        end += at - taken
-        numbers[end : end + size] = rest[at - 1]
-        end, taken = end + size, at
-    numbers[end:] = rest[taken:]
-    return numbers
-
-
 def folded(numbers: Array) -> tuple[Array, Index]:
     """The numbers (n,) without the stretches that stand before in them, and of each such stretch (k, 3) where it was, where
     it stands before, and how long it is. No stretch overlaps the one that it repeats."""
@@ -73,20 +62,80 @@ def folded(numbers: Array) -> tuple[Array, Index]:
     return numbers[_kept(len(numbers), copies)], copies
 
 
-def unfolded(rest: Array, copies: Index, size: int) -> Array:
-    """The numbers (size,) that were folded. ValueError where rest and copies do not make them."""
-    place, source, length = copies.T
-    sound = (length > 0).all() and (source >= 0).all() and (source + length <= place).all()
-    if not sound or (place[1:] < (place + length)[:-1]).any() or (place + length > size).any():
-        raise ValueError("its repetitions are damaged")
-    if size - int(length.sum()) != len(rest):
-        raise ValueError("it is cut short")
-    numbers, end, taken = np.empty(size), 0, 0
-    for at, before, count in [*copies.tolist(), (size, 0, 0)]:
-        numbers[end:at] = rest[taken : taken + at - end]
-        numbers[at : at + count] = numbers[before : before + count]
-        taken += at - end
-        end = at + count
+class Unfolded:
+    """The numbers again that were left out, part by part: nothing is put back that is not asked for.
+
+    From a list `rest` of which `copies` were left out, which had `size` numbers before, and from that `runs`. ValueError
+    where they do not belong together.
+    """
+
+    def __init__(self, rest: Array, copies: Index, size: int, runs: Index) -> None:
+        place, source, length = copies.T
+        sound = (length > 0).all() and (source >= 0).all() and (source + length <= place).all()
+        if not sound or (place[1:] < (place + length)[:-1]).any() or (place + length > size).any():
+            raise ValueError("its repetitions are damaged")
+        if size - int(length.sum()) != len(rest):
+            raise ValueError("it is cut short")
+        at, count = runs.T
+        if (at < 0).any() or (at >= size).any() or (np.diff(at) <= 0).any() or (count < 1).any():
+            raise ValueError("its runs are damaged")
+        self.rest = rest[:]
+        self.rest.flags.writeable = False  # parts may share it
+        before = np.cumsum(count - 1)  # that the runs up to each add
+        self.runs, self.runs_end = runs.tolist(), (at + 1 + before).tolist()
+        self.added = [0, *before.tolist()]
+        self.size = size + self.added[-1]
+        self.copies, self.copies_end = copies.tolist(), (place + length).tolist()
+        self.left_out = [0, *np.cumsum(length).tolist()]
+        self.copied: list[Array] = []
+        for _, start, long in self.copies:  # each from those before it
+            self.copied.append(_joined(list(self._stretches(start, start + long)), long))
+
+    def part(self, start: int, size: int) -> Array:
+        """The numbers (size,) from `start` on, not copied where they stand in one piece. ValueError beyond the end."""
+        if start < 0 or start + size > self.size:
+            raise ValueError("it is cut short")
+        return _joined(list(self._pieces(start, start + size)), size)
+
+    def _pieces(self, start: int, end: int) -> Iterator[tuple[Array, int]]:
+        """Stretches of numbers with how long they are, and for runs (1,) with how long it is."""
+        k = bisect_right(self.runs_end, start)
+        while start < end:
+            at, count = self.runs[k] if k < len(self.runs) else (self.size, 0)
+            first = at + self.added[k]  # of the run
+            if start < first:
+                stop = min(first, end)
+                yield from self._stretches(start - self.added[k], stop - self.added[k])
+            else:
+                stop = min(first + count, end)
+                ((number, _),) = self._stretches(at, at + 1)
+                yield number, stop - start
+                k += 1
+            start = stop
+
+    def _stretches(self, start: int, end: int) -> Iterator[tuple[Array, int]]:
+        """Stretches, with how long they are, of the numbers with one of each run."""
+        k = bisect_right(self.copies_end, start)
+        while start < end:
+            place, _, length = self.copies[k] if k < len(self.copies) else (end, 0, 0)
+            if start < place:
+                stop = min(end, place)
+                yield self.rest[start - self.left_out[k] : stop - self.left_out[k]], stop - start
+            else:
+                stop = min(end, place + length)
+                yield self.copied[k][start - place : stop - place], stop - start
+                k += 1
+            start = stop
+
+
+def _joined(pieces: list[tuple[Array, int]], size: int) -> Array:
+    if len(pieces) == 1 and len(pieces[0][0]) == size:
+        return pieces[0][0]
+    numbers, end = np.empty(size), 0
+    for piece, count in pieces:
+        numbers[end : end + count] = piece
+        end += count
+    numbers.flags.writeable = False
     return numbers
 
 

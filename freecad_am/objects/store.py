@@ -2,8 +2,8 @@
 """Results of the core as two values a document can hold: one list of floats and one text.
 
 Dataclasses, tuples, arrays, bytes and plain values go in; the same come out. The floats are the arrays one after
-the other (whole numbers and truth values are exact in a float; bytes go compressed, six to a float), but for runs of
-one number and stretches that are there before; the text is JSON that says what is where. A FloatList is kept as a
+the other (whole numbers and truth values are exact in a float; bytes go compressed together, six to a float), but for
+runs of one number and stretches that are there before; the text is JSON that says what is where. A FloatList is kept as a
 compressed binary file in the FCStd, and unlike an included file it follows undo and copies of the object by value.
 """
 
@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import array
 import dataclasses
+import functools
 import importlib
 import json
+import lzma
 import zlib
 from collections.abc import Sequence
 from typing import Any
@@ -34,6 +36,8 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     packer = _Packer()
     packer.put(np.array([_mark(key)]))
     tree = packer.tree(value)
+    if packer.data:
+        tree = {"z": packer.put_data(), "v": tree}
     numbers, runs = repeats.without_runs(np.concatenate(packer.parts))
     rest, copies = repeats.folded(numbers)
     if len(copies):
@@ -67,18 +71,20 @@ def picked(
         if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
             raise ValueError("it belongs to other inputs")
         tree, numbers = json.loads(text[len(key):]), np.asarray(floats)
-        runs = np.zeros((0, 2), dtype=np.int64)
+        runs, copies = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 3), dtype=np.int64)
         if isinstance(tree, dict) and "r" in tree:
             numbers, runs = _split(numbers, tree["r"], 2)
             tree = tree["v"]
+        size = len(numbers)
         if isinstance(tree, dict) and "f" in tree:
             (size, count), tree = tree["f"], tree["v"]
-            numbers = repeats.unfolded(*_split(numbers, count, 3), size)
-        if len(runs):
-            numbers = repeats.with_runs(numbers, runs)
-        reader = _Reader(numbers)
+            numbers, copies = _split(numbers, count, 3)
+        reader = _Reader(repeats.Unfolded(numbers, copies, size, runs))
+        if isinstance(tree, dict) and "z" in tree:
+            reader.data, tree = tuple(tree["z"]), tree["v"]
         return tuple(reader.value(_within(tree, place)) for place in places)
-    except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error) as error:
+    except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error,
+            lzma.LZMAError) as error:
         raise InputError("BAD_RESULT", where, f"the stored result cannot be read ({error}); recompute it") from None
 
 
@@ -103,6 +109,7 @@ class _Packer:
     def __init__(self) -> None:
         self.parts: list[NDArray[np.float64]] = []
         self.size = 0
+        self.data = bytearray()
 
     def tree(self, value: Any) -> Any:
         if value is None or isinstance(value, (bool, int, float, str)):
@@ -115,8 +122,8 @@ class _Packer:
         if isinstance(value, np.generic):
             return value.item()
         if isinstance(value, (bytes, bytearray)):
-            packed = zlib.compress(bytes(value), 6)
-            return {"b": [len(packed), *self.put(_floats_of(packed))]}
+            self.data += value
+            return {"y": [len(self.data) - len(value), len(value)]}
         if isinstance(value, (tuple, list)):
             return {"t": [self.tree(entry) for entry in value]}
         if isinstance(value, dict):
@@ -128,6 +135,11 @@ class _Packer:
             return {"c": f"{kind.__module__.removeprefix(_PACKAGE)}:{kind.__qualname__}", "v": values}
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
+    def put_data(self) -> list[int]:
+        """All bytes: the files of a program are much alike, and far apart for zlib."""
+        packed = lzma.compress(self.data, preset=1)
+        return [len(packed), *self.put(_floats_of(packed))]
+
     def put(self, flat: NDArray[Any]) -> tuple[int]:
         start = self.size
         self.parts.append(flat.astype(np.float64))
@@ -136,8 +148,9 @@ class _Packer:
 
 
 class _Reader:
-    def __init__(self, floats: NDArray[np.float64]) -> None:
+    def __init__(self, floats: repeats.Unfolded) -> None:
         self.floats = floats
+        self.data: tuple[int, ...] = ()  # where the bytes are
 
     def value(self, tree: Any) -> Any:
         if not isinstance(tree, dict):
@@ -145,25 +158,33 @@ class _Reader:
         if "a" in tree:
             dtype, start, *shape = tree["a"]
             size = int(np.prod(shape)) if shape else 1
-            return self.slice(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
+            return self.floats.part(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
         if "s" in tree:
             dtype, start, rows, sides, columns = tree["s"]
-            numbers = self.slice(start, rows * sides * columns).astype(_DTYPES[dtype], copy=False)
+            numbers = self.floats.part(start, rows * sides * columns).astype(_DTYPES[dtype], copy=False)
             turned = numbers.reshape(sides, rows, columns)
             return np.ascontiguousarray(turned.transpose(1, 0, 2))
-        if "b" in tree:
-            length, start = tree["b"]
-            return zlib.decompress(_bytes_of(self.slice(start, -(-length // _BYTES_PER_FLOAT)), length))
+        if "y" in tree:
+            start, length = tree["y"]
+            if start + length > len(self.bytes):
+                raise ValueError("it is cut short")
+            return self.bytes[start : start + length]
+        if "b" in tree:  # as older documents have them
+            return zlib.decompress(self.packed(*tree["b"]))
         if "t" in tree:
             return tuple(self.value(entry) for entry in tree["t"])
         if "d" in tree:
             return {key: self.value(entry) for key, entry in tree["d"]}
         return _class(tree["c"])(**{name: self.value(entry) for name, entry in tree["v"].items()})
 
-    def slice(self, start: int, size: int) -> NDArray[np.float64]:
-        if start + size > len(self.floats):
-            raise ValueError("it is cut short")
-        return self.floats[start : start + size]
+    @functools.cached_property
+    def bytes(self) -> bytes:
+        """All bytes, one value after the other."""
+        return lzma.decompress(self.packed(*self.data)) if self.data else b""
+
+    def packed(self, length: int, start: int) -> bytes:
+        """Bytes that are kept six to a float."""
+        return _bytes_of(self.floats.part(start, -(-length // _BYTES_PER_FLOAT)), length)
 
 
 def _class(name: str) -> Any:

@@ -6,16 +6,25 @@ import pytest
 
 from freecad_am.objects import repeats, store
 
+NO_RUNS, NO_COPIES = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 3), dtype=np.int64)
+
 
 def same(one, other):
     return one.dtype == other.dtype and one.tobytes() == other.tobytes()
 
 
 def there_and_back(numbers):
+    """The whole and random parts; the rest of what is without runs, and its copies."""
     once, runs = repeats.without_runs(numbers)
-    assert same(repeats.with_runs(once, runs), numbers)
-    rest, copies = repeats.folded(numbers)
-    assert same(repeats.unfolded(rest, copies, len(numbers)), numbers)
+    rest, copies = repeats.folded(once)
+    whole = repeats.Unfolded(rest, copies, len(once), runs)
+    assert same(whole.part(0, len(numbers)), numbers)
+    random = np.random.default_rng(len(numbers))
+    for start, end in np.sort(random.integers(0, len(numbers) + 1, (50, 2)), axis=1).tolist():
+        assert same(whole.part(start, end - start), numbers[start:end])
+    for start, size in ((-1, 1), (0, len(numbers) + 1), (len(numbers), 1)):
+        with pytest.raises(ValueError, match="cut short"):
+            whole.part(start, size)
     return rest, copies
 
 
@@ -56,7 +65,7 @@ def test_every_run_is_left_out():
     assert (runs[:, 1] == sizes).all()
     for bad in (runs + [len(once), 0], runs - [1, 0], runs[::-1], runs * [1, 0]):
         with pytest.raises(ValueError, match="damaged"):
-            repeats.with_runs(once, bad)
+            repeats.Unfolded(once, NO_COPIES, len(once), bad)
 
 
 def test_nothing_is_counted_from_both_sides():
@@ -81,7 +90,7 @@ def test_damaged_ones_are_told():
         (rest, copies, 250),
     ):
         with pytest.raises(ValueError, match=r"damaged|cut short"):
-            repeats.unfolded(*bad)
+            repeats.Unfolded(*bad, NO_RUNS)
 
 
 def test_results_that_repeat_take_less_room_and_old_ones_are_read():

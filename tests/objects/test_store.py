@@ -2,6 +2,7 @@
 """Results come back from floats and text bit for bit."""
 
 import json
+import zlib
 
 import numpy as np
 import pytest
@@ -59,6 +60,19 @@ def test_parts_alone_are_those_of_the_whole(seed):
 def test_bytes_come_back(length):
     data = np.random.default_rng(length).integers(0, 256, length, dtype=np.uint8).tobytes()
     files = {"A.LS": data, "é.LS": b""}
+    assert store.unpack(*store.pack(files, "k"), "k", "x") == files
+    older = np.zeros(-(-len(zlib.compress(data)) // 6) * 8, dtype=np.uint8).reshape(-1, 8)
+    older[:, :6].flat[: len(zlib.compress(data))] = np.frombuffer(zlib.compress(data), dtype=np.uint8)
+    floats = [store.pack((), "k")[0][0], *older.view("<u8").ravel().astype(float)]
+    assert store.unpack(floats, f'k {{"b":[{len(zlib.compress(data))},1]}}', "k", "x") == data
+
+
+def test_files_alike_take_the_room_of_one():
+    random = np.random.default_rng(1)
+    text = random.integers(0, 256, 100_000, dtype=np.uint8).tobytes()
+    files = {f"P{k}.LS": text[:k] + b"x" + text[k:] for k in range(0, 100_000, 10_000)}
+    floats, _ = store.pack(files, "k")
+    assert len(floats) < 1.1 * len(text) / 6
     assert store.unpack(*store.pack(files, "k"), "k", "x") == files
 
 
