@@ -13,6 +13,7 @@ import Part
 
 from ..core.geometry.surface import dot
 from ..core.geometry.surface_wall import TABLE, TORUS, Array, Placed, SurfaceWall
+from ..core.geometry.told import deviation
 from ..core.issues import NOTE, InputError, Issue
 from .patch_wall import sound
 from .wall import Tube, tubes
@@ -51,7 +52,8 @@ def find_wall(
     points, _, error = chains[-1]
     _refuse_inside(tube, solid, label, substrate_label)
     _refuse_edges(tube, points, named, label)
-    issues = [Issue(NOTE, "FIRST_LAYER", f"the first layer lies on the wall and on {substrate_label} within {error:.2g} mm")]
+    found = f"the first layer lies on the wall and on {substrate_label} within {deviation(error)} mm"
+    issues = [Issue(NOTE, "FIRST_LAYER", found)]
     if len(chains) > 1:
         issues.append(Issue(
             NOTE, "SEVERAL_LOOPS", f"{label} meets {substrate_label} in {len(chains)} loops; layers start at the uppermost"

@@ -14,7 +14,7 @@ from ..core.geometry import contact
 from ..core.geometry.ground import nearest
 from ..core.geometry.mesh import Mask
 from ..core.geometry.patch_wall import FirstCurve, PatchWall
-from ..core.geometry.told import place
+from ..core.geometry.told import deviation, place
 from ..core.geometry.wall_rims import outward_volume, parts, rims_of, with_ends
 from ..core.issues import NOTE, InputError, Issue
 from .sheet import sheet
@@ -121,10 +121,10 @@ def _from_substrate(
         )
     found = f"the first layer lies on the wall and on {substrate.label}"
     if ground.facets:
-        found += (f"; between the edges of its triangles it runs smoothly, up to {off:.2g} mm off them, about as far as "
-                  "they are off what they stand for" if off > 0.0 else "")
+        found += (f"; between the edges of its triangles it runs smoothly, up to {deviation(off)} mm off them, about as far "
+                  "as they are off what they stand for" if off > 0.0 else "")
     else:
-        found += f" within {off:.2g} mm"
+        found += f" within {deviation(off)} mm"
     return first, value < 0.0, [Issue(NOTE, "FIRST_LAYER", found)]
 
 

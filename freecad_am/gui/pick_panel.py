@@ -198,7 +198,7 @@ class PickPanel(StagePanel):
             return
         try:
             draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
-            self.background.start(self._work(draft), self._show_result)
+            self.background.start(draft.told(self._work(draft)), self._show_result)
         except AmError as error:
             self._refuse(error)
             return
@@ -219,7 +219,7 @@ class PickPanel(StagePanel):
             self._refuse(error)
         except ReferenceError:
             self.close()
-        except Exception as error:  # of OpenCASCADE; OK would tell it too
+        except Exception as error:  # of nobody's making; OK would tell it too
             self._say(f"{type(error).__name__}: {error}", True)
             self._draw_without()
 

@@ -4,15 +4,18 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypeVar
 
 import FreeCADGui as Gui
 
+from ..objects import faults
 from ..objects.stage import Stage, Work
 
 NAME = "RoboticAM_Preview"
 _VIEW = "Gui::View3DInventor"
+T = TypeVar("T")
 
 
 class Draft:
@@ -35,6 +38,15 @@ class Draft:
     def prepare(self) -> Work:
         """The work that computes what the stage would, without the document. Raises what it raises, as does the work."""
         return self.stage.prepare(self.obj)
+
+    def told(self, work: Callable[[], T]) -> Callable[[], T]:
+        """Work of a preview that tells a lack of memory and faults of the geometry kernel as the stage itself does."""
+
+        def within() -> T:
+            with faults.kernel(self.obj), faults.memory(self.obj.Label):
+                return work()
+
+        return within
 
 
 class Preview:

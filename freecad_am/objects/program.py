@@ -67,7 +67,6 @@ class Program(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
 
-
     def refuse_early(self, obj: Any, cell: cells.Cell, process: ProcessParameters) -> None:
         """Say at once, before its joint path is planned, what makes the program impossible in the cell."""
         try:

@@ -21,9 +21,8 @@ from typing import Any, ClassVar
 
 import FreeCAD as App
 
-from ..brep.kernel import told
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
-from . import expressions, hooks, progress, properties, staleness, store
+from . import expressions, faults, hooks, progress, properties, staleness, store
 from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 
@@ -153,7 +152,7 @@ class Stage:
         if hooks.carrying():
             raise InputError("BUSY", obj.Label, "something else is being computed; wait until that is done, or cancel it")
         try:
-            with told(_subject(obj)):
+            with faults.kernel(obj):
                 key = self.key(obj)
                 outdated = (force or key != obj.Key) and self._compute(obj, key)
             found = issues_of(obj)
@@ -184,14 +183,9 @@ class Stage:
         work = self.prepare(obj)
 
         def packed() -> tuple[Outcome, list[float], str]:
-            try:
+            with faults.memory(label):
                 outcome = work()
                 return outcome, *store.pack(outcome.value, key)
-            except MemoryError:
-                raise InputError(
-                    "NO_MEMORY", label, "there is not enough memory to compute it; give larger steps, such as layer height "
-                    "and chord error, or a smaller part"
-                ) from None
 
         try:
             made = hooks.carry_out(packed, obj.Label)
@@ -387,12 +381,6 @@ def _say(obj: Any, status: str, message: str) -> None:
         obj.Message = message
     if obj.Status != status:
         obj.Status = status
-
-
-def _subject(obj: Any) -> str:
-    """What a stage of shapes is made from, for messages."""
-    source = getattr(obj, "Source", None)
-    return str(source[0].Label if source else obj.Label)
 
 
 def checked(obj: Any, link: Link) -> Any:

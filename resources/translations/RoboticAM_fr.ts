@@ -7932,7 +7932,7 @@
         <translation>il n&apos;y a pas de {0} ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
+        <location filename="../../freecad_am/objects/faults.py"/>
         <source>there is not enough memory to compute it; give larger steps, such as layer height and chord error, or a smaller part</source>
         <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
     </message>

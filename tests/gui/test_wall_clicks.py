@@ -215,6 +215,29 @@ def test_a_disabled_tool_says_what_is_missing(person, bend):
     person.until(lambda: "First open a part" in person.button("RoboticAM_WallOnPart").toolTip(), "the tooltip", 5)
 
 
+def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
+    from freecad_am.objects import surface_feature
+
+    def too_much(*_):
+        raise MemoryError("Unable to allocate 444. PiB")
+
+    whole = surface_feature.wall_on
+    monkeypatch.setattr(surface_feature, "wall_on", too_much)
+    part, pipe = bend
+    person.select(part, "Face1")
+    person.gui.Selection.addSelection(pipe)
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel(PANEL)
+    note = person.field(panel, "preview")
+    person.until(lambda: "not enough memory to compute it; give larger steps" in note.text(), "the advice", 10)
+    assert "MemoryError" not in note.text()
+    monkeypatch.setattr(surface_feature, "wall_on", whole)
+    person.type(panel, "LayerHeight", "4 mm")
+    previewed(person, panel)
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_a_scan_is_a_substrate_and_a_mesh_is_no_wall(person, bend):
     import Mesh
 

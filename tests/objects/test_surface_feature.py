@@ -33,6 +33,7 @@ def test_feature_and_toolpath(doc, tube):
     wall = api.result(feature)
     assert feature.WallKind == "cone" and list(feature.WallFaces) == ["Face1"]
     assert np.hypot(wall.first[:, 0], wall.first[:, 2]) == pytest.approx(32.0, abs=1e-9)
+    assert [issue.message for issue in wall.issues] == ["the first layer lies on the wall and on Pipe within 0.001 mm"]
     toolpath = api.make_toolpath(doc, feature)
     value = api.result(toolpath)
     assert value.family == "surface" and toolpath.Layers == len(value.layers)

@@ -63,7 +63,8 @@ def deposit(points: Array, build: Array, width: float, height: float) -> Deposit
 
 @dataclass(frozen=True)
 class Touches:
-    """link: (k,) the first link that touches something, NONE where none does. what: (k,) number of `ArmContact.names`."""
+    """With k joint vectors. what: (k,) number in `ArmContact.names` of the first of those that a link touches; link: (k,)
+    number of the link nearest to the base, 0, that touches it; NONE in both where nothing touches."""
 
     link: Index
     what: Index
