@@ -13,10 +13,11 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.issues import WARNING, Issue
 from freecad_am.core.planning import moving_tool
 from freecad_am.core.simulation.pace import pace
-from freecad_am.core.simulation.watch import ISSUE, LIMIT, SLOWED, TOUCHES
+from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
 from freecad_am.gui.simulation import dock as docks
 from freecad_am.gui.simulation import tool
 from freecad_am.gui.simulation.run import run_of
+from freecad_am.gui.simulation.scene import SLOW, WRONG
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.joint_path import Planned
 
@@ -189,6 +190,12 @@ def red_pixels(person):
     return int(((red > 90) & (red > 3 * green) & (red > 3 * blue)).sum())
 
 
+def drawn(simulation, colour):
+    """(n,) whether the deposit rows are drawn in a colour."""
+    red, green, blue = (round(255 * share) for share in colour)
+    return simulation.scene.deposit.colours == (red << 24 | green << 16 | blue << 8 | 255)
+
+
 def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     path = job(hemisphere)
     far, fast = violated(path)
@@ -222,10 +229,43 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     assert kept.slowed[fast] and kept.axis[fast] == 5
     assert person.field(panel, "speed").text() == f"{kept.achieved[fast]:.3g} mm/s instead of {kept.asked[fast]:.3g} mm/s"
     assert simulation.scene.machine.bad[6]
+    # on the path, past the limit red, too fast orange
+    on_path = np.flatnonzero(simulation.run.motion.deposit)
+    for rows, colour in ((far, WRONG), ([fast], SLOW)):
+        assert drawn(simulation, colour)[np.searchsorted(on_path, rows)].all()
     person.field(panel, "next_finding").click()
     simulation.player.go_to_row(len(simulation.run.motion) // 2)
     simulation.show()
     assert not simulation.scene.machine.bad.all()
+
+
+def test_what_is_near_a_singularity_turns_red(person, hemisphere):
+    """A part of the path is: the condition asked for lies between those of one RZ for all, which is not searched."""
+    path = job(hemisphere)
+    api.change(path, method="constant", rz="20 deg")
+    hemisphere.Document.recompute()
+    least = float(np.nanmedian(run_of(path).watch.condition))
+    api.change(path, min_condition=least)
+    hemisphere.Document.recompute()
+    panel, simulation = opened(person, path)
+    run = simulation.run
+    deposit, near = run.motion.deposit, run.watch.condition < least * (1.0 - 1e-9)
+    else_wrong = (run.watch.margin < -1e-6) | (run.watch.touching != -1)
+    assert SINGULAR in {finding.kind for finding in run.watch.findings}
+    assert np.array_equal(drawn(simulation, WRONG), (near | else_wrong)[deposit])
+    row, free = (
+        int(np.flatnonzero(rows)[0]) for rows in (near & ~else_wrong, deposit & ~near & ~else_wrong & (run.watch.margin > 1.0))
+    )
+    for at, red in ((row, True), (free, False)):
+        simulation.player.go_to_row(at)
+        simulation.show()
+        person.idle(0.2)
+        assert simulation.scene.machine.bad.tolist() == [False, *[red] * 6]
+        assert ("color" in person.field(panel, "condition").styleSheet()) == red
+        person.screenshot(f"simulation_singular_{red}")
+    while simulation.player.row != row:
+        person.field(panel, "next_finding").click()
+    assert "Near a singularity" in person.field(panel, "finding").text()
 
 
 def test_a_robot_that_reaches_nothing_stands_in_one_piece(person, hemisphere):

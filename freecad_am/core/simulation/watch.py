@@ -5,7 +5,7 @@ something, or is slower than asked."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -57,6 +57,20 @@ class Watch:
     touching: NDArray[np.int64]
     arm_known: bool
 
+    @property
+    def past(self) -> NDArray[np.bool_]:
+        """(n,) rows past a limit."""
+        with np.errstate(invalid="ignore"):
+            past: NDArray[np.bool_] = self.margin < -_ROUNDING
+        return past
+
+    @property
+    def singular(self) -> NDArray[np.bool_]:
+        """(n,) rows nearer to a singularity than is allowed."""
+        with np.errstate(invalid="ignore"):
+            near: NDArray[np.bool_] = self.condition < self.threshold * (1.0 - 1e-9)
+        return near
+
 
 def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
     """(..., limits) distances of joints (..., axes) to every limit in the units they are shown in: degrees, or mm."""
@@ -96,16 +110,17 @@ def watch(
     margins = shown_margins(cell, motion.joints)
     limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)
     margin = np.take_along_axis(margins, limit[:, None], axis=1)[:, 0]
+    touching = np.full(len(motion), NONE, dtype=np.int64) if arm is None else arm.link
+    seen = Watch(margin, limit, condition, threshold, (), touching, arm is not None)
     with np.errstate(invalid="ignore"):
-        over, near = margin < -_ROUNDING, (margin < NEAR) & (margin >= -_ROUNDING)
-        singular = condition < threshold * (1.0 - 1e-9)
+        near = (margin < NEAR) & ~seen.past
     labels, axes = cell.limits.labels, cell.machine.axes
     found = [Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))]
-    for kind, mask in ((LIMIT, over), (NEAR_LIMIT, near)):
+    for kind, mask in ((LIMIT, seen.past), (NEAR_LIMIT, near)):
         found += [Finding(row, kind, labels[limit[worst]], float(margin[worst])) for row, worst in _runs(mask, margin)]
     found += [
         Finding(row, SINGULAR, "", float(condition[worst]), float(threshold[worst]))
-        for row, worst in _runs(singular, condition)
+        for row, worst in _runs(seen.singular, condition)
     ]
     share = np.where(kept.slowed, kept.achieved / np.where(kept.asked > 0.0, kept.asked, 1.0), 1.0)
     found += [
@@ -117,8 +132,7 @@ def watch(
     found += [Finding(_row_of(motion, issue), ISSUE, issue.message) for issue in issues
               if issue.level != NOTE and issue.layer is not None]
     found.sort(key=lambda finding: finding.row)
-    touching = np.full(len(motion), NONE, dtype=np.int64) if arm is None else arm.link
-    return Watch(margin, limit, condition, threshold, tuple(found), touching, arm is not None)
+    return replace(seen, findings=tuple(found))
 
 
 def _touching(arm: ArmTouches, axes: Sequence[str]) -> list[Finding]:

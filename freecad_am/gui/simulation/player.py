@@ -106,7 +106,7 @@ class Player:
         ratios = np.nan_to_num(ratios, posinf=0.0)
         margins = shown_margins(run.cell, state.joints)
         condition, threshold = float(run.watch.condition[row]), float(run.watch.threshold[row])
-        singular, reachable = condition < threshold * (1.0 - _SAME), bool(np.isfinite(state.joints).all())
+        singular, reachable = bool(run.watch.singular[row]), bool(np.isfinite(state.joints).all())
         links = bad_links(run.cell, margins, ratios, singular, reachable, int(run.watch.touching[row]))
         alone = bad_links(run.cell, margins, ratios, False, True)
         axes = len(machine.axes)

@@ -68,23 +68,22 @@ class Scene:
         self.hidden = _hide_ours(run.document)
 
     def _fill(self) -> None:
-        """The deposit, one row for each deposit row of the motion: metal, or coloured where the speed is not kept."""
+        """The deposit, one row for each deposit row of the motion: metal, orange where the speed is not kept, red where
+        something is wrong."""
         motion = self.run.motion
         deposit = motion.deposit
         self.rows_before = np.concatenate([[0], np.cumsum(deposit)])
         beads = _beads(self.run)
         rows = Rows.of(beads, _layers(self.run), self.run.width, lambda: self.run.toolpath.layer_height)
         colours = np.tile(METAL, (len(rows), 1))
-        slowed, over = self.run.pace.slowed[deposit], self.run.watch.margin[deposit] < 0.0
-        over = over | (self.run.watch.touching[deposit] != NONE)
-        colours[slowed] = SLOW
-        colours[over | ~motion.reachable[deposit]] = WRONG
+        slowed, wrong = self.run.pace.slowed[deposit], _wrong(self.run)[deposit]
+        colours[slowed], colours[wrong] = SLOW, WRONG
         self.deposit.set(rows)
         self.deposit.paint(colours)
         self.deposit.show(0, 0)
         self.to_come.set(motion.position[deposit], np.diff(rows.starts))
         plain = np.tile(TO_COME, (len(rows), 1))
-        plain[slowed], plain[over] = SLOW, WRONG
+        plain[slowed], plain[wrong] = SLOW, WRONG
         self.to_come.paint(plain)
 
     # ---- each frame
@@ -125,6 +124,14 @@ class Scene:
                 camera.copyFieldValues(self.camera)
             else:  # from perspective to orthographic meanwhile, or the other way
                 self.view.setCamera(self.camera_text)
+
+
+def _wrong(run: Run) -> NDArray[np.bool_]:
+    """(n,) rows that are past a limit, near a singularity or out of reach, or at which a link touches something."""
+    wrong: NDArray[np.bool_] = (
+        run.watch.past | run.watch.singular | (run.watch.touching != NONE) | ~run.motion.reachable
+    )
+    return wrong
 
 
 def _beads(run: Run) -> list[Bead]:
