@@ -16,17 +16,18 @@ OF_LAYER = 1000
 
 
 class Drawn:
-    """Tells when a view has drawn its scene."""
+    """Tells when a view has drawn its scene, and counts it where what it is to show is there."""
 
-    def __init__(self, view) -> None:
+    def __init__(self, view, there=lambda: True) -> None:
         from pivy import coin
 
-        self.count, self.node, self.drawing = 0, coin.SoCallback(), coin.SoGLRenderAction.getClassTypeId()
+        self.there, self.count = there, 0
+        self.node, self.drawing = coin.SoCallback(), coin.SoGLRenderAction.getClassTypeId()
         self.node.setCallback(self._seen)
         view.getSceneGraph().addChild(self.node)
 
     def _seen(self, _: object, action) -> None:
-        self.count += action.isOfType(self.drawing)  # FreeCAD's own is derived from it
+        self.count += action.isOfType(self.drawing) and self.there()  # FreeCAD's own is derived from it
 
     def after(self, act) -> float:
         """ms from before the act until it is drawn."""
@@ -147,11 +148,12 @@ def _opened(path: str, drawn: bool) -> float:
 
     start = time.perf_counter()
     document = App.openDocument(path)
-    view = document.getObject("JointPath").ViewObject.Proxy
-    while drawn and not view.path.painted and time.perf_counter() < start + 30.0:
+    nodes = document.getObject("JointPath").ViewObject.Proxy.path
+    seen = Drawn(Gui.activeDocument().activeView(), lambda: nodes.painted or not drawn)
+    if not drawn:
+        Gui.activeDocument().activeView().redraw()
+    while not seen.count and time.perf_counter() < start + 30.0:
         Gui.updateGui()
-    seen = Drawn(Gui.activeDocument().activeView())
-    seen.after(Gui.activeDocument().activeView().redraw)
     took = time.perf_counter() - start
     App.closeDocument(document.Name)
     return took

@@ -127,11 +127,9 @@ def _of_machine(obj: Any, planned: Any, kind: str) -> Array:
     if motion.joints.shape[1] != limits.axes:
         raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
     if kind == MARGIN:
-        coupled = motion.joints @ limits.coefficients.T
-        share = margins(
-            np.concatenate([motion.joints, coupled], axis=1), np.concatenate([limits.lower, limits.coupled_lower]),
-            np.concatenate([limits.upper, limits.coupled_upper]),
-        ).min(axis=1)
+        coupled = margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)
+        share = margins(motion.joints, limits.lower, limits.upper).min(axis=1)
+        share = np.minimum(share, coupled.min(axis=1, initial=np.inf))
     else:
         ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
         share = from_next(motion.deposit, motion.point, ratio)

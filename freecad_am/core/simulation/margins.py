@@ -17,11 +17,14 @@ def margins(joints: Array, lower: Array, upper: Array) -> Array:
 
     joints: (n, a) rad or mm. lower, upper: (a,), infinite where an axis is endless; there the share is 1.
     """
-    half = 0.5 * (upper - lower)
-    endless = ~np.isfinite(half)
-    left = np.minimum(joints - np.where(endless, 0.0, lower), np.where(endless, 0.0, upper) - joints)
-    share = left / np.where(endless | (half <= 0.0), 1.0, half)
-    return np.where(endless & np.isfinite(joints), 1.0, share)
+    share = np.empty_like(joints)
+    for axis, (low, high) in enumerate(zip(lower, upper, strict=True)):  # what is as large as the joints takes long to get
+        column, half = joints[:, axis], 0.5 * (high - low)
+        if np.isfinite(half):
+            share[:, axis] = np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0)
+        else:
+            share[:, axis] = np.where(np.isfinite(column), 1.0, np.minimum(column, -column))
+    return share
 
 
 def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:
