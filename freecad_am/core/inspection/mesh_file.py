@@ -28,7 +28,11 @@ def stl(data: bytes, where: str) -> Array:
         corners = np.frombuffer(data, dtype=_STL_TRIANGLE, offset=84)["corners"].reshape(-1, 3)
     else:
         corners = _numbers(re.findall(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", data), where)
-    return np.unique(corners.astype(np.float64), axis=0)
+    points = corners.astype(np.float64)
+    points = points[np.lexsort(points.T[::-1])]  # as np.unique of rows has them, which holds up other threads meanwhile
+    other: NDArray[np.bool_] = np.ones(len(points), dtype=bool)
+    other[1:] = (points[1:] != points[:-1]).any(axis=1)
+    return points[other]
 
 
 def obj(data: bytes, where: str) -> Array:
