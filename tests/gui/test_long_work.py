@@ -158,10 +158,8 @@ def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job
         getattr(api, long_job.function)(document, **long_job.inputs)
     latency, worked = time.monotonic() - stamps[0][0], time.process_time() - stamps[0][1]
     watcher.stop()
-    print(
-        f"{long_job.function}: cancelled in {latency:.3f} s ({worked:.3f} s of work), longest pause {max(watcher.gaps):.3f} s "
-        f"({max(watcher.pauses):.3f} s of work)"
-    )
+    print(f"{long_job.function}: cancelled in {latency:.3f} s ({worked:.3f} s of work), longest pause "
+          f"{max(watcher.gaps):.3f} s ({max(watcher.pauses):.3f} s of work)")
     assert latency < HANGING and max(watcher.gaps) < HANGING
     assert worked < CANCELLED and max(watcher.pauses) < PAUSE
     assert texts[0][0].startswith(("Toolpath", "Joint path"))

@@ -253,9 +253,8 @@ def test_what_is_near_a_singularity_turns_red(person, hemisphere):
     else_wrong = (run.watch.margin < -1e-6) | (run.watch.touching != -1)
     assert SINGULAR in {finding.kind for finding in run.watch.findings}
     assert np.array_equal(drawn(simulation, WRONG), (near | else_wrong)[deposit])
-    row, free = (
-        int(np.flatnonzero(rows)[0]) for rows in (near & ~else_wrong, deposit & ~near & ~else_wrong & (run.watch.margin > 1.0))
-    )
+    calm = deposit & ~near & ~else_wrong & (run.watch.margin > 1.0)
+    row, free = (int(np.flatnonzero(rows)[0]) for rows in (near & ~else_wrong, calm))
     for at, red in ((row, True), (free, False)):
         simulation.player.go_to_row(at)
         simulation.show()
