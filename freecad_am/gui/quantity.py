@@ -4,8 +4,9 @@
 A text that starts with `=` is an expression, which the number follows; FreeCAD's own way to enter one would change the
 document before OK.
 
-FreeCAD's field leaves out the characters it groups digits by ('1,5' is 15 where decimals have a point), takes other
-units ('3 deg' is 3 mm), and on leaving goes back to the last text it could read ('1.2.3' becomes 1.23).
+FreeCAD's field leaves out the characters it groups digits by ('1,5' is 15 where decimals have a point), refuses keys
+that make a quantity of another kind (of 'mm/min' the m, so that 'in' is left; '20 s' would be 20 mm/s), and on leaving
+goes back to the last text it could read ('1.2.3' becomes 1.23).
 """
 
 from __future__ import annotations
@@ -44,6 +45,7 @@ class QuantityField:
         self.box.setProperty("value", quantity)
         self.box.setMinimumWidth(_LEAST_WIDTH)
         self.line = self.box.findChild(QtGui.QLineEdit)
+        self.line.setValidator(None)  # it refuses keys, unseen; `read` tells what is wrong
         self.line.setCursorPosition(0)
         self.typed: str | None = None
         self.plain = self.line.text()  # what the field goes back to by itself

@@ -53,6 +53,24 @@ def test_what_is_typed_is_what_is_read(person, window):
     assert field.read() == 3.0  # stepped from what was typed
 
 
+def test_a_speed_is_typed_in_any_unit(person, window):
+    field = QuantityField(6.0, "mm/s", "Travel speed")
+    window.addWidget(field.box)
+    for text, speed in (("360 mm/min", 6.0), ("0.3m/min", 5.0), ("12 in/min", 5.08), ("9", 9.0), ("4 mm/s", 4.0)):
+        typed(person, field, text)
+        assert field.read() == pytest.approx(speed, rel=1e-14), text
+
+
+@pytest.mark.parametrize(("unit", "text"), [("mm/s", "7 mm"), ("mm/s", "20 s"), ("mm/s", "7 kg"), ("mm", "3 deg")])
+def test_a_quantity_of_another_kind_is_refused_as_it_was_typed(person, window, unit, text):
+    field = QuantityField(1.0, unit, "Travel speed")
+    window.addWidget(field.box)
+    typed(person, field, text)
+    with pytest.raises(api.InputError, match=f"{text}.* give a quantity in {unit}"):
+        field.read()
+    assert field.line.text() == text
+
+
 def test_a_number_too_long_for_its_field_shows_its_first_digits(person, window):
     field = QuantityField(123456.5, "mm", "Length")
     field.box.setFixedWidth(75)
