@@ -14,7 +14,7 @@ ENDLESS = " (endless)"
 # what is told where a machine file has no limit, and where none can have one
 NO_SPEED = "no limit known: the machine file has no max_speed"
 NO_ACCELERATION = "no limit known: the machine file has no max_acceleration"
-NO_JERK = "no limit known: machine files have none of jerks"
+NO_JERK = "no limit known: the machine file has no max_jerk"
 MOST_SHARE = 250.0  # % of the limit; what is faster is cut off, or the rest would not be seen
 
 
@@ -50,8 +50,8 @@ def accelerations(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def jerks(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """A chart per axis, while depositing; machine files tell no limits."""
-    most = np.full(len(_cell(source).machine.axes), INF)
+    """A chart per axis, while depositing."""
+    most = _cell(source).machine.max_jerk
     return _rates(source, rows, rows.along(source.rates.jerk), "jerk", "/s³", most, STEP, NO_JERK)
 
 

@@ -2317,6 +2317,11 @@
         <translation>J3 tel que montré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
+        <source>Jerk</source>
+        <translation>Jerk</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>Jog the machine to at least three poses in which every axis has moved, and type what the pendant shows: the joints, and the place of the tool frame in the base frame. The maker&apos;s simulator does as well; figures that were computed from this geometry prove nothing. A table can be pasted.</source>
         <translation>Amenez la machine à au moins trois poses où chaque axe a bougé, et saisissez ce que montre le pupitre : les articulations, et la place du repère outil dans le repère de base. Le simulateur du constructeur convient aussi ; des chiffres calculés à partir de cette géométrie ne prouvent rien. Un tableau peut être collé.</translation>
@@ -2563,8 +2568,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>Limits, speeds and accelerations</source>
-        <translation>Limites, vitesses et accélérations</translation>
+        <source>Limits, speeds, accelerations and jerks</source>
+        <translation>Limites, vitesses, accélérations et jerks</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -2968,8 +2973,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s and deg/s², sliding ones in mm, mm/s and mm/s². Leave both ends of a range empty for an axis that turns without end, speeds and accelerations where they are not known.</source>
-        <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s et deg/s², de translation en mm, mm/s et mm/s². Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses et accélérations là où elles ne sont pas connues.</translation>
+        <source>Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without end, speeds, accelerations and jerks where they are not known.</source>
+        <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
@@ -6628,13 +6633,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
-        <source>no limit known: machine files have none of jerks</source>
-        <translation>aucune limite connue : les fichiers machine n&apos;en ont pas pour les jerks</translation>
+        <source>no limit known: the machine file has no max_acceleration</source>
+        <translation>aucune limite connue : le fichier machine n&apos;a pas de max_acceleration</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
-        <source>no limit known: the machine file has no max_acceleration</source>
-        <translation>aucune limite connue : le fichier machine n&apos;a pas de max_acceleration</translation>
+        <source>no limit known: the machine file has no max_jerk</source>
+        <translation>aucune limite connue : le fichier machine n&apos;a pas de max_jerk</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -7098,8 +7103,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
-        <source>speed and acceleration are more than 0, or left empty</source>
-        <translation>vitesse et accélération sont supérieures à 0, ou laissées vides</translation>
+        <source>speed, acceleration and jerk are more than 0, or left empty</source>
+        <translation>vitesse, accélération et jerk sont supérieurs à 0, ou laissés vides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>

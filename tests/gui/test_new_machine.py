@@ -87,7 +87,7 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     person.screenshot("machine_1_source")
     go_on(person, hand, wizard, "LimitsPage")
     table = person.field(wizard, "limits")
-    assert [table.item(0, column).text() for column in range(4)] == ["-170", "170", "195", ""]
+    assert [table.item(0, column).text() for column in range(5)] == ["-170", "170", "195", "", ""]
     type_row(person, hand, table, 1, [-95.0])
     person.screenshot("machine_2_limits")
     go_on(person, hand, wizard, "FramesPage")
@@ -225,7 +225,7 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     limits = person.field(wizard, "limits")
     assert limits.rowCount() == 5 and limits.verticalHeaderItem(0).text() == "joint_1 (mm)"
     assert "an axis that slides has two ends" in refused(person, hand, wizard)
-    fill(limits, [[-500, 500, 200], [-500, 500, 200], [-300, 700, 200], [-120, 120, 90]])
+    fill(limits, [[-500, 500, 200], [-500, 500, 200], [-300, 700, 200, 900, 8000], [-120, 120, 90, 400, 5000]])
     go_on(person, hand, wizard, "FramesPage")
     go_on(person, hand, wizard, "PosesPage")
     values = np.array([[0, 0, 0, 0, 0], [10, 20, 30, 40, 50], [-15, 25, -35, 45, -55], [100, -90, 80, -70, 60]], float)
@@ -239,6 +239,8 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = machine.load("trunnion", user_machines.folders())
     assert made.is_table and made.opw is None and np.isinf(made.limits("maker").upper[4])
+    np.testing.assert_allclose(made.max_acceleration, [np.inf, np.inf, 900, np.radians(400), np.inf])
+    np.testing.assert_allclose(made.max_jerk, [np.inf, np.inf, 8000, np.radians(5000), np.inf])
     np.testing.assert_allclose(made.chain.forward(values), tool.chain.forward(values), atol=1e-6)
 
 

@@ -60,16 +60,18 @@ def test_limits_that_no_machine_file_tells_are_said_to_be_unknown(dome):
     source, _ = dome
     known = catalogue.picture("speeds", source).charts
     assert all(np.isfinite(chart.limits).all() and not chart.unlimited for chart in known)
-    for name, word in (("accelerations", "max_acceleration"), ("jerks", "jerks")):
+    for name, word in (("accelerations", "max_acceleration"), ("jerks", "max_jerk")):
         charts = catalogue.picture(name, source).charts
         assert all(np.isinf(chart.limits).all() and word in chart.unlimited for chart in charts)
     # as soon as a user's file tells some of them these are drawn, and of the others it is said
     most = np.array([np.inf, 500.0, np.inf, np.inf, np.inf, 900.0])
-    machine = dataclasses.replace(source.cell.machine, max_acceleration=np.radians(most))
-    told = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
-    charts = catalogue.picture("accelerations", told).charts
-    assert [bool(chart.unlimited) for chart in charts] == np.isinf(most).tolist()
-    np.testing.assert_allclose([chart.limits[1] for chart in charts], most)
+    for name, key in (("accelerations", "max_acceleration"), ("jerks", "max_jerk")):
+        machine = dataclasses.replace(source.cell.machine, **{key: np.radians(most)})
+        told = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
+        charts = catalogue.picture(name, told).charts
+        assert [bool(chart.unlimited) for chart in charts] == np.isinf(most).tolist()
+        np.testing.assert_allclose([chart.limits[1] for chart in charts], most)
+        np.testing.assert_allclose([chart.limits[0] for chart in charts], -most)
 
 
 def test_what_breaks_a_limit_is_counted(dome):

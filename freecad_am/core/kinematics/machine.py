@@ -44,8 +44,8 @@ class Machine:
     the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
-    the file does not say. `max_acceleration` (axes,) rad/s^2 or mm/s^2, infinite where not known. `shapes` (axes + 1) are
-    the files a user gave the links to be drawn from, base first.
+    the file does not say. `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
+    `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first.
     """
 
     id: str
@@ -63,6 +63,7 @@ class Machine:
     sources: tuple[str, ...]
     remarks: tuple[str, ...]
     max_acceleration: Array
+    max_jerk: Array
     shapes: tuple[LinkShape | None, ...]
 
     @property
@@ -163,7 +164,7 @@ def _near(name: str, names: list[str]) -> str:
 
 def _parse(top: Node) -> Machine:
     top.only(*KEYS)
-    keys = ("name", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration")
+    keys = ("name", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration", "max_jerk")
     joints = [joint.only(*keys) for joint in top["joints"].items()]
     if not joints:
         raise top["joints"].bad("there is no joint")
@@ -194,13 +195,14 @@ def _parse(top: Node) -> Machine:
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
         max_acceleration=np.array([_most(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
+        max_jerk=np.array([_most(joint, "max_jerk", "a jerk") for joint in joints]) * units,
         shapes=link_shapes(top, tuple(joint["name"].text() for joint in joints)),
     )
     if MAKER not in machine.limit_sets:
         raise top["limits"].bad(f"the set {MAKER!r} is missing")
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
         raise controller["matrix"].bad("the matrix has no inverse")
-    rates = (machine.max_speed, machine.max_acceleration)
+    rates = (machine.max_speed, machine.max_acceleration, machine.max_jerk)
     for array in (machine.base, *rates, machine.controller_matrix, machine.controller_offset):
         array.flags.writeable = False
     _check(machine, top["check_poses"])

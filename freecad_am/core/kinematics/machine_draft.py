@@ -35,8 +35,8 @@ TABLE = (3, 2)  # sliding and turning axes of the only machines that are no robo
 class Draft:
     """What a machine file is made of.
 
-    Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration` (axes,) rad and mm and per s, infinite where
-    endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None without.
+    Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk` (axes,) rad and mm and per s,
+    infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None without.
     `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm, with
     flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
     """
@@ -49,6 +49,7 @@ class Draft:
     upper: Array
     max_speed: Array
     max_acceleration: Array
+    max_jerk: Array
     base: Array
     shown: Shown
     shapes: tuple[LinkShape | None, ...]
@@ -107,7 +108,7 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
     return Draft(
         id=f"{machine.id}-copy", title=machine.title, chain=machine.chain, joints=names, lower=limits.lower[:count],
         upper=limits.upper[:count], max_speed=machine.max_speed, max_acceleration=machine.max_acceleration,
-        base=machine.base, shown=shown, shapes=machine.shapes, sources=(f"copy of {machine.id}", *machine.sources),
+        max_jerk=machine.max_jerk, base=machine.base, shown=shown, shapes=machine.shapes, sources=(f"copy of {machine.id}", *machine.sources),
         horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2]) if coupled else None,
         posts=machine.posts, values=machine.to_controller(q) / machine.unit_values, poses=poses,
     )
@@ -160,7 +161,7 @@ def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Dra
     endless = np.full(chain.axes, math.inf)
     return Draft(
         id="", title=title, chain=chain, joints=joints, lower=-endless, upper=endless, max_speed=endless,
-        max_acceleration=endless, base=np.eye(4), shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
+        max_acceleration=endless, max_jerk=endless, base=np.eye(4), shown=Shown((1,) * chain.axes, (0.0,) * chain.axes),
         shapes=(None,) * (chain.axes + 1), sources=(source,),
     )
 
@@ -186,8 +187,10 @@ def _joints(draft: Draft) -> list[dict[str, Any]]:
         joint |= _pose(draft.chain.origins[index])
         joint["axis"] = _figures(draft.chain.directions[index])
         joint["max_speed"] = _known(draft.max_speed[index] / draft.units[index])
-        if math.isfinite(draft.max_acceleration[index]):
-            joint["max_acceleration"] = _known(draft.max_acceleration[index] / draft.units[index])
+        for key in ("max_acceleration", "max_jerk"):
+            most = getattr(draft, key)[index]
+            if math.isfinite(most):
+                joint[key] = _known(most / draft.units[index])
         found.append(joint)
     return found
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limits, speeds and accelerations of the axes."""
+"""Limits, speeds, accelerations and jerks of the axes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .page import Page, axis_names
 
 
 class LimitsPage(Page):
-    """One row per axis. A range is left empty for an endless axis, speeds and accelerations where they are not known."""
+    """One row per axis. A range is left empty for an endless axis, speeds, accelerations and jerks where they are not known."""
 
     def __init__(self, wizard: Any) -> None:
-        super().__init__(wizard, "LimitsPage", tr("Limits, speeds and accelerations"), tr(
-            "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s and deg/s², sliding "
-            "ones in mm, mm/s and mm/s². Leave both ends of a range empty for an axis that turns without end, speeds and "
-            "accelerations where they are not known."))
-        self.table = FigureTable("limits", ["J1"], [tr("From"), tr("To"), tr("Speed"), tr("Acceleration")])
+        super().__init__(wizard, "LimitsPage", tr("Limits, speeds, accelerations and jerks"), tr(
+            "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, "
+            "sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without end, "
+            "speeds, accelerations and jerks where they are not known."))
+        self.table = FigureTable("limits", ["J1"], _heads())
         self.column.addWidget(self.table.widget)
         self.notes = self.add_text("")
         self.column.addStretch(1)
@@ -31,8 +31,8 @@ class LimitsPage(Page):
         """Show what the source tells."""
         draft = self.owner.draft
         names = axis_names(self.owner)
-        self.table.set_shape(names, [tr("From"), tr("To"), tr("Speed"), tr("Acceleration")])
-        values = np.column_stack((draft.lower, draft.upper, draft.max_speed, draft.max_acceleration))
+        self.table.set_shape(names, _heads())
+        values = np.column_stack((draft.lower, draft.upper, draft.max_speed, draft.max_acceleration, draft.max_jerk))
         # what a URDF writes in rad is rarely a whole degree in its last digits
         self.table.fill(np.round(values / draft.units[:, None], 6))
         self.notes.setText("\n".join(draft.notes))
@@ -50,8 +50,13 @@ class LimitsPage(Page):
             if draft.chain.sliding[row] and np.isnan(lower):
                 raise InputError("BAD_VALUE", name, tr("an axis that slides has two ends"))
             if any(rate <= 0.0 for rate in rates):
-                raise InputError("BAD_VALUE", name, tr("speed and acceleration are more than 0, or left empty"))
-        values = np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf], values) * draft.units[:, None]
+                raise InputError("BAD_VALUE", name, tr("speed, acceleration and jerk are more than 0, or left empty"))
+        values = np.where(np.isnan(values), [-np.inf, np.inf, np.inf, np.inf, np.inf], values) * draft.units[:, None]
         self.owner.draft = replace(
-            draft, lower=values[:, 0], upper=values[:, 1], max_speed=values[:, 2], max_acceleration=values[:, 3]
+            draft, lower=values[:, 0], upper=values[:, 1], max_speed=values[:, 2], max_acceleration=values[:, 3],
+            max_jerk=values[:, 4],
         )
+
+
+def _heads() -> list[str]:
+    return [tr("From"), tr("To"), tr("Speed"), tr("Acceleration"), tr("Jerk")]

@@ -27,7 +27,7 @@ WORDS = (
     marked("there is nothing to be seen in these layers"), marked("this machine has no condition"),
     marked("no limit known: the machine file has no max_speed"),
     marked("no limit known: the machine file has no max_acceleration"),
-    marked("no limit known: machine files have none of jerks"),
+    marked("no limit known: the machine file has no max_jerk"),
     marked("none of these layers lies on another"), marked("no bead model sets the speeds (process.bead_model)"),
 )
 

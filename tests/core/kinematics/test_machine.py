@@ -171,6 +171,7 @@ BAD = {
     "acceleration of nought": (
         changed("joints", 5, "max_acceleration", value=0), "joints[5].max_acceleration", "more than 0",
     ),
+    "jerk that is no number": (changed("joints", 1, "max_jerk", value="much"), "joints[1].max_jerk", "much"),
     "shape of no link": (changed("shapes", value={"joint_9": {"file": "a.stl"}}), "shapes", "'joint_9' is not known"),
     "shape without a file": (changed("shapes", value={"base": {"scale": 2}}), "shapes.base", "'file' is missing"),
     "shape of a wrong format": (
@@ -251,7 +252,7 @@ def test_shapes_of_links_and_accelerations_are_read(tmp_path):
         },
     }
     for joint, most in zip(content["joints"], (10, 20, None, 40, 50, 60)):
-        joint["max_acceleration"] = most
+        joint["max_acceleration"], joint["max_jerk"] = most, None if most is None else 7 * most
     path = tmp_path / "mine.json"
     path.write_text(json.dumps(content), encoding="utf-8")
     loaded = machine.load(path)
@@ -262,5 +263,6 @@ def test_shapes_of_links_and_accelerations_are_read(tmp_path):
     assert np.abs(third.pose @ [1, 0, 0, 1] - [1, 3, 3, 1]).max() < 1e-12
     assert third.where == f"{path}: shapes.joint_3.file"
     assert np.allclose(np.degrees(loaded.max_acceleration), [10, 20, np.inf, 40, 50, 60])
+    assert np.allclose(np.degrees(loaded.max_jerk), [70, 140, np.inf, 280, 350, 420])
     plain = machine.load("fanuc-arcmate120ic")
-    assert plain.shapes == (None,) * 7 and np.isinf(plain.max_acceleration).all()
+    assert plain.shapes == (None,) * 7 and np.isinf(plain.max_acceleration).all() and np.isinf(plain.max_jerk).all()
