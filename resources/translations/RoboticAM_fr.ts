@@ -2974,7 +2974,7 @@
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without end, speeds, accelerations and jerks where they are not known.</source>
-        <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
+        <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
