@@ -57,8 +57,9 @@ class Field:
     @property
     def heading(self) -> str:
         """Its label, with the unit where what is shown has none."""
-        bare = self.row.unit and self.row.form not in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
-        return f"{self.label} ({self.row.unit})" if bare else self.label
+        shown = self.row.form in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
+        unit = self.row.spec.unit or ("" if shown else self.row.unit)
+        return f"{self.label} ({unit})" if unit else self.label
 
 
 def make(

@@ -74,7 +74,7 @@ def label(row: rows.Row) -> str:
     """What the page calls it: 'Wire diameter', 'Wait between layers'."""
     *before, last = (str(step).replace("_", " ") for step in row.path)
     words = [last, *before] if before and before[0].startswith("between") else [*before, last]
-    return " ".join(words).capitalize() + (" (g/cm³)" if row.key == "density" else "")
+    return " ".join(words).capitalize() + (f" ({row.spec.unit})" if row.spec.unit else "")
 
 
 def process() -> dict[str, Any]:

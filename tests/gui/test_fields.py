@@ -5,7 +5,22 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.core.parameters import field as parameters
+from freecad_am.gui import fields
 from freecad_am.gui.quantity import QuantityField
+from freecad_am.objects.cell import Cell
+from freecad_am.objects.developable_feature import DevelopableFeature
+from freecad_am.objects.feature import RevolutionFeature
+from freecad_am.objects.inspection import Inspection
+from freecad_am.objects.joint_path import JointPath
+from freecad_am.objects.program import Program
+from freecad_am.objects.rows import MIXED, rows
+from freecad_am.objects.surface_feature import SurfaceFeature
+from freecad_am.objects.toolpath import Toolpath
+
+STAGES = (Cell, RevolutionFeature, SurfaceFeature, DevelopableFeature, Toolpath, JointPath, Program, Inspection)
+# numbers that have no unit: shares, values of an input, what an optimiser stops at
+PURE = {"min_condition", "tolerance", "cooling_zero"}
 
 
 def typed(person, field, text):
@@ -186,3 +201,25 @@ def test_long_names_are_seen_from_their_start(person, hemisphere):
     assert source.cursorPosition() == 0 and source.toolTip() == hemisphere.Label
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_every_number_has_its_unit(person):
+    """In the field, where it is a quantity, else in its label."""
+    quantities = (parameters.LENGTH, parameters.ANGLE, parameters.SPEED, parameters.TIME)
+    numbers = (parameters.NUMBER, parameters.RATIO, parameters.TURN_RATE)
+    labels, bare = {}, []
+    for section in (section for stage in STAGES for section in stage.sections):
+        for row in rows(section.cls):
+            field = fields.make(row, row.default, section=section.prefix)
+            line = field.widget if isinstance(field.widget, person.widgets.QLineEdit) else field.widget.findChild(
+                person.widgets.QLineEdit)
+            labels[row.key] = field.heading
+            if row.form in quantities and not line.text().endswith((" mm", " µm", " nm", " m", " °", " deg", " mm/s", " s")):
+                bare.append((row.key, line.text()))
+            if row.form in numbers and row.key not in PURE and not field.heading.endswith(")"):
+                bare.append((row.key, field.heading))
+            word = row.form != MIXED or row.default is None or row.default in row.spec.words
+            if not word and not line.text().endswith(row.unit):
+                bare.append((row.key, line.text()))
+    assert bare == [] and len(labels) > 80
+    assert labels["density"] == "Density (g/cm³)" and labels["band"] == "Band" and labels["heights"] == "Heights (mm)"

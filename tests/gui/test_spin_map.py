@@ -295,6 +295,18 @@ def test_methods_side_by_side(person, hemisphere, hand):
     assert len(one.canvas.curves) == 5
     own, by_layer = (table.item(row, 5).text().split()[0] for row in (1, 2))
     assert float(own) == pytest.approx(float(by_layer), rel=1e-2)
+    for row, method in enumerate(("layer-by-layer", "point-by-point", "constant"), 2):  # each as its own stage has it
+        plan = api.make_joint_path(path.Document, path.Toolpath, path.Cell, method=method)
+        made, shown = api.result(plan).joint_path, one.compared[row - 2]
+        assert made.branch == api.result(path).joint_path.branch and shown.name == method
+        for drawn, bead in zip(shown.paths, made.beads, strict=True):
+            ends = [np.exp(1j * one.joints[[0, -1]]) for one in (drawn, bead)]  # whole turns and added points aside
+            assert np.allclose(*ends, atol=1e-9)
+        least = min(float(bead.condition.min()) for bead in shown.paths)
+        assert table.item(row, 3).text() == f"{least:.4f}"
+        assert (table.item(row, 1).text() == "0") == made.feasible
+    curves = [np.concatenate([bead.phi for bead in method.paths]) for method in one.compared]
+    assert min(np.abs(curves[one] - curves[other]).max() for one, other in ((0, 1), (0, 2), (1, 2))) > 0.01
     table.item(3, 0).setCheckState(person.core.Qt.Unchecked)
     person.idle(0.1)
     assert len(one.canvas.curves) == 4

@@ -30,7 +30,8 @@ class Spec:
 
     `low` and `high` are in inner units and belong to the allowed range unless `open_low`.
     `optional` parameters may be None. `words` are texts allowed in place of a number (such as 'auto').
-    `advanced` parameters are folded away in a panel.
+    `advanced` parameters are folded away in a panel. `unit` is that of a NUMBER, or of a TEXT of numbers, that has one
+    unit alone: panels tell it.
     """
 
     kind: str
@@ -42,6 +43,7 @@ class Spec:
     words: tuple[str, ...] = ()
     optional: bool = False
     advanced: bool = False
+    unit: str = ""
 
 
 def parameter(default: Any, kind: str, help: str, **more: Any) -> Any:

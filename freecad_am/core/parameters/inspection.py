@@ -51,7 +51,7 @@ class InspectionParameters:
     )
     heights: tuple[str, ...] = f.parameter(
         (), f.TEXT, "Heights above the part's base, in mm, at which circularity is told; none: a sixth, a half and five "
-        "sixths of what was measured.",
+        "sixths of what was measured.", unit="mm",
     )
     band: float = f.parameter(
         0.5, f.LENGTH, "Points up to this far above or below such a height count there, slid along the planned surface.",

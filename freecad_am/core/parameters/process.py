@@ -57,12 +57,12 @@ class CoolingParameters:
 
     below: float | None = f.parameter(
         None, f.NUMBER, "Temperature in degrees Celsius that a solid, or a wall, has to be below before its next layer; the "
-        "torch waits above where that begins.", low=0.0, open_low=True, optional=True,
+        "torch waits above where that begins.", low=0.0, open_low=True, optional=True, unit="°C",
     )
     input: int = f.parameter(1, f.COUNT, "Number of the analogue input that the sensor is on.", low=1, high=64)
     gain: float = f.parameter(
         1.0, f.NUMBER, "By how much the input's value in a program rises with a degree.", low=0.0, open_low=True,
-        advanced=True,
+        advanced=True, unit="1/°C",
     )
     zero: float = f.parameter(0.0, f.NUMBER, "The input's value in a program at 0 degrees Celsius.", advanced=True)
 
@@ -95,9 +95,11 @@ class ProcessParameters:
     )
     wire: WireParameters = f.group(WireParameters, "The feedstock.")
     density: float = f.parameter(
-        7.85, f.NUMBER, "Density of the deposit in g/cm\u00b3; tells its mass.", low=0.0, open_low=True
+        7.85, f.NUMBER, "Density of the deposit in g/cm\u00b3; tells its mass.", low=0.0, open_low=True, unit="g/cm³",
     )
-    temperature: float | None = f.parameter(None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True)
+    temperature: float | None = f.parameter(
+        None, f.NUMBER, "Temperature in degrees Celsius; carried along.", optional=True, unit="°C"
+    )
     gas: str | None = f.parameter(None, f.TEXT, "Shielding gas; carried along.", optional=True)
     stand_off: float | None = f.parameter(None, f.LENGTH, "Stand-off of the nozzle; carried along.", optional=True)
     lead_on: float = f.parameter(0.0, f.TIME, "Deposit switched on this long before a bead starts.", low=0.0)
@@ -111,7 +113,7 @@ class ProcessParameters:
     )
     acceleration: float = f.parameter(
         20.0, f.NUMBER, "Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.",
-        low=0.0, open_low=True, advanced=True,
+        low=0.0, open_low=True, advanced=True, unit="mm/s²",
     )
 
     def __post_init__(self) -> None:

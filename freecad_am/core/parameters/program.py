@@ -42,7 +42,7 @@ class NcParameters:
         1, f.COUNT, "Analogue output that tells the speed of the wire where it follows the travel speed.", low=1, high=64
     )
     wire_gain: float = f.parameter(
-        1.0, f.NUMBER, "Value of that output at 1 m/min of wire.", low=0.0, open_low=True, high=1e6
+        1.0, f.NUMBER, "Value of that output at 1 m/min of wire.", low=0.0, open_low=True, high=1e6, unit="min/m",
     )
     switch_kinematics: bool = f.parameter(
         True, f.FLAG, "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes alone."
