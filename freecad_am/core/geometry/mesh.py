@@ -60,7 +60,8 @@ class Mesh:
         """The sides (3 m,) as numbers, the same for both faces beside an edge and in the order of its vertices. Unlike rows
         of two, numbers are sorted quickly, and without holding up what other threads do."""
         low, high = np.sort(self._half_edges, axis=1).astype(np.int64).T
-        return low * len(self.vertices) + high
+        sides: Index = low * len(self.vertices) + high
+        return sides
 
     @cached_property
     def longest_edge(self) -> float:
