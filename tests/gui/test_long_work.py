@@ -6,7 +6,6 @@ import re
 import subprocess
 import threading
 import time
-from types import SimpleNamespace
 
 import FreeCAD as App
 import pytest
@@ -19,63 +18,13 @@ from freecad_am.objects import hooks, progress
 from freecad_am.objects.feature import RevolutionFeature
 from freecad_am.objects.progress import Cancelled
 from freecad_am.objects.toolpath import Toolpath
+from tests.gui.long_jobs import JOBS
 
-HANGING = 5.0  # s; what takes longer than that does not react, however busy the machine
-# s of processor time of this FreeCAD, all its threads together, which other programs do not lengthen: until cancelled work
-# is left, and between two events of the window beside work
-CANCELLED, PAUSE = 0.5, 0.5
+HANGING = 5.0  # s; what takes longer than that does not react, however busy the machine: `bench long_work` measures it
 LONG = 60.0  # s that none of the works below may be seen to the end in
 
 
-def sphere(document, angle=90):
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45, 0, angle
-    document.recompute()
-    return part
-
-
-def revolution(root):
-    """A toolpath of a hemisphere with very thin layers."""
-    document = App.newDocument("Long")
-    feature = api.make_feature(document, sphere(document), layer_height=0.02, chord_error=0.0005)
-    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
-
-
-def wall(root):
-    """A toolpath of a bend on a pipe with very thin layers."""
-    document = App.newDocument("Long")
-    pipe = document.addObject("Part::Cylinder", "Pipe")
-    pipe.Radius, pipe.Height = 32, 160
-    pipe.Placement = App.Placement(App.Vector(0, -80, 0), App.Rotation(App.Vector(1, 0, 0), -90))
-    document.recompute()
-    bend = api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step"))
-    feature = api.make_surface_feature(document, bend, ["Face1"], pipe, layer_height=0.25)
-    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
-
-
-def hub(root):
-    """A toolpath of blades on a cone with very thin layers."""
-    document = App.newDocument("Long")
-    cone = document.addObject("Part::Cone", "Hub")
-    cone.Radius1, cone.Radius2, cone.Height = 40, 25, 60
-    blade = document.addObject("Part::Box", "Blade")
-    blade.Length, blade.Width, blade.Height = 30, 12, 24
-    blade.Placement.Base = App.Vector(25, -6, 14)
-    document.recompute()
-    feature = api.make_developable_feature(document, blade, cone, layer_height=0.1, bead_spacing=0.5)
-    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
-
-
-def joints(root):
-    """A joint path of a hemisphere with thin layers."""
-    document = App.newDocument("Long")
-    cell = api.make_cell(document, limits="paper")
-    feature = api.make_feature(document, sphere(document), layer_height=0.15, chord_error=0.002)
-    toolpath = api.make_toolpath(document, feature, cell)
-    return SimpleNamespace(document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell})
-
-
-@pytest.fixture(params=[revolution, wall, hub, joints], ids=lambda family: family.__name__)
+@pytest.fixture(params=JOBS, ids=lambda make: make.__name__)
 def long_job(person, request, root):
     return request.param(root)
 
@@ -101,7 +50,7 @@ class Watcher:
 
     def __init__(self, person, act):
         self.person, self.act = person, act
-        self.ticks, self.acted, self.gaps, self.worked = [], None, [], []
+        self.ticks, self.acted, self.gaps = [], None, []
         self.timer = person.core.QTimer()
         self.timer.setInterval(20)
         self.timer.timeout.connect(self.tick)
@@ -109,7 +58,6 @@ class Watcher:
 
     def tick(self):
         self.ticks.append(time.monotonic())
-        self.worked.append(time.process_time())
         shown = dialogs(self.person)
         if shown and self.acted is None:
             self.acted = time.monotonic()
@@ -117,9 +65,7 @@ class Watcher:
 
     def stop(self):
         self.timer.stop()
-        self.gaps, self.pauses = (
-            [later - earlier for earlier, later in zip(times, times[1:])] for times in (self.ticks, self.worked)
-        )
+        self.gaps = [later - earlier for earlier, later in zip(self.ticks, self.ticks[1:])]
 
 
 def state(document):
@@ -149,19 +95,16 @@ def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job
         person.core.QTimer.singleShot(300, press)
 
     def press():
-        stamps.append((time.monotonic(), time.process_time()))
+        stamps.append(time.monotonic())
         person.field(dialogs(person)[0], "cancel").click()
 
     stamps = []
     watcher = Watcher(person, cancel)
     with pytest.raises(Cancelled):
         getattr(api, long_job.function)(document, **long_job.inputs)
-    latency, worked = time.monotonic() - stamps[0][0], time.process_time() - stamps[0][1]
+    latency = time.monotonic() - stamps[0]
     watcher.stop()
-    print(f"{long_job.function}: cancelled in {latency:.3f} s ({worked:.3f} s of work), longest pause "
-          f"{max(watcher.gaps):.3f} s ({max(watcher.pauses):.3f} s of work)")
     assert latency < HANGING and max(watcher.gaps) < HANGING
-    assert worked < CANCELLED and max(watcher.pauses) < PAUSE
     assert texts[0][0].startswith(("Toolpath", "Joint path"))
     assert len(watcher.ticks) > 3 and dialogs(person) == []
     assert (state(document), (document.UndoCount, document.RedoCount)) == (before, steps)

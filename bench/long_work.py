@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How the window lives beside long work, in FreeCAD's window under Xvfb: how soon Cancel has ended it, and the longest time
+in which nothing else in the window goes on, beside work and beside a panel's preview.
+
+Peer: what is allowed. Jobs are those of the tests (tests/gui/long_jobs.py), which take minutes.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import in_window
+from rows import Row
+
+SCRIPT = Path(__file__).resolve().parent / "long_work_window.py"
+LONGEST = 300  # s
+ALLOWED = (  # key, what it is, s
+    ("cancel", "until Cancel has ended it", 0.5), ("pause", "longest pause beside work", 0.5),
+    ("preview", "longest pause beside a preview", 0.2),
+)
+
+
+def run() -> list[Row]:
+    """Three rows for every kind of work."""
+    freecad = in_window.freecad()
+    if freecad is None:
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        measured = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST)
+    return [
+        Row(f"{what}, {one['job']}; what is allowed", one[key], most, "s", 1.0)
+        for one in measured
+        for key, what, most in ALLOWED
+        if key in one
+    ]

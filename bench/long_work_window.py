@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Measures long work inside FreeCAD's window; run by `long_work`, which says by FRAMES_TO where to write what is found."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from pathlib import Path
+
+from in_window import begin, settle
+
+TICK = 10  # ms
+WAIT = 0.3  # s from the dialog to Cancel
+LOOKED = 4.0  # s that a preview is watched for
+
+
+class Pauses:
+    """The longest time, s, between two turns of a timer that is due all the time."""
+
+    def __init__(self) -> None:
+        from PySide import QtCore
+
+        self.longest, self.last = 0.0, time.perf_counter()
+        self.timer = QtCore.QTimer()
+        self.timer.setInterval(TICK)
+        self.timer.timeout.connect(self.tick)
+        self.timer.start()
+
+    def tick(self) -> None:
+        now = time.perf_counter()
+        self.longest, self.last = max(self.longest, now - self.last), now
+
+
+def cancelled(job) -> dict[str, float]:
+    """Until Cancel has ended the work, and the longest pause of the window until then; s."""
+    import FreeCADGui as Gui
+    from PySide import QtCore, QtGui
+
+    from freecad_am import api
+    from freecad_am.gui import busy
+    from freecad_am.objects.progress import Cancelled
+
+    pressed: list[float] = []
+
+    def shown():
+        return [dialog for dialog in Gui.getMainWindow().findChildren(QtGui.QDialog, busy.NAME) if dialog.isVisible()]
+
+    def press() -> None:
+        pressed.append(time.perf_counter())
+        shown()[0].findChild(QtGui.QAbstractButton, "cancel").click()
+
+    def look() -> None:
+        if shown():
+            timer.stop()
+            QtCore.QTimer.singleShot(int(1e3 * WAIT), press)
+
+    timer = QtCore.QTimer()
+    timer.setInterval(TICK)
+    timer.timeout.connect(look)
+    timer.start()
+    pauses = Pauses()
+    try:
+        getattr(api, job.function)(job.document, **job.inputs)
+        raise AssertionError("seen to the end")
+    except Cancelled:
+        took = time.perf_counter() - pressed[0]
+    pauses.timer.stop()
+    while any(thread.name == "Robotic AM" for thread in threading.enumerate()):
+        settle(0.1)
+    return {"cancel": took, "pause": pauses.longest}
+
+
+def previewed(obj) -> float:
+    """The longest pause, s, while a panel shows what an object would become."""
+    import FreeCADGui as Gui
+
+    obj.ViewObject.doubleClicked()
+    settle(0.1)  # the panel itself is there
+    pauses = Pauses()
+    settle(LOOKED)
+    pauses.timer.stop()
+    Gui.Control.closeDialog()
+    settle(0.5)
+    return pauses.longest
+
+
+def all_of_them() -> list[dict[str, object]]:
+    """Of every job."""
+    import FreeCAD as App
+
+    from tests.gui.long_jobs import JOBS
+
+    found = []
+    for make in JOBS:
+        job = make(Path(os.environ["FRAMES_OF"]))
+        settle(1.0)
+        one = {"job": make.__name__, **cancelled(job)}
+        if "feature" in job.inputs:
+            one["preview"] = previewed(job.inputs["feature"])
+        found.append(one)
+        App.closeDocument(job.document.Name)
+    return found
+
+
+begin(all_of_them)
