@@ -81,7 +81,8 @@ class JointPathView(PathView):
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
         value = obj.Proxy.value(obj)
         if kind == CONDITION:
-            return by_machine(np.concatenate([path.condition for path in value.joint_path.beads]), kind)
+            condition = np.concatenate([path.condition for path in value.joint_path.beads])
+            return by_machine(np.where(value.motion.reachable[value.motion.deposit], condition, np.nan), kind)
         if kind in (MARGIN, RATIO):
             try:
                 return by_machine(_of_machine(obj, value, kind), kind)

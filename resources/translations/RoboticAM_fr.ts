@@ -2222,11 +2222,6 @@
         <translation>Combien de points ont quel écart ; tirets : la tolérance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
-        <source>How many points of the last layer are shown</source>
-        <translation>Combien de points de la dernière couche sont montrés</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>How many seconds of the job pass in one</source>
         <translation>Combien de secondes du travail passent en une</translation>
@@ -3977,6 +3972,11 @@
         <translation>La dernière couche montrée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>The last point that is shown, counted from 0 in the last layer</source>
+        <translation>Le dernier point montré, compté à partir de 0 dans la dernière couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>The layer that is looked at; -1 for all of them</source>
         <translation>La couche regardée ; -1 pour toutes</translation>
@@ -5492,7 +5492,7 @@
         <translation>dérive</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts.py"/>
+        <location filename="../../freecad_am/gui/path/legend.py"/>
         <source>en</source>
         <translation>fr</translation>
     </message>
@@ -6865,6 +6865,11 @@
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm</source>
         <translation>point {} (0 à {}) en {:.2f}, {:.2f}, {:.2f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/facts.py"/>
+        <source>point {} (0 to {}) of the layer, of the bead {}</source>
+        <translation>point {} (0 à {}) de la couche, du cordon {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>

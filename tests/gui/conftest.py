@@ -250,11 +250,8 @@ class Hand:
 
     def click(self, widget):
         """Click in the middle of a widget, once it no longer moves; one of a panel is scrolled to."""
-        around = widget.parentWidget()
-        while around is not None:
-            if isinstance(around, self.person.widgets.QScrollArea):
-                around.ensureWidgetVisible(widget)
-            around = around.parentWidget()
+        self.reveal(widget)
+
         def middle():
             centre = widget.mapToGlobal(widget.rect().center())
             return centre.x(), centre.y()
@@ -264,6 +261,22 @@ class Hand:
             self.person.idle(0.04)
             seen.append(middle())
         self.at(seen[-1])
+
+    def reveal(self, widget):
+        """Turn the wheel over the margin of a panel until all of a widget is in sight, or as much of it as goes in."""
+        areas = [one for one in self.person.window.findChildren(self.person.widgets.QScrollArea)
+                 if one.isVisible() and one.isAncestorOf(widget)]
+        if not areas:
+            return
+        area = next(one for one in areas if not any(one is not other and one.isAncestorOf(other) for other in areas))
+        sight = area.viewport()
+        for _ in range(40):
+            if widget.visibleRegion().boundingRect().height() >= min(widget.height(), sight.height()):
+                return
+            margin = sight.mapToGlobal(self.person.core.QPoint(3, sight.height() // 2))
+            below = widget.mapTo(sight, widget.rect().center()).y() > sight.height() // 2
+            self.do("mousemove", margin.x(), margin.y(), "click", 5 if below else 4)
+        raise AssertionError(f"{widget.objectName()} does not come in sight")
 
     def enter(self, panel, name, text):
         """Type over what a field holds, and leave it."""
@@ -365,6 +378,16 @@ def hemisphere():
     return part
 
 
+def _forget_places(window):
+    """Docks of ours come in the next test as they come in a new session."""
+    from freecad_am.gui import docks
+
+    for dock in docks._docks.values():
+        dock.setFloating(False)
+        window.removeDockWidget(dock)
+    docks._rooms.clear()
+
+
 @pytest.fixture
 def person(tmp_path, capfd, request):
     someone = Person(tmp_path)
@@ -388,6 +411,7 @@ def person(tmp_path, capfd, request):
     someone.idle()
     someone.window.setGeometry(place)  # docks that needed more room have made it wider, and panels and tree lower
     someone.window.restoreState(layout)
+    _forget_places(someone.window)
     someone.idle(0.1)
     assert not watch.texts, f"dialogs nobody asked for: {watch.texts}"
     assert "Traceback" not in text, text[-3000:]

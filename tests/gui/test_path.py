@@ -74,12 +74,14 @@ def test_layers_and_points_by_sliders_and_numbers(person, hand, joint_path):
     assert 0 < alone.sum() < 0.5 * lower.sum()
     assert joint_path.ViewObject.Proxy.shown == (3, 3, None)
     low, high = rows.of_layers(3, 3)
-    assert (point.minimum(), point.maximum()) == (1, high - low)
+    assert (point.minimum(), point.maximum()) == (0, high - low - 1)
     point.setValue((high - low) // 2)
     person.idle()
     assert 0 < drawn(person).sum() < alone.sum()
     text = person.field(panel, "facts").text()
-    row = low + (high - low) // 2 - 1
+    row = low + (high - low) // 2
+    assert f"point {point.value()} (0 to {high - low - 1})" in text  # the field and the text count alike
+    assert person.field(panel, "point_spin").value() == point.value()
     told = joint_path.ViewObject.Proxy.scale.told(row)
     assert told.startswith("joint margin ") and told.endswith(" %")
     assert text == f"{told} · {facts(rows, row)}" and "Layer 3 (0 to" in text and "mm/s" in text
@@ -181,7 +183,13 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     colours, scale = colouring.by_machine(values, colouring.RATIO)
     assert (colours[5] == colouring.TOO_FAR).all() and scale.above == "faster than it can" and not scale.below
     assert np.array_equal(colours[[2, 3, 4]], ramp(np.array([0.1, 0.6, 1.1]) / 1.1))
-    assert colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1].without == "unreachable"
+    # where nothing can be told, no number is: neither 0 nor a ramp
+    scale = colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1]
+    assert scale.classes == (("unreachable", colouring.UNREACHABLE),) and scale.ticks == ()
+    assert scale.told(1) == "condition unreachable"
+    scale = colouring.by_machine(np.array([np.nan, -0.2]), colouring.MARGIN)[1]
+    assert scale.classes == (("beyond a limit", colouring.TOO_NEAR), ("unreachable", colouring.UNREACHABLE))
+    assert scale.ticks == () and scale.told(1) == "joint margin -20 %"
 
 
 def test_each_kind_of_bead_is_told(person, joint_path):
@@ -191,6 +199,15 @@ def test_each_kind_of_bead_is_told(person, joint_path):
     assert found == [colouring.CLOSED, colouring.CLOSED, *3 * [colouring.OPEN], colouring.CENTRE, colouring.CLOSING]
     told = [facts(Rows.of([dataclasses.replace(bead, kind=kind)], [0], 8.0, lambda: 1.0), 3) for kind in kinds]
     assert len(set(told)) == len(kinds) and "in the middle" in told[5]
+
+
+def test_of_several_beads_the_point_is_told_as_the_dock_counts(person, joint_path):
+    beads = joint_path.ViewObject.Proxy.rows.beads[:2]
+    rows = Rows.of(list(beads), [0, 0], 8.0, lambda: 1.0)
+    first, second = map(len, beads)
+    told = facts(rows, first + 3)
+    assert "bead 1 (0 to 1), closed" in told
+    assert f"point {first + 3} (0 to {first + second - 1}) of the layer, of the bead point 3 (0 to {second - 1}) at" in told
 
 
 def test_unreachable_points_are_red(person, hemisphere):
@@ -203,6 +220,20 @@ def test_unreachable_points_are_red(person, hemisphere):
     assert person.screen_pixels(RED, 12) > 20
     joint_path.ViewObject.Proxy.show((0, 0, None))
     person.idle()
+
+
+@pytest.mark.parametrize("kind", [colouring.MARGIN, colouring.RATIO, colouring.CONDITION])
+def test_the_legend_of_what_is_out_of_reach_altogether_says_so(person, hemisphere, kind):
+    document = hemisphere.Document
+    cell = api.make_cell(document, limits="paper", deposition_point=(9000, 0, 0, 0, 0, 0))
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=9), cell)
+    path = api.make_joint_path(document, toolpath, cell)
+    path.ViewObject.Colouring = kind
+    person.idle(0.3)
+    scale, = legend.shown(document)
+    assert scale.title == kind and scale.ticks == () and scale.classes == (("unreachable", colouring.UNREACHABLE),)
+    person.screenshot(f"legend_unreachable_{kind.replace(' ', '_')}")
+    assert person.screen_pixels(RED, 4) > 100  # its mark in the legend
 
 
 def test_directions_and_rapids_are_of_what_is_shown(person, joint_path):
@@ -348,7 +379,7 @@ def test_a_click_on_the_path_goes_to_the_point(person, hand, joint_path, look):
         away = np.subtract(where(view, hand, aim[row]), where(view, hand, aim[wanted]))
         assert np.abs(away).max() <= 3 and np.linalg.norm(rows.points[row] - rows.points[wanted]) < 3.0 and first == 0
         assert layer == rows.layers[rows.bead_of(int(wanted))]
-        assert person.field(panel, "to_spin").value() == layer and person.field(panel, "point_spin").value() == count
+        assert person.field(panel, "to_spin").value() == layer and person.field(panel, "point_spin").value() == count - 1
         assert facts(rows, row) in person.field(panel, "facts").text()
     person.screenshot(f"path_clicked_{look}")
     # what is hidden is not hit: with the lower layers alone a click on a higher one does nothing

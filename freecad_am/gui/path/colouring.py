@@ -158,7 +158,7 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     """Colours (n, 3) of what a machine has left or uses up, one of MARGIN, RATIO, CONDITION, and their scale.
 
     values: (n,) shares, NaN where the machine does not reach the point. Margins and speeds are told in percent; beyond a
-    limit, and faster than an axis can, is a colour of its own.
+    limit, and faster than an axis can, is a colour of its own. Where nothing else is left there is no ramp.
     """
     known = np.isfinite(values)
     without = "" if known.all() else marked("unreachable")
@@ -167,11 +167,14 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     below = known & (values < -_ROUNDED) & (kind == MARGIN)
     above = known & (values > 1.0 + _ROUNDED) & (kind == RATIO)
     within = known & ~below & ~above
-    found = told[within] if within.any() else np.zeros(1)
+    beyond, faster = marked("beyond a limit") if below.any() else "", marked("faster than it can") if above.any() else ""
+    if within.any():
+        scale = automatic(told[within], kind, unit)
+    else:
+        only = ((faster, TOO_FAR), (beyond, TOO_NEAR), (without, UNREACHABLE))
+        scale = Scale(kind, unit, 0.0, 0.0, (), 0.0, 0.0, classes=tuple(one for one in only if one[0]))
     scale = replace(
-        automatic(found, kind, unit), below=marked("beyond a limit") if below.any() else "",
-        above=marked("faster than it can") if above.any() else "", without=without, without_colour=UNREACHABLE,
-        values=told,
+        scale, below=beyond, above=faster, without=without, without_colour=UNREACHABLE, values=told,
     )
     colours = ramp(scale.share(np.where(within, told, scale.low)))
     for chosen, colour in ((below, TOO_NEAR), (above, TOO_FAR), (~known, UNREACHABLE)):

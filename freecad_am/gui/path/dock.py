@@ -10,6 +10,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
+from .. import docks, preference_watch
 from ..follower import Follower
 from ..texts import tr, translated
 from . import path_view
@@ -20,6 +21,7 @@ from .slider_row import Row
 
 NAME = "RoboticAM_PathDock"
 LINES = 3
+LABEL = 14  # letters of a choice that are to be seen, at least
 _LAYER_PAGE, _POINT_PAGE = 10, 100
 
 
@@ -29,10 +31,20 @@ class PathDock(Follower):
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = None  # names of document and object
         self.filling = False
-        self.dock = QtGui.QDockWidget(tr("Path"), Gui.getMainWindow())
-        self.dock.setObjectName(NAME)
+        self.dock = docks.dock(NAME, docks.BELOW)
+        self._build()
+        self.dock.seen = self.fill
+        path_view.listen(lambda view: self.fill())
+        path_view.listen_to_clicks(self.dock.isVisible, self._picked)
+        preference_watch.listen_to_language(self._speak)
+        App.addDocumentObserver(self)
+        Gui.Selection.addObserver(self)
+
+    # ---- the fields
+
+    def _build(self) -> None:
+        """The fields, in the language of the window."""
         form = QtGui.QWidget()
-        self.dock.setWidget(form)
         column, self.controls = QtGui.QVBoxLayout(form), QtGui.QWidget()
         column.setContentsMargins(9, 4, 9, 4)
         column.setSpacing(3)
@@ -48,7 +60,7 @@ class PathDock(Follower):
         self.from_, self.to, self.point = (
             Row("from", tr("From layer"), tr("The first layer that is shown"), _LAYER_PAGE),
             Row("to", tr("To layer"), tr("The last layer that is shown"), _LAYER_PAGE),
-            Row("point", tr("Point"), tr("How many points of the last layer are shown"), _POINT_PAGE),
+            Row("point", tr("Point"), tr("The last point that is shown, counted from 0 in the last layer"), _POINT_PAGE),
         )
         self.facts = QtGui.QLabel()
         self.facts.setObjectName("facts")
@@ -66,13 +78,21 @@ class PathDock(Follower):
         column.addWidget(self.facts)
         column.addStretch(1)
         self._connect()
-        Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
+        self.dock.hold(tr("Path"), form)
+
+    def _speak(self) -> None:
+        """The window has another language."""
+        single = self.single.isChecked()
+        self._build()
+        self.single.setChecked(single)
+        self.fill()
 
     def _combo(self, name: str, help: str) -> Any:
         combo = QtGui.QComboBox()
         combo.setObjectName(name)
         combo.setToolTip(help)
         combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
+        combo.setMinimumWidth(LABEL * combo.fontMetrics().averageCharWidth())  # a long label widens no window
         return combo
 
     def _choices(self) -> Any:
@@ -101,10 +121,6 @@ class PathDock(Follower):
         self.all.clicked.connect(self._show_all)
         for row in (self.from_, self.to, self.point):
             row.moved = self._moved
-        path_view.listen(lambda view: self.fill())
-        path_view.listen_to_clicks(self.dock.isVisible, self._picked)
-        App.addDocumentObserver(self)
-        Gui.Selection.addObserver(self)
 
     # ---- what is looked at
 
@@ -112,8 +128,12 @@ class PathDock(Follower):
         """Show the dock, and in it this path."""
         if obj is not None:
             self._take(obj)
-        self.dock.show()
-        self.dock.raise_()
+        self.dock.come()
+        self.fill()
+
+    def follow(self, obj: Any) -> None:
+        """Show this path, where the dock is open; in front of others only what was."""
+        self._take(obj)
         self.fill()
 
     def view(self) -> PathView | None:
@@ -182,8 +202,8 @@ class PathDock(Follower):
         low, high = rows.of_layers(last, last)
         self.from_.set(0, rows.layer_count - 1, first)
         self.to.set(0, rows.layer_count - 1, last)
-        self.point.set(1, max(high - low, 1), high - low if count is None else count)
         row = max(low, (high if count is None else low + count) - 1)
+        self.point.set(0, max(high - low - 1, 0), row - low)
         told = "" if view.scale is None or view.scale.title == LAYER else view.scale.told(row)
         self.facts.setText(" · ".join(filter(None, (told, facts(rows, row)))))
 
@@ -196,7 +216,7 @@ class PathDock(Follower):
             first = last = (first if row is self.from_ else last)
         elif first > last:
             first, last = (first, first) if row is self.from_ else (last, last)
-        count = self.point.value() if row is self.point and self.point.value() < self.point.most() else None
+        count = self.point.value() + 1 if row is self.point and self.point.value() < self.point.most() else None
         whole = (first, last, count) == (0, view.rows.layer_count - 1, None)
         view.show(None if whole else (first, last, count))
         self.fill()

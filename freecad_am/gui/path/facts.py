@@ -14,7 +14,8 @@ from .rows import Rows
 def facts(rows: Rows, row: int) -> str:
     """The bead that a row belongs to: its layer, number, kind, speed, width, length and time; and the row's place.
 
-    Numbers count from 0, as in messages, programs and `waypoints.csv`.
+    Numbers count from 0, as in messages, programs and `waypoints.csv`; of layers of several beads the number in the layer
+    is told too, by which the dock counts.
     """
     index = rows.bead_of(row)
     bead, layer = rows.beads[index], int(rows.layers[index])
@@ -23,13 +24,17 @@ def facts(rows: Rows, row: int) -> str:
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     time = float((length / bead.speed[1:]).sum())
     x, y, z = bead.points[at]
+    low, high = rows.of_layers(layer, layer)
+    place = tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z)
+    if end - first > 1:
+        place = tr("point {} (0 to {}) of the layer, of the bead {}").format(row - low, high - low - 1, place)
     return " · ".join((
         tr("Layer {} (0 to {})").format(layer, rows.layer_count - 1),
         tr("bead {} (0 to {}), {}").format(index - int(first), int(end - first) - 1, _kind(bead)),
         f"{preferences.speed(float(bead.speed[max(at, 1)])):.4g} {preferences.speed_unit()}",
         tr("{:.4g} mm wide").format(float(rows.width[row])),
         tr("{:.1f} mm long in {:.1f} s").format(float(length.sum()), time),
-        tr("point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm").format(at, len(bead) - 1, x, y, z),
+        place,
     ))
 
 

@@ -18,9 +18,10 @@ from pivy import coin
 from PySide import QtCore, QtGui
 
 from ...objects import preferences
+from .. import preference_watch
 from ..colours import ramp
 from ..lines import unshaded
-from ..texts import translated
+from ..texts import tr, translated
 from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
@@ -34,7 +35,7 @@ class Legend:
 
     def __init__(self) -> None:
         self.entry: Entry | None = None
-        self.left, self.ramp = 0, ""
+        self.left, self.look = 0, ("", "")  # px from the edge; ramp and language
         # all of the view is from -1 to 1
         self.camera = coin.SoOrthographicCamera()
         self.camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
@@ -61,8 +62,9 @@ class Legend:
     def show(self, entry: Entry, left: int) -> int:
         """Show this, `left` px from the edge; its width with the margin, px."""
         width = _width(*entry)
-        if (entry, left, preferences.ramp()) != (self.entry, self.left, self.ramp):
-            self.entry, self.left, self.ramp = entry, left, preferences.ramp()
+        look = preferences.ramp(), tr("en")
+        if (entry, left, look) != (self.entry, self.left, self.look):
+            self.entry, self.left, self.look = entry, left, look
             pixels = _picture(entry, left)
             self.image.image.setValue(coin.SbVec2s(pixels.shape[1], pixels.shape[0]), 4, pixels.tobytes())
         self.switch.whichChild = coin.SO_SWITCH_ALL
@@ -106,7 +108,7 @@ def _picture(entry: Entry, left: int) -> Any:
 
 def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
     title = translated(scale.title)
-    return [*names, f"{title}, {scale.unit}" if scale.unit else title]
+    return [*names, f"{title}, {scale.unit}" if scale.unit and not scale.classes else title]
 
 
 def _foot(scale: Scale) -> str:
@@ -198,6 +200,7 @@ def renew_soon() -> None:
     if not _watching:
         _watching.append(_Observer())
         App.addDocumentObserver(_watching[0])
+        preference_watch.listen_to_language(renew_soon)
     if not _due:
         _due = True
         QtCore.QTimer.singleShot(0, _renew)

@@ -15,7 +15,7 @@ from ...plots import catalogue
 from ...plots.chart import Picture
 from ...plots.rows import OVER, PATH, TIME
 from ...plots.source import Source
-from .. import preference_watch
+from .. import docks, preference_watch
 from ..follower import Follower
 from ..later import Background, Later
 from ..texts import tr, translated_error
@@ -26,7 +26,7 @@ from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, 
 
 NAME = "RoboticAM_Plots"
 HEIGHT = 250
-LABEL = 9  # letters of a label that are to be seen, at least
+LABEL, NARROW = 9, 14  # letters of a label there is room for, and to which it shrinks where the window is narrow
 CHANGES = ("Key", "Status", "Label", "StartAtLayer", "StartAtBead")
 KINDS = (TOOLPATH, JOINT_PATH, PROGRAM, "cell")
 
@@ -39,16 +39,33 @@ class PlotsDock(Follower):
         self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
         self.picture: Picture | None = None
         self.shown: tuple[Any, ...] = ()  # target, picture and axis that are looked at
-        self.dock = QtGui.QDockWidget(tr("Plots"), Gui.getMainWindow())
-        self.dock.setObjectName(NAME)
+        self.dock = docks.dock(NAME, docks.BELOW)
+        self.canvas = Canvas()
+        self.canvas.setObjectName("canvas")
+        self.canvas.say = self._said
+        self.scroll = QtGui.QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
+        self.scroll.setWidget(self.canvas)
+        self.scroll.setMinimumHeight(HEIGHT)
+        self._build()
+        self.building = Background(self.dock)
+        self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
+        self.dock.seen = self.fill
+        preference_watch.listen(self.fill)
+        preference_watch.listen_to_language(self._speak)
+        App.addDocumentObserver(self)
+        Gui.Selection.addObserver(self)
+
+    # ---- the fields
+
+    def _build(self) -> None:
+        """The fields, in the language of the window, about the canvas."""
         form = QtGui.QWidget()
-        self.dock.setWidget(form)
         self.choice = self._combo("plotted", tr("The toolpath, joint path or program to look at"), LABEL)
         self.which = self._combo("picture", tr("What is drawn"))
         self.over = self._combo("over", tr("Along the time of the job, or along its path"))
         self.first, self.last = self._layer("from", tr("The first layer")), self._layer("to", tr("The last layer"))
-        self.canvas = Canvas()
-        self.canvas.setObjectName("canvas")
         self.note, self.reading = QtGui.QLabel(), QtGui.QLabel()
         self.note.setObjectName("note")
         self.reading.setObjectName("reading")
@@ -57,18 +74,32 @@ class PlotsDock(Follower):
             self.which.addItem(words.translated(entry.title), name)
         for over in OVER:
             self.over.addItem({TIME: tr("time"), PATH: tr("path")}[over], over)
-        self.building = Background(self.dock)
-        self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
-        self.canvas.say = self._said
-        preference_watch.listen(self.fill)
         for combo in (self.which, self.over):
             combo.currentIndexChanged.connect(lambda *_: self.fill())
         self.choice.activated.connect(self._chosen)
         for spin in (self.first, self.last):
-            spin.valueChanged.connect(self.soon.ask)
-        App.addDocumentObserver(self)
-        Gui.Selection.addObserver(self)
-        Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
+            spin.valueChanged.connect(lambda *_: self.soon.ask())
+        self.dock.hold(tr("Plots"), form)
+
+    def _speak(self) -> None:
+        """The window has another language: what is chosen stays."""
+        chosen = [(name, getattr(self, name).currentIndex()) for name in ("which", "over")]
+        layers = [(name, getattr(self, name).maximum(), getattr(self, name).value()) for name in ("first", "last")]
+        rectangle = self.buttons["rectangle"].isChecked()
+        self._build()
+        for name, index in chosen:
+            combo = getattr(self, name)
+            blocked = combo.blockSignals(True)
+            combo.setCurrentIndex(index)
+            combo.blockSignals(blocked)
+        for name, most, value in layers:
+            spin = getattr(self, name)
+            blocked = spin.blockSignals(True)
+            spin.setMaximum(most)
+            spin.setValue(value)
+            spin.blockSignals(blocked)
+        self.buttons["rectangle"].setChecked(rectangle)
+        self.fill()
 
     def _combo(self, name: str, help: str, least: int = 0) -> Any:
         combo = QtGui.QComboBox()
@@ -76,6 +107,7 @@ class PlotsDock(Follower):
         combo.setToolTip(help)
         combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
         combo.setMinimumContentsLength(least)
+        combo.setMinimumWidth(NARROW * combo.fontMetrics().averageCharWidth())  # long names widen no window
         return combo
 
     def _layer(self, name: str, help: str) -> Any:
@@ -112,16 +144,11 @@ class PlotsDock(Follower):
             line.addWidget(button)
             self.buttons[name] = button
         self.buttons["rectangle"].setCheckable(True)
-        scroll = QtGui.QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QtGui.QFrame.NoFrame)
-        scroll.setWidget(self.canvas)
-        scroll.setMinimumHeight(HEIGHT)
         below = QtGui.QHBoxLayout()
         below.addWidget(self.reading, 1)
         below.addWidget(self.note)
         column.addLayout(line)
-        column.addWidget(scroll, 1)
+        column.addWidget(self.scroll, 1)
         column.addLayout(below)
 
     # ---- what is looked at
@@ -130,8 +157,7 @@ class PlotsDock(Follower):
         """Show the dock, and in it the pictures of an object."""
         if obj is not None:
             self.target = (obj.Document.Name, obj.Name)
-        self.dock.show()
-        self.dock.raise_()
+        self.dock.come()
         self.fill()
 
     def object(self) -> Any:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
@@ -13,7 +12,7 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
 
-from .. import preference_watch
+from .. import docks, preference_watch
 from ..colours import WRONG
 from ..texts import tr
 from . import told
@@ -25,20 +24,9 @@ from .scene import Scene
 NAME = "RoboticAM_Simulation"
 FRAME = 30  # ms
 FIT = 150  # ms
+WIDE = 350  # pixels, at least
 STEPS = 10_000  # of the slider
 FACTORS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0, 100.0, 500.0)
-
-
-class _Dock(QtGui.QDockWidget):
-    """Says when it is closed."""
-
-    closed: Callable[[], None] | None = None
-
-    def closeEvent(self, event: Any) -> None:
-        """The user closes it."""
-        super().closeEvent(event)
-        if self.closed is not None:
-            self.closed()
 
 
 class Simulation:
@@ -48,24 +36,39 @@ class Simulation:
         self.run, self.player = run, Player(run)
         self.scene: Scene | None = Scene(run, view)
         self.filling = False
-        self.dock = _Dock(tr("Simulation of {title}").format(title=run.title), Gui.getMainWindow())
-        self.dock.setObjectName(NAME)
-        self.dock.closed = self.close
-        self.timer = QtCore.QTimer(self.dock)
+        self.dock = docks.dock(NAME, docks.RIGHT)
+        self.scroll = QtGui.QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
+        self.scroll.setMinimumWidth(WIDE)
+        self.timer = QtCore.QTimer(self.scroll)
         self.timer.setInterval(FRAME)
         self.timer.timeout.connect(self._tick)
         self.before = 0.0
-        self._fill_dock()
-        Gui.getMainWindow().addDockWidget(QtCore.Qt.RightDockWidgetArea, self.dock)
-        self.dock.show()
+        self._build()
+        self.dock.hold(self._title(), self.scroll)
+        self.dock.closed = self.close
+        self.dock.come()
         App.addDocumentObserver(self)
         preference_watch.listen(self._preferences_changed)
+        preference_watch.listen_to_language(self._speak)
         self.show()
         QtCore.QTimer.singleShot(FIT, self._fit)  # once the dock has its place and the view the rest
 
     # ---- the dock
 
-    def _fill_dock(self) -> None:
+    def _title(self) -> str:
+        return tr("Simulation of {title}").format(title=self.run.title)
+
+    def _speak(self) -> None:
+        """The window has another language."""
+        self._build()
+        self.dock.setWindowTitle(self._title())
+        self._mark_play()
+        self._preferences_changed()
+
+    def _build(self) -> None:
+        """The fields, in the language of the window."""
         form = QtGui.QWidget()
         form.setObjectName("form")
         column = QtGui.QVBoxLayout(form)
@@ -101,12 +104,7 @@ class Simulation:
         column.addLayout(self._facts())
         column.addWidget(self._totals())
         column.addStretch(1)
-        scroll = QtGui.QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QtGui.QFrame.NoFrame)
-        scroll.setWidget(form)
-        scroll.setMinimumWidth(350)
-        self.dock.setWidget(scroll)
+        self.scroll.setWidget(form)  # what was there goes
         self._tell_finding(None)
 
     def _label(self, name: str, text: str = "") -> Any:
@@ -182,9 +180,12 @@ class Simulation:
         self.player.playing = on
         self.before = time.perf_counter()
         (self.timer.start if on else self.timer.stop)()
-        mark = QtGui.QStyle.SP_MediaPause if on else QtGui.QStyle.SP_MediaPlay
-        self.buttons["play"].setIcon(self.dock.style().standardIcon(mark))
+        self._mark_play()
         self.show()
+
+    def _mark_play(self) -> None:
+        mark = QtGui.QStyle.SP_MediaPause if self.player.playing else QtGui.QStyle.SP_MediaPlay
+        self.buttons["play"].setIcon(self.dock.style().standardIcon(mark))
 
     def _tick(self) -> None:
         now = time.perf_counter()
@@ -282,11 +283,10 @@ class Simulation:
             return
         self.timer.stop()
         App.removeDocumentObserver(self)
-        preference_watch.forget(self._preferences_changed)
+        for listener in (self._preferences_changed, self._speak):
+            preference_watch.forget(listener)
         scene.remove(document_goes)
-        self.dock.closed = None
-        self.dock.close()
-        self.dock.deleteLater()
+        self.dock.empty()
         if self in _open:
             _open.remove(self)
 

@@ -13,7 +13,6 @@ from ..texts import tr
 from ..worker import Worker
 from .curves import COLOURS, OWN, PLANNED
 from .draft import Draft
-from .figures import Figures
 from .form import Form
 from .readout import joint_ranges
 
@@ -24,8 +23,8 @@ class Consequences:
 
     followed: Followed
 
-    def __init__(self, owner: Any, form: Form, figures: Figures, status: Callable[[], tuple[str, bool]]) -> None:
-        self.form, self.figures, self.status = form, figures, status
+    def __init__(self, owner: Any, form: Form, status: Callable[[], tuple[str, bool]]) -> None:
+        self.form, self.status = form, status
         self.background = Background(owner)
 
     def take(self, draft: Draft) -> None:
@@ -75,8 +74,8 @@ class Consequences:
         self.background.start(work, show)
 
     def _tell(self, sums: Sums, planned: Sums, about: bool) -> None:
-        self.figures.set(OWN, tr("This curve"), COLOURS[OWN], sums, planned, about)
-        self.figures.set(PLANNED, tr("As planned"), COLOURS[PLANNED], planned, None, about)
+        self.form.figures.set(OWN, tr("This curve"), COLOURS[OWN], sums, planned, about)
+        self.form.figures.set(PLANNED, tr("As planned"), COLOURS[PLANNED], planned, None, about)
         edited = self.draft.edited
         self.form.buttons["use"].setEnabled(edited)
         if sums.lost:

@@ -9,7 +9,7 @@ from typing import Any
 import FreeCAD as App
 import FreeCADGui as Gui
 import numpy as np
-from PySide import QtCore
+from PySide import QtCore, QtGui
 
 from ...core.issues import AmError
 from ...core.planning.points import TURN
@@ -17,9 +17,8 @@ from ...core.planning.spin_curve import Compared
 from ...objects.progress import Cancelled
 from ...objects.stage import first_message, issues_of
 from ...objects.staleness import UP_TO_DATE
-from .. import preference_watch, recorded
+from .. import docks, preference_watch, recorded
 from ..later import Later
-from ..simulation.dock import _Dock
 from ..texts import tr, translated, translated_error
 from .board import Board
 from .canvas import Canvas
@@ -45,50 +44,74 @@ class SpinMapDock:
 
     def __init__(self, obj: Any) -> None:
         self.obj, self.gone = obj, False
-        self.dock = _Dock("", Gui.getMainWindow())
-        self.dock.setObjectName(NAME)
-        self.dock.closed = self.close
+        self.dock = docks.dock(NAME, docks.BELOW, WIDE, HIGH)
+        self.holder = QtGui.QStackedWidget()
         self.canvas = Canvas()
+        self._build()
+        self.cells = Cells(self.holder, self.canvas, self._fill_controls, self._show_curves)
+        self.consequences = Consequences(self.holder, self.form, self._planned_text)
+        self.comparison = Comparison(self.holder, self._show_compared, lambda text: self.form.tell(text))
+        self.renewing = Later(self.holder, self.renew)
+        self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
+        self.canvas.dragged, self.canvas.dropped = self._dragged, self.consequences.exactly
+        self.dock.hold("", self.holder)
+        self.dock.closed = self.close
+        self._take(source_of(obj))
+        self.dock.come()
+        App.addDocumentObserver(self)
+        preference_watch.listen(self._renew_cells)
+        preference_watch.listen_to_language(self._speak)
+
+    # ---- the fields
+
+    def _build(self) -> None:
+        """The fields, in the language of the window, about the canvas."""
         self.controls = Controls(self._chosen, self._curve_chosen, self._entered)
         self.figures = Figures(self._show_curves)
         self.form = Form(self.canvas, self.controls, self.figures)
         for name, act in (("use", self._use), ("free", self._free), ("again", self._again), ("compare", self._compare)):
             self.form.buttons[name].clicked.connect(lambda *_, act=act: act())
-        self.dock.setWidget(self.form)
-        self.cells = Cells(self.dock, self.canvas, self._fill_controls, self._show_curves)
-        self.consequences = Consequences(self.dock, self.form, self.figures, self._planned_text)
-        self.comparison = Comparison(self.dock, self._show_compared, self.form.tell)
-        self.renewing = Later(self.dock, self.renew)
-        self.canvas.hovered, self.canvas.clicked = self._hovered, self._clicked
-        self.canvas.dragged, self.canvas.dropped = self._dragged, self.consequences.exactly
-        self._take(source_of(obj))
-        Gui.getMainWindow().addDockWidget(QtCore.Qt.BottomDockWidgetArea, self.dock)
-        self.dock.show()
-        self.dock.raise_()
-        App.addDocumentObserver(self)
-        preference_watch.listen(self._renew_cells)
-        QtCore.QTimer.singleShot(0, self._fit)  # once it has its place among other docks
+        before = self.holder.currentWidget()
+        self.holder.addWidget(self.form)
+        self.holder.setCurrentWidget(self.form)
+        if before is not None:
+            self.holder.removeWidget(before)
+            before.deleteLater()
 
-    def _fit(self) -> None:
-        """As much room as a map needs."""
-        window = Gui.getMainWindow()
-        if not self.gone:
-            window.resizeDocks([self.dock], [int(WIDE * window.width())], QtCore.Qt.Horizontal)
-            window.resizeDocks([self.dock], [HIGH], QtCore.Qt.Vertical)
+    def _speak(self) -> None:
+        """The window has another language: what is chosen stays."""
+        before, hidden = self.controls, [name for name in self.figures.rows if not self.figures.shows(name)]
+        self._build()
+        self.controls.kind.setCurrentIndex(before.kind.currentIndex())
+        self.controls.together.setChecked(before.together.isChecked())
+        self.consequences.form = self.form
+        self._say_title()
+        self._changed_for_good()
+        self._show_compared(self.compared)
+        for name in hidden:
+            self.figures.hide_curve(name)
+        self._renew_cells()
+
+    def _say_title(self) -> None:
+        self.dock.setWindowTitle(tr("Free rotation of {title}").format(title=self.source.title))
+
+    def _name_compare(self) -> None:
+        """What the button does now."""
+        self.form.buttons["compare"].setText(tr("Cancel") if self.comparison.runs else tr("Compare methods"))
 
     # ---- the joint path
 
     def _take(self, source: Source, board: Board | None = None) -> None:
         """Show a joint path as it is planned now, at the layer and on the axis of another board."""
         self.source, self.draft = source, Draft(source)
-        self.dock.setWindowTitle(tr("Free rotation of {title}").format(title=source.title))
+        self._say_title()
         layers = {layer for layer, _ in source.places}
         layer = board.layer if board is not None and board.layer in layers else None
         self.board = Board(source, layer, AXES[0] if board is None else board.axis)
         self.bead = self.board.beads[0]
         self.compared: tuple[Compared, ...] = ()
         self.comparison.cancel()
-        self.form.buttons["compare"].setText(tr("Compare methods"))
+        self._name_compare()
         self.figures.clear_all()
         self.consequences.take(self.draft)
         self._changed_for_good()
@@ -217,11 +240,11 @@ class SpinMapDock:
             self._changed()
         else:
             self.comparison.start(self.source, self.source.task(self.draft.branch))
-        self.form.buttons["compare"].setText(tr("Cancel") if self.comparison.runs else tr("Compare methods"))
+        self._name_compare()
 
     def _show_compared(self, found: tuple[Compared, ...]) -> None:
         """Another comparison has ended; empty: without a result."""
-        self.form.buttons["compare"].setText(tr("Compare methods"))
+        self._name_compare()
         if found:
             self.compared = found
             self._changed()
@@ -273,13 +296,12 @@ class SpinMapDock:
             return
         self.gone = True
         App.removeDocumentObserver(self)
-        preference_watch.forget(self._renew_cells)
+        for listener in (self._renew_cells, self._speak):
+            preference_watch.forget(listener)
         for background in (self.cells, self.consequences, self.comparison):
             background.cancel()
         self.renewing.timer.stop()
-        self.dock.closed = None
-        self.dock.close()
-        self.dock.deleteLater()
+        self.dock.empty()
         if self in _open:
             _open.remove(self)
 

@@ -89,6 +89,10 @@ class Figures(QtGui.QTableWidget):
         """Whether a curve is to be seen."""
         return name in self.rows and self.item(self.rows[name], 0).checkState() == QtCore.Qt.Checked
 
+    def hide_curve(self, name: str) -> None:
+        """Take a curve from the map, as its box does."""
+        self.item(self.rows[name], 0).setCheckState(QtCore.Qt.Unchecked)
+
     def clear_all(self) -> None:
         """No rows."""
         self.filling = True

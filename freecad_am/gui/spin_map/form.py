@@ -17,6 +17,7 @@ class Form(QtGui.QWidget):
 
     def __init__(self, canvas: Any, controls: Any, figures: Any) -> None:
         super().__init__()
+        self.figures = figures
         row, left, right = QtGui.QHBoxLayout(self), QtGui.QVBoxLayout(), QtGui.QVBoxLayout()
         row.setContentsMargins(4, 2, 4, 4)
         row.setSpacing(4)

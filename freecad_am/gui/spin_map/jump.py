@@ -44,5 +44,5 @@ def _path(obj: Any, layer: int, position: Array) -> bool:
     away = np.linalg.norm(view.rows.points[first:end] - position, axis=1)
     begin = 0 if view.shown is None else min(view.shown[0], layer)
     view.show((begin, layer, int(away.argmin()) + 1))
-    opened.open(obj)
+    opened.follow(obj)
     return True

@@ -223,38 +223,18 @@ class Lesson:
         wanted = getattr(self.person.widgets.QDialogButtonBox, name)
         boxes = self.person.window.findChildren(self.person.widgets.QDialogButtonBox)
         button = next(box.button(wanted) for box in boxes if box.isVisible() and box.button(wanted) is not None)
-        self.reveal(button)
         self.hand.click(button)
         for box in boxes:  # what Python keeps of them would stand for whatever comes to be at their place later
             self.person.qt.invalidate(box)
         self.person.panel_closed()
         self.person.idle(0.3)
 
-    def reveal(self, widget):
-        """Turn the wheel over the margin of a panel until all of a widget is in sight."""
-        for _ in range(40):
-            if widget.visibleRegion().boundingRect().height() >= widget.height():
-                return
-            areas = self.person.window.findChildren(self.person.widgets.QScrollArea)
-            area = next(one for one in areas if one.isVisible() and one.isAncestorOf(widget))
-            margin = area.viewport().mapToGlobal(self.person.core.QPoint(3, area.viewport().height() // 2))
-            below = widget.mapTo(area.viewport(), widget.rect().center()).y() > area.viewport().height() // 2
-            self.hand.do("mousemove", margin.x(), margin.y(), "click", 5 if below else 4)
-        raise AssertionError(f"{widget.objectName()} does not come in sight")
-
-    def enter(self, panel, name, text):
-        """Type over what a field holds, and leave it."""
-        self.reveal(self.person.field(panel, name))
-        self.hand.enter(panel, name, text)
-
     def choose(self, panel, name, text):
         """An entry of a list: a click opens it, its first letters find the entry, Enter takes it."""
         box = self.person.field(panel, name)
-        self.reveal(box)
         self.hand.click(box)
         if not box.view().isVisible():  # the panel has moved under the pointer: a hand clicks again
             self.person.idle(0.5)
-            self.reveal(box)
             self.hand.click(box)
         self.person.until(box.view().isVisible, f"the list of {name}", 5)
         self.hand.do("type", "--delay", 20, text)

@@ -36,12 +36,12 @@ def test_the_hemisphere(person, hand, lesson, root, tmp_path):
     lesson.unfold("Job hemisphere")
     lesson.double_click("Cell")
     panel = person.panel("RoboticAM_Cell")
-    lesson.enter(panel, "Limits", "paper")
+    lesson.hand.enter(panel, "Limits", "paper")
     lesson.picture("hemisphere-cell", path=True)
     lesson.ok()
     lesson.double_click("Feature")
     panel = person.panel("RoboticAM_RevolutionFeature")
-    lesson.enter(panel, "LayerHeight", "5 mm")
+    lesson.hand.enter(panel, "LayerHeight", "5 mm")
     lesson.ok()
     assert document.Toolpath.Layers == 15
     assert [stage.Status for stage in api.stages_of(document)] == ["up to date"] * 5
@@ -50,7 +50,7 @@ def test_the_hemisphere(person, hand, lesson, root, tmp_path):
     hand.click_tree("Joint path")
     lesson.tool("Path")
     dock = person.panel("RoboticAM_PathDock")
-    lesson.enter(dock, "to_spin", "8")
+    lesson.hand.enter(dock, "to_spin", "8")
     hand.click(person.field(dock, "directions"))
     assert document.JointPath.ViewObject.ShowDirections
     assert "joint margin" in person.field(dock, "facts").text()

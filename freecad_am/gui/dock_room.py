@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The room that our docks take from the rest of the window, height below the 3D view and width beside it, and give back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+_ALIKE = 3  # pixels that layouts round away
+_SETTLED = 500  # ms until docks stand still
+_BESIDE = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
+
+
+@dataclass
+class _Part:
+    """A dock of ours, and the pixels it asks for: at least these, or just these where the user has given them by hand."""
+
+    dock: Any
+    asked: int
+    by_hand: bool = False
+
+
+class Room:
+    """Of one area of the window. Docks of ours that are open there make it as large as the largest of them asks."""
+
+    def __init__(self, area: Any) -> None:
+        self.area = area
+        self.across = QtCore.Qt.Horizontal if area in _BESIDE else QtCore.Qt.Vertical
+        self.parts: list[_Part] = []  # in the order in which they were opened
+        self.before: dict[str, int] = {}  # names of other docks, and the pixels they had before ours came
+        self.wishes: dict[str, int] = {}  # what docks had by the user's hand when they were closed
+        self.made: int | None = None  # what has come of the pixels that were asked for, once it is known
+        self.timer = QtCore.QTimer()
+        self.timer.setSingleShot(True)
+        self.timer.setInterval(_SETTLED)
+        self.timer.timeout.connect(self._measure)
+
+    def enter(self, dock: Any, least: int) -> None:
+        """A dock is about to be opened; it asks for `least` pixels, 0 for what its fields need."""
+        self._look()
+        if not self.parts:
+            self.before = {one.objectName(): self._extent(one) for one in self._seen()}
+        hint = dock.sizeHint()
+        natural = hint.width() if self.across == QtCore.Qt.Horizontal else hint.height()
+        self.parts.append(_Part(dock, self.wishes.get(dock.objectName(), least or natural)))
+
+    def settle(self) -> None:
+        """Make it as large as it is to be."""
+        shown = [part.dock for part in self.parts if self._stands(part.dock)]
+        if shown:
+            self._resize(shown[-1:], [self._wanted()])
+            self.made = None
+            self.timer.start()
+
+    def leave(self, dock: Any) -> None:
+        """A dock is about to be closed: what stays is soon as large as without it."""
+        if not any(part.dock is dock for part in self.parts):
+            return
+        self._look()
+        for part in self.parts:
+            if part.dock is dock and part.by_hand:
+                self.wishes[dock.objectName()] = part.asked
+        self.parts = [part for part in self.parts if part.dock is not dock]
+        QtCore.QTimer.singleShot(0, self._give_back)
+
+    def beside(self, dock: Any) -> bool:
+        """Whether another dock of ours is seen there at the same time."""
+        seen = self._seen()
+        return any(part.dock is not dock and part.dock in seen for part in self.parts)
+
+    def _give_back(self) -> None:
+        if self.parts:
+            self.settle()
+            return
+        there = [one for one in self._seen() if one.objectName() in self.before]
+        self._resize(there, [self.before[one.objectName()] for one in there])
+
+    def _wanted(self) -> int:
+        """The pixels that all who are there make together, as they came."""
+        pixels = max(self.before.values(), default=0)
+        for part in self.parts:
+            pixels = part.asked if part.by_hand else max(pixels, part.asked)
+        return pixels
+
+    def _look(self) -> None:
+        """Take notice of what the user has done by hand since."""
+        self.parts = [part for part in self.parts if self._stands(part.dock)]
+        if not self.parts:
+            return
+        found = self._found()
+        if found is not None and self.made is not None and abs(found - self.made) > _ALIKE:
+            self.parts[-1].asked, self.parts[-1].by_hand = found, True
+
+    def _measure(self) -> None:
+        self.made = self._found()
+
+    def _found(self) -> int | None:
+        """The pixels of ours now; None where none is seen."""
+        seen = self._seen()
+        own = [part.dock for part in reversed(self.parts) if part.dock in seen]
+        return self._extent(own[0]) if own else None
+
+    # ---- the window
+
+    def _stands(self, dock: Any) -> bool:
+        return dock.isVisible() and not dock.isFloating() and Gui.getMainWindow().dockWidgetArea(dock) == self.area
+
+    def _seen(self) -> list[Any]:
+        """The docks that stand there, without those behind others: Qt keeps these outside of the window."""
+        window = Gui.getMainWindow()
+        docks = window.findChildren(QtGui.QDockWidget)
+        return [one for one in docks if self._stands(one) and one.geometry().intersects(window.rect())]
+
+    def _extent(self, dock: Any) -> int:
+        """Pixels of a dock, with the tabs above or below it: so Qt counts when docks are resized."""
+        if self.across == QtCore.Qt.Horizontal:
+            return int(dock.width())
+        window, place = Gui.getMainWindow(), dock.geometry()
+        bars = [bar.geometry() for bar in window.findChildren(QtGui.QTabBar) if bar.parent() is window and bar.isVisible()]
+        tabs = [bar.height() for bar in bars if bar.left() <= place.center().x() <= bar.right()
+                and place.adjusted(0, -_ALIKE, 0, _ALIKE).intersects(bar)]
+        return int(place.height() + sum(tabs[:1]))
+
+    def _resize(self, docks: list[Any], pixels: list[int]) -> None:
+        if docks:
+            Gui.getMainWindow().resizeDocks(docks, pixels, self.across)
