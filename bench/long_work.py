@@ -22,7 +22,7 @@ ALLOWED = (  # key, what it is, s
 
 
 def run() -> list[Row]:
-    """Three rows for every kind of work."""
+    """A row for each thing that is allowed so long, of every kind of work."""
     freecad = in_window.freecad()
     if freecad is None:
         return []

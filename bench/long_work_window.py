@@ -12,7 +12,7 @@ from in_window import begin, settle
 
 TICK = 10  # ms
 WAIT = 0.3  # s from the dialog to Cancel
-LOOKED = 4.0  # s that a preview is watched for
+LOOKED = 60.0  # s that a preview is watched for at most
 
 
 class Pauses:
@@ -74,11 +74,15 @@ def cancelled(job) -> dict[str, float]:
 def previewed(obj) -> float:
     """The longest pause, s, while a panel shows what an object would become."""
     import FreeCADGui as Gui
+    from PySide import QtGui
 
     obj.ViewObject.doubleClicked()
     settle(0.1)  # the panel itself is there
-    pauses = Pauses()
-    settle(LOOKED)
+    state = Gui.getMainWindow().findChild(QtGui.QLabel, "preview")
+    pauses, end = Pauses(), time.perf_counter() + LOOKED
+    while "irst layer" not in state.text() and time.perf_counter() < end:
+        settle(0.05)
+    assert "irst layer" in state.text(), state.text()
     pauses.timer.stop()
     Gui.Control.closeDialog()
     settle(0.5)
@@ -89,14 +93,14 @@ def all_of_them() -> list[dict[str, object]]:
     """Of every job."""
     import FreeCAD as App
 
-    from tests.gui.long_jobs import JOBS
+    from tests.gui.long_jobs import JOBS, PREVIEWED
 
     found = []
-    for make in JOBS:
+    for make in dict.fromkeys((*JOBS, *PREVIEWED)):
         job = make(Path(os.environ["FRAMES_OF"]))
         settle(1.0)
-        one = {"job": make.__name__, **cancelled(job)}
-        if "feature" in job.inputs:
+        one: dict[str, object] = {"job": make.__name__, **(cancelled(job) if make in JOBS else {})}
+        if make in PREVIEWED:
             one["preview"] = previewed(job.inputs["feature"])
         found.append(one)
         App.closeDocument(job.document.Name)

@@ -56,4 +56,14 @@ def joints(root):
     return SimpleNamespace(document=document, function="make_joint_path", inputs={"toolpath": toolpath, "cell": cell})
 
 
+def elbow(root):
+    """A wall whose first layer takes seconds, on a mesh of a hundred thousand triangles."""
+    document = App.newDocument("Long")
+    folder = root / "resources" / "examples" / "walls"
+    bend, block = (api.open_part(document, str(folder / name)) for name in ("elbow.step", "elbow-block.step"))
+    feature = api.make_surface_feature(document, bend, substrate=block, layer_height=0.6)
+    return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
+
+
 JOBS = (revolution, wall, hub, joints)
+PREVIEWED = (wall, hub, elbow)  # whose panels show what they would make

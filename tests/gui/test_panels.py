@@ -3,21 +3,14 @@
 
 import threading
 import time
-from pathlib import Path
 
 import FreeCAD as App
-import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.preview import Draft
 from freecad_am.objects.surface_feature import SurfaceFeature
 
 PANEL = "RoboticAM_RevolutionFeature"
-# s of processor time of this FreeCAD, all its threads together, between two events of the window beside a preview: what
-# other programs do does not lengthen it
-PAUSE = 0.2
-EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
 
 
 def test_apply_makes_then_changes_in_a_step_each_and_cancel_leaves_it(person, hemisphere):
@@ -159,85 +152,3 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(p
     person.panel_closed()
     person.until(lambda: ended[-1] == 2.0, "its end", 10)
     person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
-
-
-class Pulse:
-    """Beats every few ms while the window is alive."""
-
-    def __init__(self, person):
-        self.beats = []
-        self.timer = person.core.QTimer()
-        self.timer.setInterval(5)
-        self.timer.timeout.connect(lambda: self.beats.append(time.process_time()))
-        self.timer.start()
-
-    def longest_pause(self):
-        """Between two beats, from the first to the last one so far."""
-        self.timer.stop()
-        return max(later - earlier for earlier, later in zip(self.beats, self.beats[1:]))
-
-
-def elbow():
-    """A bend and the block it grows on, the tool for it, and the name of its panel."""
-    document = App.newDocument("Elbow")
-    bend, block = (api.open_part(document, str(EXAMPLES / "walls" / name)) for name in ("elbow.step", "elbow-block.step"))
-    return [(bend, ""), (block, "")], "WallOnPart", "RoboticAM_SurfaceFeature"
-
-
-def blades():
-    """Twelve blades with a hole each on a cone, the tool for them, and the name of its panel."""
-    document = App.newDocument("Blades")
-    hub = document.addObject("Part::Feature", "Hub")
-    hub.Shape = Part.makeCone(40, 25, 60)
-    hole = Part.makeCylinder(4, 20, App.Vector(48, -10, 26), App.Vector(0, 1, 0))
-    blade = Part.makeBox(30, 6, 24, App.Vector(25, -3, 14)).cut(hole).cut(hub.Shape)
-    solids = [blade.copy() for _ in range(12)]
-    for number, solid in enumerate(solids):
-        solid.rotate(App.Vector(0, 0, 0), App.Vector(0, 0, 1), 30.0 * number)
-    part = document.addObject("Part::Feature", "Blades")
-    part.Shape = Part.makeCompound(solids)
-    document.recompute()
-    return [(part, ""), (hub, "")], "SolidsOnHub", "RoboticAM_DevelopableFeature"
-
-
-@pytest.mark.parametrize(
-    ("scene", "heights", "wanted"),
-    # the contours of solids do not depend on the height: they are computed once
-    [(elbow, ("1.5 mm", "0.6 mm"), "First layer: closed"), (blades, (), "12 solids on Hub")],
-)
-def test_a_preview_of_a_real_part_does_not_hold_the_window_up(person, monkeypatch, scene, heights, wanted):
-    selected, command, name = scene()
-    begun, ended = [], []
-    prepared = Draft.prepare
-
-    def prepare(self):
-        work = prepared(self)
-
-        def noted():
-            begun.append(self)
-            try:
-                return work()
-            finally:
-                ended.append(self)
-
-        return noted
-
-    monkeypatch.setattr(Draft, "prepare", prepare)
-    person.gui.Selection.clearSelection()
-    for obj, element in selected:
-        person.gui.Selection.addSelection(obj.Document.Name, obj.Name, element)
-    person.click(f"RoboticAM_{command}")
-    panel = person.panel(name)
-    state = person.field(panel, "preview")
-    for number, height in enumerate((None, *heights)):
-        pulse = Pulse(person)
-        if height is not None:
-            person.type(panel, "LayerHeight", height)
-        person.until(lambda number=number: len(begun) > number, "the preview to begin", 10)
-        person.until(lambda: len(ended) == len(begun) and state.text() and "computed" not in state.text(), "it to end", 90)
-        person.idle(0.05)
-        pause = pulse.longest_pause()
-        print(f"{scene.__name__}, {height}: longest pause {pause:.3f} s of work, {len(pulse.beats)} beats")
-        assert wanted in state.text() and pause < PAUSE and len(pulse.beats) > 10
-    person.press("Cancel")
-    person.panel_closed()

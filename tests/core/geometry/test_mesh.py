@@ -80,3 +80,15 @@ def test_chains_of_random_successors():
         start = int(np.flatnonzero(part == chain[0])[0])
         assert chain.tolist() == np.roll(part, -start).tolist()
     assert not wanted
+
+
+def test_edges_are_each_there_once_in_order_and_borders_have_one_face():
+    """Against rows sorted by numpy, on faces of any numbers."""
+    random = np.random.default_rng(12)
+    for count in (3, 40, 70_000):  # products of 70,000 do not fit in 32 bits
+        faces = random.integers(0, count, (500, 3), dtype=np.int32)
+        one = Mesh(np.zeros((count, 3)), faces)
+        half = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        edges, place, found = np.unique(np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True)
+        assert np.array_equal(one.edges, edges)
+        assert np.array_equal(one.border_edges, half[found[np.ravel(place)] == 1])
