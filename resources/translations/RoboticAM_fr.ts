@@ -1453,8 +1453,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>Circularity at {0}</source>
-        <translation>Circularité à {0}</translation>
+        <source>Circularity at {0} mm</source>
+        <translation>Circularité à {0} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -1700,11 +1700,6 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Diameter</source>
         <translation>Diamètre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>Diameter at {0}</source>
-        <translation>Diamètre à {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -2978,8 +2973,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>Off axis at {0}</source>
-        <translation>Excentricité à {0}</translation>
+        <source>Off axis at {0} mm</source>
+        <translation>Excentricité à {0} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>

@@ -53,11 +53,11 @@ def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, p
     assert (made.Status, document.UndoCount) == ("up to date", steps + 1)
     told = figures(panel, person)
     assert float(told["Sphericity"]) == pytest.approx(0.275, abs=0.01)
-    assert float(told["Circularity at 35"]) > float(told["Circularity at 15"])
+    assert float(told["Circularity at 35 mm"]) > float(told["Circularity at 15 mm"])
     assert person.field(panel, "DeviationHistogram").isVisible()
     green, yellow = green_and_red(person)
     assert green > 500 and yellow > 100
-    assert [scale.title for scale in legend.shown(document)] == ["deviation"]
+    assert [legend._lines((), scale) for scale in legend.shown(document)] == [["deviation, mm"]]
     person.screenshot("inspection")
     person.press("Ok")
     person.panel_closed()

@@ -49,12 +49,12 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
             Row("Radius of the sphere", ball.fitted.radius, "mm", "Radius"),
         ]
     for one in inspected.circles:
-        at, near = f"at {one.height:g} mm", f"at {one.height:g}"
+        at = f"at {one.height:g} mm"
         found += [
-            Row(f"Circularity defect {at}", one.zone.zone, "mm", f"Circularity {near}"),
+            Row(f"Circularity defect {at}", one.zone.zone, "mm", f"Circularity {at}"),
             Row(f"Circularity defect {at}, least squares", one.fitted.zone, "mm"),
-            Row(f"Diameter {at}", 2.0 * one.fitted.radius, "mm", f"Diameter {near}"),
-            Row(f"Eccentricity {at}", one.eccentricity, "mm", f"Off axis {near}"),
+            Row(f"Diameter {at}", 2.0 * one.fitted.radius, "mm", f"Diameter {at}"),
+            Row(f"Eccentricity {at}", one.eccentricity, "mm", f"Off axis {at}"),
         ]
     if inspected.thickness is not None:
         wall = inspected.thickness

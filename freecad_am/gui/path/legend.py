@@ -108,7 +108,7 @@ def _picture(entry: Entry, left: int) -> Any:
 
 def _lines(names: tuple[str, ...], scale: Scale) -> list[str]:
     title = translated(scale.title)
-    return [*names, f"{title}, {scale.unit}" if scale.unit and not scale.classes else title]
+    return [*names, f"{title}, {scale.unit}" if scale.unit else title]
 
 
 def _foot(scale: Scale) -> str:
