@@ -2872,6 +2872,16 @@
         <translation>Pas de choix pour {} : la pièce repose sur sa table</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>No findings: no limit, singularity or speed comes near</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/told.py"/>
+        <source>No findings: no limit, singularity or speed comes near, and no link of the robot touches anything</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/pick_panel.py"/>
         <source>No preview: see the field marked.</source>
         <translation>Pas d&apos;aperçu : voyez le champ marqué.</translation>
@@ -2885,16 +2895,6 @@
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>Nothing is selected: click in the tree or the 3D view first.</source>
         <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
-        <source>Nothing to be seen: no limit, singularity or speed comes near</source>
-        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/told.py"/>
-        <source>Nothing to be seen: no limit, singularity or speed comes near, and no link of the robot touches anything</source>
-        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>

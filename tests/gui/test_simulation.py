@@ -95,6 +95,7 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
         deposited = int(motion.deposit[: row if not state.standing else row + 1].sum())
         assert scene.deposit.end == deposited
         bars = person.field(panel, "joints")
+        assert all(bars.texts(axis)[1].endswith(("°", " mm", "∞")) for axis in range(len(bars.names)))
         assert np.abs(bars.values * cell.machine.unit_values - state.joints).max() < 1e-12
         assert np.allclose(bars.margins * cell.machine.unit_values, cell.limits.margin(state.joints)[: len(bars.margins)])
         seen.append((part, nozzle))

@@ -43,7 +43,7 @@ class JointBars(QtGui.QWidget):
         unit = "°" if self.units[axis] == "deg" else " mm"
         if not np.isfinite(self.values[axis]):
             return "–", "–", "–"
-        margin = f"{self.margins[axis]:.1f}" if np.isfinite(self.margins[axis]) else "∞"
+        margin = f"{self.margins[axis]:.1f}{unit}" if np.isfinite(self.margins[axis]) else "∞"
         return f"{round(float(self.values[axis]), 1) + 0.0:.1f}{unit}", margin, f"{100.0 * self.ratios[axis]:.0f} %"
 
     def paintEvent(self, event: Any) -> None:
@@ -51,8 +51,9 @@ class JointBars(QtGui.QWidget):
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.Antialiasing)
         wide = self.fontMetrics().boundingRect
+        most = "8888.8 mm" if "mm" in self.units else "8888.8°"
         name, value, margin, speed = (
-            wide(text).width() + _GAP for text in (max(self.names, key=len), "-8888.8 mm", "8888.8", "88888 %")
+            wide(text).width() + _GAP for text in (max(self.names, key=len), f"-{most}", most, "88888 %")
         )
         name = max(name, 22)
         left, right = _PAD + name + value, self.width() - _PAD - margin - speed

@@ -49,8 +49,8 @@ def finding(found: Finding, unit: str = "deg") -> str:
 def nothing(run: Run) -> str:
     """That there are no findings, and among what."""
     if run.watch.arm_known:
-        return tr("Nothing to be seen: no limit, singularity or speed comes near, and no link of the robot touches anything")
-    return tr("Nothing to be seen: no limit, singularity or speed comes near")
+        return tr("No findings: no limit, singularity or speed comes near, and no link of the robot touches anything")
+    return tr("No findings: no limit, singularity or speed comes near")
 
 
 def place(run: Run, moment: Moment) -> str:
