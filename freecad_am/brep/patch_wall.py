@@ -14,14 +14,15 @@ from ..core.geometry import contact
 from ..core.geometry.ground import nearest
 from ..core.geometry.mesh import Mask
 from ..core.geometry.patch_wall import FirstCurve, PatchWall
-from ..core.geometry.told import deviation, place
+from ..core.geometry.told import at_least, count, deviation, place
 from ..core.geometry.wall_rims import outward_volume, parts, rims_of, with_ends
 from ..core.issues import NOTE, InputError, Issue
-from .sheet import sheet
+from .sheet import MOST, sheet
 from .start_edges import curves_of
 from .substrate import Substrate
 from .wall_checks import refuse_creases, refuse_crossing, refuse_folded, refuse_gaps, refuse_tight, smallest_radii
 
+EQUAL = 0.433  # area of a triangle with equal sides of 1
 COARSE, SHARE = 4.0, 0.04  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall
 
 
@@ -35,6 +36,7 @@ def find_patch_wall(
     GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT, ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE,
     NO_START, UNKNOWN_EDGE.
     """
+    _refuse_fine(named, height)
     wall = sheet(named, _edge(named, height, label), label)
     refuse_creases(wall, shape, label)
     refuse_gaps(wall, label)
@@ -61,6 +63,18 @@ def find_patch_wall(
     return replace(
         wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
     )
+
+
+def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
+    """InputError TOO_FINE where even triangles with sides of a layer height are more than a mesh may have."""
+    area = sum(face.Area for _, face in named)
+    about, enough = area / (EQUAL * height) / height, at_least(float(np.sqrt(area / (EQUAL * MOST))))
+    if about > MOST:
+        raise InputError(
+            "TOO_FINE", "strategy.layer_height", f"layers of {height:g} mm ask for a mesh of the wall of about "
+            f"{count(about)} triangles, and more than {MOST:,} cannot be worked with; give more than {enough:g} mm, or "
+            "deposit the wall in parts",
+        )
 
 
 def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:

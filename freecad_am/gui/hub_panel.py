@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..core.issues import AmError, Issue
+from ..core.parameters.strategy import DevelopableParameters
+from ..core.strategies import size
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.shapes import FIXTURES
 from ..objects.stage import Link, Outcome
@@ -124,17 +126,21 @@ class HubPanel(PickPanel):
         """Computed anew only where solids or hub are others."""
         draft.check()
         key = (self._inputs(), [str(getattr(draft.obj, name)) for name in _SHAPING])
-        kept, work = self.kept, draft.prepare()
-        if kept is not None and kept[0] == key:
-            return lambda: kept[1:]
+        kept, work, strategy = self.kept, draft.prepare(), self._strategy()
 
         def both() -> tuple[Outcome, Drawing]:
-            made = work()
-            drawn = drawing(made.value)
-            self.kept = (key, made, drawn)
-            return made, drawn
+            _, made, drawn = kept if kept is not None and kept[0] == key else (key, work(), None)
+            size.refuse_absurd(size.of_solids(made.value, strategy), strategy)
+            self.kept = (key, made, drawing(made.value) if drawn is None else drawn)
+            return self.kept[1:]
 
         return both
+
+    def _strategy(self) -> DevelopableParameters:
+        """What is entered, with the chord error that the deposit is to keep."""
+        entered = Draft(self.proxy, self.document, self.draft, self._links(), super()._values())
+        found: DevelopableParameters = entered.stage.parameters(entered.obj, DevelopableParameters)
+        return found
 
     def _link_places(self) -> dict[str, str]:
         return {

@@ -15,6 +15,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import DevelopableParameters
 from ..core.slicing.standing import hub_among, on_hub
+from ..core.strategies import size
 from .feature import source_of
 from .fingerprints import fingerprint
 from .shapes import FIXTURES, Taken, bodies, fixtures_of, taken
@@ -61,6 +62,7 @@ class DevelopableFeature(Stage):
 
         def work() -> Outcome:
             solids = _solids(given, strategy)
+            size.refuse_absurd(size.of_solids(solids, strategy), strategy)
             substrate = () if given.substrate is None else (given.substrate.body(),)
             solids = dataclasses.replace(solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures)))
             bases = [group.base.name for group in solids.groups]

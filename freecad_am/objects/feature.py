@@ -12,6 +12,7 @@ from ..brep.revolution import find_wall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
+from ..core.strategies import size
 from .fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, global_shape
 from .stage import Link, Outcome, Section, Stage, Work
@@ -48,6 +49,7 @@ class RevolutionFeature(Stage):
 
         def work() -> Outcome:
             wall = find_wall(shape, faces, strategy.wall, axis, label)
+            size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
             return Outcome(dataclasses.replace(wall, surroundings=bodies(fixtures)), wall.issues, figures)
 
@@ -60,6 +62,7 @@ class RevolutionFeature(Stage):
             shape_fingerprint(source), " ".join(faces), "" if axis is None else digits(*axis),
             *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]
+
 
 _LINES = ("Part::GeomLine", "Part::GeomLineSegment")
 

@@ -11,6 +11,7 @@ from ..core.geometry.patch_wall import PatchWall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters
+from ..core.strategies import size
 from .feature import source_of
 from .fingerprints import fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
@@ -57,6 +58,7 @@ class SurfaceFeature(Stage):
             for substrate in substrates:
                 solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
             wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges)
+            size.refuse_absurd(size.of_wall(wall, strategy), strategy)
             wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)))
             kind = "patches" if isinstance(wall, PatchWall) else wall.kind
             return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", kind)))

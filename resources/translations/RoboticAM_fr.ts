@@ -6027,6 +6027,11 @@
         <translation>il est vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>it is empty; a machine file is worth no more than its check poses</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/read.py"/>
         <source>it is empty; export the part again</source>
         <translation>il est vide ; exportez la pièce de nouveau</translation>
@@ -6047,7 +6052,7 @@
         <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>it is empty; give maker and model</source>
         <translation>il est vide ; donnez le constructeur et le modèle</translation>
     </message>
@@ -6400,6 +6405,11 @@
         <location filename="../../freecad_am/brep/wall_checks.py"/>
         <source>layers of {0} mm are higher than the wall&apos;s smallest radius of curvature, {1} mm at {2}; use lower layers, or a larger radius there</source>
         <translation>des couches de {0} mm sont plus hautes que le plus petit rayon de courbure de la paroi, {1} mm en {2} ; prenez des couches plus basses, ou un plus grand rayon à cet endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <source>layers of {0} mm ask for a mesh of the wall of about {1} triangles, and more than {2} cannot be worked with; give more than {3} mm, or deposit the wall in parts</source>
+        <translation>des couches de {0} mm demandent un maillage de la paroi d&apos;environ {1} triangles, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez plus de {3} mm, ou déposez la paroi en plusieurs parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -7155,11 +7165,6 @@
         <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
         <source>table, row {0}</source>
         <translation>tableau, ligne {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
-        <source>tell it; a machine is only as good</source>
-        <translation>dites-le ; une machine ne vaut pas mieux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
@@ -8840,6 +8845,16 @@
         <location filename="../../freecad_am/core/geometry/file_unit.py"/>
         <source>{0} mm is no unit; give the length of one unit of the file, as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>{0} mm makes about {1} layers, and more than {2} cannot be worked with; give at least {3} mm</source>
+        <translation>{0} mm font environ {1} couches, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>{0} mm makes about {1} points, and more than {2} cannot be worked with; give at least {3} mm</source>
+        <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution.py"/>

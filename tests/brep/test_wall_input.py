@@ -78,12 +78,15 @@ def kinked():
     (fan, slab, 2.0, (), "BRANCHING_FACES", "Wall", ["more than two faces", "0, 0)"]),
     (lambda: twisted_band(1), slab, 3.0, (), "NOT_ORIENTABLE", "Wall", ["Face1 cannot"]),
     (lambda: twisted_band(2), slab, 3.0, (), "NOT_ORIENTABLE", "Wall", ["Face1", "Face2", "twisted"]),
-    (lambda: Part.makePlane(1e4, 1e4, Vector(), Vector(1, 0, 0)), slab, 1.0, (), "TOO_FINE", "Wall", ["1 mm", "larger"]),
+    (lambda: Part.makePlane(1e4, 1e4, Vector(), Vector(1, 0, 0)), slab, 1.0, (), "TOO_FINE", "strategy.layer_height",
+     ["1 mm", "about 230,000,000 triangles", "more than 13 mm"]),
+    (lambda: Part.makePlane(780, 780, Vector(), Vector(1, 0, 0)), slab, 1.0, (), "TOO_FINE", "Wall", ["1 mm", "larger"]),
+    (tube, slab, 1e-6, ("Edge1",), "TOO_FINE", "strategy.layer_height", ["1e-06 mm", "more than 0.0"]),
     (kinked, slab, 4.0, (), "ROUGH_WALL", "Wall Face1", ["26.6 deg", "40)"]),
     (lambda: Part.Compound([tube(), tube(100.0)]), lambda: None, 4.0, ("Edge6",), "NO_START", "Wall Edge6", ["100 mm off"]),
     (tube, lambda: None, 4.0, ("Edge99",), "UNKNOWN_EDGE", "Wall", ["Edge99", "Edge1 to Edge3"]),
     (tube, lambda: None, 4.0, (), "NO_SUBSTRATE", "Wall", ["choose a substrate"]),
-], ids=["fan", "twisted", "twisted in two", "huge", "kinked", "edge elsewhere", "no such edge", "nothing"])
+], ids=["fan", "twisted", "twisted in two", "huge", "large", "fine", "kinked", "edge elsewhere", "no such edge", "nothing"])
 def test_refusals(make, substrate, height, edges, code, where, words):
     faces = ("Face1",) if code == "NO_START" else ()
     with pytest.raises(InputError) as caught:

@@ -184,6 +184,13 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     wrong = person.field(panel, "LayerHeightNote")
     person.until(lambda: wrong.isVisible() and "more than 0 mm" in wrong.text(), "the note", 5)
     assert person.screen_pixels(ORANGE) == 0
+    for entry, why in (("0.000001 mm", "20,000 cannot be worked with"), ("4 mm", "")):  # of solids that are known by now
+        person.type(panel, "LayerHeight", entry)
+        person.until(lambda why=why: why in wrong.text() and wrong.isVisible() == bool(why), "the note", 30)
+    previewed(person, panel)
+    person.type(panel, "BeadSpacing", "0.00001 mm")
+    wrong = person.field(panel, "BeadSpacingNote")
+    person.until(lambda: "points, and more than 50,000,000 cannot be worked with" in wrong.text(), "the note", 30)
     ok(person, hand, "Cancel")
     assert (set(document.Objects), document.UndoCount) == (set(blades), steps)
     person.gui.Selection.addSelection(first)  # nobody listens any more

@@ -148,6 +148,8 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
     person.type(panel, "LayerHeight", "rubbish")
     person.until(lambda: note.isVisible() and "not understood" in note.text(), "the note", 5)
     person.screenshot("panel_wall_error")
+    person.type(panel, "LayerHeight", "0.000001 mm")
+    person.until(lambda: note.isVisible() and "cannot be worked with; give at least" in note.text(), "the note", 10)
     person.type(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     assert not note.isVisible()

@@ -49,6 +49,7 @@ def test_dataclasses_and_keywords_together(doc, part):
         ({"layer_height": -1}, "BAD_VALUE", "strategy.layer_height"),
         ({"layer_height": "1 s"}, "BAD_UNIT", "strategy.layer_height"),
         ({"layer_height": "1,5 mm"}, "BAD_VALUE", "strategy.layer_height"),
+        ({"layer_height": 1e-6}, "TOO_MANY", "strategy.layer_height"),
         ({"spacing": "odd"}, "BAD_VALUE", "strategy.spacing"),
         ({"layer_hight": 1}, "UNKNOWN_PARAMETER", "Feature"),
         ({"faces": ["Edge1"]}, "BAD_FACES", "Feature.Source"),

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Places and distances in messages."""
+"""Places, distances and numbers in messages."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 
@@ -15,3 +16,16 @@ def deviation(distance: float) -> str:
     """How far something is off at most, a distance in mm as text; a thousandth where it is less, than which nobody measures
     finer."""
     return f"{max(distance, 1e-3):.2g}"
+
+
+def count(number: float) -> str:
+    """About how many, as text: to two digits, 47,000,000, of very many 4.7e+12."""
+    return f"{float(f'{number:.1e}'):,.0f}" if number < 1e12 else f"{number:.1e}"
+
+
+def at_least(number: float) -> float:
+    """A positive number rounded up to two digits."""
+    if math.isinf(number):
+        return number
+    step = 10.0 ** (math.floor(math.log10(number)) - 1)
+    return math.ceil(number / step - 1e-9) * step

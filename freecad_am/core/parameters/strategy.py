@@ -10,6 +10,7 @@ from ..issues import InputError
 from . import field as f
 
 SPACINGS = ("constant-distance", "smooth", "iso-parameter")
+MOST_LAYERS = 20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 
 
 @dataclass(frozen=True)

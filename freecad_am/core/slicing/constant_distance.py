@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..geometry.surface import Surface
 from ..issues import InputError
+from ..parameters.strategy import MOST_LAYERS
 from .offset import Offset, Places
 from .refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer
@@ -25,7 +26,6 @@ Index = NDArray[np.intp]
 SAME = 1e-9  # of the period; a grid point this near to a corner is the corner
 ABOVE = 1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner
 NARROWEST = 1e-9  # of the period; a change of branch in a narrower stretch is a corner in its middle
-MOST = 20000  # layers
 
 
 def next_layer(surface: Surface, below: WallLayer, height: float, grid: Array, label: str = "wall") -> WallLayer:
@@ -62,8 +62,10 @@ def layers(
     grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
     done = [first]
     while done[-1].u.min() < u_end:
-        if len(done) >= MOST:
-            raise InputError("LAYER_HEIGHT", label, f"more than {MOST} layers of {height:g} mm: use a larger layer height")
+        if len(done) >= MOST_LAYERS:
+            raise InputError(
+                "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
+            )
         done.append(next_layer(surface, done[-1], height, grid, label))
     return done
 

@@ -26,6 +26,7 @@ from ..geometry.patch_wall import FirstCurve, Rim
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from ..issues import InputError
+from ..parameters.strategy import MOST_LAYERS
 from .banded import HEAVY
 from .closing import closing
 from .front_curve import exact, feet
@@ -36,7 +37,6 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-MOST = 20000  # layers
 SHORTEST = 0.2  # of the layer height; shorter fronts are no bead
 SLIVER, OFF = 10.0, 5e-4  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
 THIN = 0.3  # of the typical edge; nearer points of a level line are one
@@ -184,9 +184,9 @@ def layers(
             closed.append(gaps)
         if not state.fronts:
             break
-        if len(done) >= MOST:
+        if len(done) >= MOST_LAYERS:
             raise InputError(
-                "LAYER_HEIGHT", wall.label, f"more than {MOST} layers of {height:g} mm: use a larger layer height"
+                "LAYER_HEIGHT", wall.label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
             )
         done.append(state.fronts)
     return Sliced(done, closed)

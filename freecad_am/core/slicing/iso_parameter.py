@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from ..geometry.surface import Surface, dot
 from ..issues import InputError
+from ..parameters.strategy import MOST_LAYERS
 from .refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer
 
 Array = NDArray[np.float64]
 
 STEPS = 40
-MOST = 20000  # layers; more is a mistake in the units
 
 
 def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "wall") -> WallLayer:
@@ -41,8 +41,10 @@ def layers(
     """All layers from the first to the first one wholly past u_end."""
     done = [first]
     while done[-1].u.min() < u_end:
-        if len(done) >= MOST:
-            raise InputError("LAYER_HEIGHT", label, f"more than {MOST} layers of {height:g} mm: use a larger layer height")
+        if len(done) >= MOST_LAYERS:
+            raise InputError(
+                "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
+            )
         done.append(next_layer(surface, done[-1], height, label))
     return done
 

@@ -16,6 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from ..geometry.surface import Surface, dot
 from ..issues import InputError
+from ..parameters.strategy import MOST_LAYERS
 from .wall_layer import WallLayer
 
 Array = NDArray[np.float64]
@@ -23,7 +24,6 @@ Array = NDArray[np.float64]
 SECTIONS, AROUND = 401, 256  # sections of the wall from whose middles the centreline is taken, and points of each
 BEYOND = 0.5  # of the wall's length, how far past its end the centreline is followed
 STEPS = 50
-MOST = 20000  # layers; more is a mistake in the units
 
 
 class Centreline(NamedTuple):
@@ -65,8 +65,10 @@ def layers(
     v = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
     done: list[WallLayer] = []
     while not done or done[-1].u.min() < u_end:
-        if len(done) >= MOST:
-            raise InputError("LAYER_HEIGHT", label, f"more than {MOST} layers of {height:g} mm: use a larger layer height")
+        if len(done) >= MOST_LAYERS:
+            raise InputError(
+                "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
+            )
         along = len(done) * height
         if along > place.x[-1]:
             break

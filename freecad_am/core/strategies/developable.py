@@ -17,6 +17,7 @@ from ..parameters.strategy import DevelopableParameters
 from ..process.bead_model import BeadModel
 from ..process.order import Laid, ordered, waited
 from ..toolpath import Toolpath
+from . import size
 from .hub_beads import Rolled, reversed_curve, rolled
 from .hub_filling import Filled, Pictures, bead_width, spaced
 from .hub_layers import Slice, slices
@@ -35,7 +36,8 @@ def plan(
     """The toolpath of solids on a hub, in part coordinates; layer i lies i layer heights outside of the hub.
 
     model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
-    InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, InfeasibleError THIN_REGION.
+    InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
+    THIN_REGION.
     """
     if build.mode != "local":
         raise InputError(
@@ -43,6 +45,8 @@ def plan(
             "normals; use local",
         )
     strategy = spaced(strategy, process)
+    width = None if strategy.bead_overlap is None else process.bead_width
+    size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy, width)
     pictures = Pictures(strategy, process, bead_width(strategy, process, model))
     laid: list[Laid] = []
     made: list[Rolled] = []

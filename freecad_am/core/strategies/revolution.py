@@ -19,7 +19,7 @@ from ..parameters.strategy import RevolutionParameters
 from ..process import seam
 from ..slicing import arc_length, iso_height
 from ..toolpath import Bead, Layer, Toolpath
-from . import platform, spiral
+from . import platform, size, spiral
 from .progress import Progress, silent
 from .tilt import Tilting
 
@@ -45,13 +45,14 @@ def plan(
     Layers by arc length or height; points per bead from the chord error; build directions from the mode, capped and
     tilted back until the nozzle is clear. platform_diameter: mm, 0 without a platform. platform_frame: (4, 4) pose
     of the platform in part coordinates, None when the feature frame sits on it. A spiral is one layer with one open
-    bead. Raises InputError 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN'.
+    bead. Raises InputError 'LAYER_HEIGHT', 'NOT_FOR_FAMILY', 'OFF_PLATFORM', 'PARTIAL_TURN', 'TOO_MANY'.
     """
     if build.mode == "symmetry-plane":
         raise InputError(
             "NOT_FOR_FAMILY", "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
+    size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
     progress(0.0, "cutting layers")
     under = platform.under(wall, platform_diameter, platform_frame)
     tilting = Tilting(wall, build, nozzle, under)

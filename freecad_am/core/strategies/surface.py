@@ -19,7 +19,7 @@ from ..slicing.curve_points import within_chord
 from ..slicing.first_layer import on_polyline
 from ..slicing.wall_layer import WallLayer, local_distances
 from ..toolpath import Layer, Toolpath
-from . import surface_directions
+from . import size, surface_directions
 from .progress import Progress, silent
 from .surface_directions import Along
 from .surface_end import Stretch, trimmed
@@ -36,8 +36,9 @@ def plan(
 
     The first layer lies where the wall leaves the substrate; closed beads start at the seam's angle around the wall. The
     polynomial's variable is the arc length of the bead, one turn (2 pi) from end to end. Raises InputError 'NOT_YET',
-    'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
+    'LAYER_HEIGHT', 'BAND', 'NOT_AROUND', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION'.
     """
+    size.refuse_absurd(size.of_wall(wall, strategy), strategy)
     normal = surface_directions.plane(wall, build)
     surface = wall.surface()
     progress(0.0, "finding layers")

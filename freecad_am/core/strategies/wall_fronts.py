@@ -25,7 +25,7 @@ from ..slicing.front_curve import feet
 from ..slicing.rims import Rims
 from ..slicing.smooth_front import Smoothing, turn
 from ..toolpath import Bead, Layer, Toolpath
-from . import surface_directions
+from . import size, surface_directions
 from .front_seams import Middle, seam
 from .front_tree import Piece, events, shorn, tree, whole
 from .progress import Progress, silent
@@ -48,9 +48,10 @@ def plan(
     Closed beads start at the seam's angle about the middle line of the wall, which runs through the centres of the closed
     beads, from the X of the part carried along it without twist. Counter-clockwise is meant as seen against the
     build direction of a tube; on any wall it keeps the layer below on the right, seen from outside. Raises InputError
-    'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
+    'NO_PARAMETER', 'LAYER_HEIGHT', 'TOO_LOW', 'TOO_MANY', 'NO_SYMMETRY_PLANE', 'NO_DIRECTION', 'TURN_LIMIT'.
     """
     _refuse(strategy)
+    size.refuse_absurd(size.of_wall(wall, strategy), strategy)
     normal = surface_directions.plane(wall, build)
     height = strategy.layer_height
     smooth = Smoothing(strategy.band, strategy.bead_turn) if strategy.spacing == "smooth" else None

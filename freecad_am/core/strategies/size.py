@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How large a toolpath would be, told from wall and parameters before the work begins; absurd ones are refused.
+
+Counts are right within a third on what is round and even; where beads differ a lot they are rather too low.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..geometry.on_hub import SolidsOnHub
+from ..geometry.patch_wall import PatchWall
+from ..geometry.profile import Array, RevolvedWall
+from ..geometry.surface_wall import SurfaceWall
+from ..geometry.surroundings import Body
+from ..geometry.told import at_least, count
+from ..issues import InputError
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import (
+    MOST_LAYERS,
+    DevelopableParameters,
+    LayerParameters,
+    RevolutionParameters,
+    SurfaceParameters,
+)
+
+# a point takes 0.13 kB in a toolpath and about 1 kB with joint path, motion and all that the document stores of it: these
+# are 50 GB, and the largest jobs known have 1 million
+MOST_POINTS = 50_000_000
+FEWEST = 24  # points of a bead on a wall
+PLACES = 181  # at which meridians and tubes are looked at
+ASKED = 20_000  # vertices that tell how far a wall reaches
+
+
+@dataclass(frozen=True)
+class Size:
+    """About how many layers and points a toolpath would have."""
+
+    layers: float
+    points: float
+
+
+def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
+    """That of a part of revolution; the turns of a spiral count as layers."""
+    meridian, turn = wall.meridian, wall.end - wall.start
+    radius, height, tangent = meridian.at(np.linspace(0.0, meridian.length, PLACES))
+    step = 4.0 * np.arcsin(np.sqrt(np.minimum(1.0, 0.5 * strategy.chord_error / np.maximum(radius, 1e-9))))
+    segments = np.maximum(turn / step, strategy.min_points * min(1.0, turn / (2.0 * math.pi)))
+    cut = np.ones(PLACES) if strategy.spacing == "arc-length" else np.abs(tangent[:, 1])
+    high = meridian.length if strategy.spacing == "arc-length" else float(np.ptp(height))
+    return Size(high / strategy.layer_height, meridian.length * float((cut * segments).mean()) / strategy.layer_height)
+
+
+def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
+    """That of a wall on an existing part."""
+    return _of_patches(wall, strategy) if isinstance(wall, PatchWall) else _of_tube(wall, strategy)
+
+
+def of_solids(solids: SolidsOnHub, strategy: DevelopableParameters, spacing: float | None = None) -> Size:
+    """That of solids on a hub. spacing: mm between beads; None: as the parameter says, and nothing is told of points where
+    an overlap takes its place."""
+    if spacing is None:
+        spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
+    layers = points = 0.0
+    for group in solids.groups:
+        deep = []
+        for body in group.bodies:
+            apart = group.base.surface.distance(group.base.inside(body.vertices))
+            away, within = max(0.0, float(apart.max())), max(0.0, -float(apart.min()))
+            deep.append((away + strategy.margin) / strategy.layer_height)
+            length = _volume(body) * away / max(away + within, 1e-9) / strategy.layer_height / spacing
+            # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
+            around = 0.5 / math.sqrt(4.0 * strategy.chord_error * (group.base.surface.radius + away))
+            points += length * max(around, 2.0 / float(np.linalg.norm(np.ptp(body.vertices, axis=0))))
+        layers += sum(deep) if strategy.order == "feature" else max(deep, default=0.0)
+    return Size(layers, points)
+
+
+def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = None) -> None:
+    """InputError TOO_MANY for more than MOST_LAYERS or MOST_POINTS, naming the parameter that is farthest below what is
+    usual. width: mm of the beads, where it and an overlap give their spacing."""
+    height = strategy.layer_height
+    if size.layers > MOST_LAYERS:
+        raise InputError(
+            "TOO_MANY", "strategy.layer_height", f"{height:g} mm makes about {count(size.layers)} layers, and more than "
+            f"{MOST_LAYERS:,} cannot be worked with; give at least {at_least(height * size.layers / MOST_LAYERS):g} mm",
+        )
+    over = size.points / MOST_POINTS
+    if over > 1.0:
+        cause = max(_causes(strategy, width), key=lambda one: (one.usual / one.value) ** one.power)
+        enough = at_least(cause.value * over ** (1.0 / cause.power))
+        raise InputError(
+            "TOO_MANY", cause.key, f"{cause.value:g} mm makes about {count(size.points)} points, and more than "
+            f"{MOST_POINTS:,} cannot be worked with; give at least {enough:g} mm",
+        )
+
+
+class _Cause(NamedTuple):
+    """A parameter in mm, what it usually is, and by which power of it the points become fewer."""
+
+    key: str
+    value: float
+    usual: float
+    power: float = 1.0
+
+
+def _causes(strategy: LayerParameters, width: float | None) -> list[_Cause]:
+    usual = type(strategy)()
+    found = [
+        _Cause("strategy.layer_height", strategy.layer_height, usual.layer_height),
+        _Cause("strategy.chord_error", strategy.chord_error, usual.chord_error, 0.5),
+    ]
+    if width is not None:
+        found.append(_Cause("process.bead_width", width, ProcessParameters().bead_width))
+    elif isinstance(strategy, DevelopableParameters):
+        found.append(_Cause("strategy.bead_spacing", strategy.bead_spacing, DevelopableParameters().bead_spacing))
+    return found
+
+
+def _of_tube(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
+    surface = wall.surface()
+    v = np.linspace(0.0, wall.period, PLACES)
+    top = surface.point(np.full(PLACES, wall.end), v)[:-1]
+    low, at = surface.inverse(wall.first[:: max(1, len(wall.first) // PLACES)])
+    share = np.linspace(0.0, 1.0, PLACES)[:, None]
+    lines = surface.point(low + share * (wall.end - low), np.broadcast_to(at, (PLACES, len(at))))
+    layers = float(np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(axis=0).mean()) / strategy.layer_height
+    chords = 0.5 * (_chords(wall.first, True, strategy.chord_error) + _chords(top, True, strategy.chord_error))
+    return Size(layers, layers * max(FEWEST, chords))
+
+
+def _of_patches(wall: PatchWall, strategy: SurfaceParameters) -> Size:
+    kept = ~wall.behind[wall.triangles].any(axis=1)
+    corner = wall.vertices[wall.triangles[kept]]
+    area = 0.5 * float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
+    vertices = wall.vertices[~wall.behind]
+    start = cKDTree(np.vstack([one.points for one in wall.first]))
+    away = np.max(start.query(vertices[:: max(1, len(vertices) // ASKED)])[0], initial=0.0)
+    layers = float(away) / strategy.layer_height
+    # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
+    length = sum(_length(one.points, one.closed) for one in wall.first)
+    first = sum(_chords(one.points, one.closed, strategy.chord_error) for one in wall.first) / length
+    size = float(np.linalg.norm(np.ptp(wall.vertices, axis=0)))
+    dense = min(first, 1.0 / math.sqrt(4.0 * strategy.chord_error * size))
+    return Size(layers, max(FEWEST * layers, dense * area / strategy.layer_height))
+
+
+def _sides(points: Array, closed: bool) -> Array:
+    """The vectors (k, 3) from point to point."""
+    sides = np.diff(np.vstack([points, points[:1]]) if closed else points, axis=0)
+    apart: Array = sides[np.linalg.norm(sides, axis=1) > 0.0]
+    return apart
+
+
+def _length(points: Array, closed: bool) -> float:
+    return float(np.linalg.norm(_sides(points, closed), axis=1).sum())
+
+
+def _chords(points: Array, closed: bool, chord_error: float) -> float:
+    """About how many chords a smooth curve through points (m, 3) takes within the chord error."""
+    sides = _sides(points, closed)
+    length = np.linalg.norm(sides, axis=1)
+    cosine = np.einsum("ij,ij->i", sides[:-1], sides[1:]) / (length[:-1] * length[1:])
+    turn = np.arccos(np.clip(cosine, -1.0, 1.0))
+    return float(np.sqrt(turn * 0.5 * (length[:-1] + length[1:]) / (8.0 * chord_error)).sum())
+
+
+def _volume(body: Body) -> float:
+    """mm3."""
+    a, b, c = (body.vertices[body.triangles[:, k]] - body.vertices[0] for k in range(3))
+    return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How large toolpaths will be is told before they are made, about right, and absurd ones are refused at once."""
+
+import dataclasses
+import re
+import time
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.sampling import arc, line
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import NozzleParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import (
+    MOST_LAYERS,
+    DevelopableParameters,
+    RevolutionParameters,
+    SurfaceParameters,
+)
+from freecad_am.core.strategies import developable, revolution, size, surface, wall_fronts
+from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, solids
+from tests.core.strategies.test_surface import TILTED, bend, tube
+from tests.core.strategies.test_wall_fronts import WALLS
+
+FREE = BuildDirectionParameters(clearance="none", max_tilt=np.pi)
+DOME = RevolvedWall(Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)]), np.eye(4))
+VASE = RevolvedWall(Meridian.chained([line((60.0, 0.0), (20.0, 50.0)), line((20.0, 50.0), (45.0, 70.0))]), np.eye(4))
+SECTOR = dataclasses.replace(VASE, start=0.3, end=1.7, full=False)
+PROCESS = ProcessParameters()
+
+
+def turned(wall, **values):
+    strategy = RevolutionParameters(**values)
+    return size.of_revolution(wall, strategy), revolution.plan(wall, strategy, FREE, PROCESS, NozzleParameters(), 0.0)
+
+
+def on_part(wall, **values):
+    strategy = SurfaceParameters(**values)
+    family = surface if hasattr(wall, "kind") else wall_fronts
+    return size.of_wall(wall, strategy), family.plan(wall, strategy, FREE, PROCESS)
+
+
+def on_hub(made, **values):
+    strategy = DevelopableParameters(**{"layer_height": 3.0, "bead_spacing": 3.0, **values})
+    return size.of_solids(made, strategy), developable.plan(made, strategy, BuildDirectionParameters(), PROCESS, None)
+
+
+@pytest.mark.parametrize("make", [
+    lambda: turned(DOME, layer_height=0.7), lambda: turned(VASE, layer_height=0.5, chord_error=0.002),
+    lambda: turned(VASE, layer_height=0.4, spacing="iso-height"), lambda: turned(SECTOR, layer_height=0.5),
+    lambda: turned(DOME, layer_height=0.5, min_points=300, chord_error=0.1),
+    lambda: on_part(tube(), layer_height=1.0), lambda: on_part(bend(TILTED), layer_height=3.0, chord_error=0.001),
+    lambda: on_part(WALLS["three tangent faces"][0](), layer_height=2.0),
+    lambda: on_part(WALLS["a bend"][0](), layer_height=5.0, chord_error=0.001),
+    lambda: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01),
+    lambda: on_hub(solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"),
+])
+def test_counts_are_about_right(make):
+    told, made = make()
+    assert 0.65 < told.layers / len(made.layers) < 1.35, (told, len(made.layers))
+    assert 0.2 < told.points / made.point_count < 1.6, (told, made.point_count)
+
+
+def test_the_turns_of_a_spiral_count_as_layers():
+    told, made = turned(VASE, layer_height=0.5, path="spiral")
+    assert told.points == pytest.approx(made.point_count, rel=0.2)
+    assert told.layers == pytest.approx(np.ptp(next(iter(made))[2].parameter) / (2.0 * np.pi), rel=0.05)
+
+
+FINE = {
+    "a dome": lambda **values: turned(DOME, **values),
+    "a spiral": lambda **values: turned(VASE, path="spiral", **values),
+    "planes": lambda **values: turned(VASE, spacing="iso-height", **values),
+    "a tube": lambda **values: on_part(tube(), **values),
+    "a smooth tube": lambda **values: on_part(bend(), spacing="smooth", **values),
+    "lines up a tube": lambda **values: on_part(tube(), spacing="iso-parameter", **values),
+    "a sheet": lambda **values: on_part(WALLS["an opening"][0](), **values),
+    "a collar": lambda **values: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), **values),
+    "a blade": lambda **values: on_hub(solids(CONE, box()), **values),
+}
+
+
+@pytest.mark.parametrize("name", FINE)
+def test_layers_that_are_too_many_are_refused_at_once_with_what_is_enough(name):
+    started = time.perf_counter()
+    with pytest.raises(InputError) as caught:
+        FINE[name](layer_height=1e-6)
+    assert time.perf_counter() - started < 5.0
+    error = caught.value
+    assert (error.code, error.where) == ("TOO_MANY", "strategy.layer_height")
+    told = re.fullmatch(
+        r"1e-06 mm makes about ([\d,]+) layers, and more than 20,000 cannot be worked with; give at least ([\d.e-]+) mm",
+        error.message,
+    )
+    assert told, error.message
+    layers, enough = int(told[1].replace(",", "")), float(told[2])
+    assert layers * 1e-6 == pytest.approx(enough * MOST_LAYERS, rel=0.15)  # both are rounded
+
+
+@pytest.mark.parametrize(("family", "values", "key"), [
+    (RevolutionParameters, {"chord_error": 1e-5}, "strategy.chord_error"),
+    (RevolutionParameters, {"layer_height": 1e-3, "chord_error": 1e-3}, "strategy.layer_height"),
+    (SurfaceParameters, {"chord_error": 1e-5, "layer_height": 0.9}, "strategy.chord_error"),
+    (DevelopableParameters, {"bead_spacing": 1e-4}, "strategy.bead_spacing"),
+    (DevelopableParameters, {"chord_error": 1e-5}, "strategy.chord_error"),
+    (DevelopableParameters, {"layer_height": 2e-3}, "strategy.layer_height"),
+])
+def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, key):
+    strategy = family(**values)
+    with pytest.raises(InputError) as caught:
+        size.refuse_absurd(size.Size(10.0, 4.0 * size.MOST_POINTS), strategy)
+    error = caught.value
+    assert (error.code, error.where) == ("TOO_MANY", key)
+    value = getattr(strategy, key.split(".")[1])
+    assert error.message.startswith(f"{value:g} mm makes about 200,000,000 points, and more than 50,000,000 cannot")
+    enough = float(error.message.split("at least ")[1].split()[0])
+    assert enough == pytest.approx(value * (16.0 if key.endswith("error") else 4.0), rel=0.1) and enough >= 4.0 * value
+
+
+def test_what_is_said_to_be_enough_is_taken():
+    for values in ({"layer_height": 1e-6}, {"layer_height": 0.1, "chord_error": 1e-5}):
+        wide = RevolvedWall(Meridian.chained([line((4000.0, 0.0), (4000.0, 900.0))]), np.eye(4))
+        with pytest.raises(InputError) as caught:
+            size.refuse_absurd(size.of_revolution(wide, RevolutionParameters(**values)), RevolutionParameters(**values))
+        key, enough = caught.value.where.split(".")[1], float(caught.value.message.split("at least ")[1].split()[0])
+        strategy = RevolutionParameters(**{**values, key: enough})
+        size.refuse_absurd(size.of_revolution(wide, strategy), strategy)
+
+
+def test_beads_by_overlap_are_told_by_their_width():
+    made, thin = solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), dataclasses.replace(PROCESS, bead_width=1e-5)
+    strategy = DevelopableParameters(layer_height=3.0, bead_overlap=0.3)
+    size.refuse_absurd(size.of_solids(made, strategy), strategy)  # the feature knows no width yet
+    with pytest.raises(InputError, match=r"1e-05 mm makes about [\d,]+ points") as caught:
+        developable.plan(made, strategy, BuildDirectionParameters(), thin, None)
+    assert (caught.value.code, caught.value.where) == ("TOO_MANY", "process.bead_width")
+
+
+def test_large_jobs_are_not_refused():
+    """A tank 4 m wide and 5 m high at half a millimetre, and a fine one of 40 million points."""
+    tank = RevolvedWall(Meridian.chained([line((2000.0, 0.0), (2000.0, 5000.0))]), np.eye(4))
+    for strategy in (RevolutionParameters(layer_height=0.5), RevolutionParameters(layer_height=0.5, chord_error=0.001)):
+        found = size.of_revolution(tank, strategy)
+        size.refuse_absurd(found, strategy)
+    assert 25e6 < found.points < size.MOST_POINTS
