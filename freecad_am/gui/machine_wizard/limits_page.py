@@ -15,13 +15,13 @@ from .page import Page, axis_names
 
 
 class LimitsPage(Page):
-    """One row per axis. A range is left empty for an endless axis, speeds, accelerations and jerks where they are not known."""
+    """One row per axis. A range is left empty for an endless axis, the others where they are not known."""
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(wizard, "LimitsPage", tr("Limits, speeds, accelerations and jerks"), tr(
             "Of the serial angles: each axis against the link before it. Turning axes in deg, deg/s, deg/s² and deg/s³, "
-            "sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without end, "
-            "speeds, accelerations and jerks where they are not known."))
+            "sliding ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for an axis that turns without "
+            "end, speeds, accelerations and jerks where they are not known."))
         self.table = FigureTable("limits", ["J1"], _heads())
         self.column.addWidget(self.table.widget)
         self.notes = self.add_text("")
