@@ -4,9 +4,20 @@
 import csv
 import json
 import shutil
+from pathlib import Path
 
+import FreeCAD  # noqa: F401  Part crashes without it
 import numpy as np
+import Part
 import pytest
+
+from freecad_am.batch.job import read_job
+
+EXAMPLES = Path(__file__).parents[2] / "resources" / "examples"
+ON_SUBSTRATES = [
+    path for path in sorted(EXAMPLES.glob("**/*.yaml")) if "cell:" in (text := path.read_text(encoding="utf-8"))
+    and "substrate:" in text and "kind: surface" in text
+]
 
 
 @pytest.fixture(params=[("hemisphere", 71), ("laval-nozzle", 137), ("intake-funnel", 71)], ids=lambda p: p[0])
@@ -97,3 +108,14 @@ def test_a_bend_cannot_grow_on_a_surface(workshop, root):
     (workshop.folder / "bend.yaml").write_text(text.replace(" pipe.step", " tube-on-pipe.step"), encoding="utf-8")
     done = workshop.run("plan", "bend.yaml")
     assert (done.status, done.err.count("error[NO_SOLID]")) == (2, 1), done.err
+
+
+@pytest.mark.parametrize("path", ON_SUBSTRATES, ids=lambda path: path.stem)
+def test_no_platform_goes_through_what_stands_on_it(path):
+    job = read_job(str(path))
+    if job.cell.platform_diameter == 0.0:
+        return
+    plate = Part.Face(Part.Wire(Part.makeCircle(0.5 * job.cell.platform_diameter)))  # in the plane of the part's frame
+    solid = Part.Shape()
+    solid.read(str(path.parent / job.substrate.file))
+    assert plate.common(solid).Area == 0.0
