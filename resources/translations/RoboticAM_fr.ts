@@ -6029,7 +6029,7 @@
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
         <source>it is empty; a machine file is worth no more than its check poses</source>
-        <translation type="unfinished"></translation>
+        <translation>il est vide ; un fichier de machine ne vaut pas plus que ses poses de contrôle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/read.py"/>

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics import machine, pendant, pose_figures, urdf_text
-from freecad_am.objects import user_machines
+from freecad_am.objects import preferences, user_machines
 
 NAME = "RoboticAM_NewMachine"
 
@@ -26,6 +26,16 @@ def wizard(person):
     for left in list(module._open):
         left.close()
     person.idle()
+
+
+@pytest.fixture
+def broken(tmp_path):
+    """A folder of the preferences with a file that is no machine."""
+    (tmp_path / "broken.json").write_text('{"id": "broken", ', encoding="utf-8")
+    group = App.ParamGet(preferences.GROUP)
+    group.SetString("MachineFolder", str(tmp_path))
+    yield
+    group.RemString("MachineFolder")
 
 
 def page(wizard):
@@ -110,9 +120,11 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     person.until(lambda: "gives all 4 poses" in verdict.text(), "the machine to give its poses")
     person.screenshot("machine_5_poses_right")
     go_on(person, hand, wizard, "NamePage")
+    person.type(wizard, "machineTitle", "")
+    assert refused(person, hand, wizard, "FinishButton").startswith("Maker and model: it is empty")
     hand.enter(wizard, "machineTitle", "FANUC of hall 3")
     assert person.field(wizard, "machineName").text() == "fanuc-of-hall-3"
-    assert "only as good" in refused(person, hand, wizard, "FinishButton")
+    assert "worth no more than its check poses" in refused(person, hand, wizard, "FinishButton")
     hand.enter(wizard, "poseSource", "pendant")
     hand.click(person.field(wizard, "post_fanuc"))
     person.screenshot("machine_6_name")
@@ -134,6 +146,27 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     assert App.ActiveDocument.Cell.MachineTitle == "FANUC of hall 3"
 
 
+def test_a_file_that_is_no_machine_hinders_no_cell(person, broken):
+    App.newDocument("Cell")
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    person.choose(panel, "Machine", "broken")
+    person.until(lambda: "cannot be read as a machine file" in person.panel_error(panel), "what is wrong", 5)
+    person.choose(panel, "Machine", "kuka-kr16-2")
+    person.press("Ok")
+    person.panel_closed()
+    assert App.ActiveDocument.Cell.Machine == "kuka-kr16-2"
+
+
+def test_a_file_that_is_no_machine_hinders_no_copy(person, hand, broken, wizard):
+    person.choose(wizard, "source", "A copy of another machine")
+    box = person.field(wizard, "original")
+    box.setCurrentIndex(box.findData("broken"))
+    assert "cannot be read as a machine file" in refused(person, hand, wizard)
+    box.setCurrentIndex(box.findData("kuka-kr16-2"))
+    go_on(person, hand, wizard, "LimitsPage")
+
+
 def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand, wizard):
     person.choose(wizard, "source", "A copy of another machine")
     box = person.field(wizard, "original")
@@ -145,7 +178,7 @@ def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand
     hand.enter(wizard, "machineName", "kuka-kr16-2")
     assert "there is a machine 'kuka-kr16-2' already" in refused(person, hand, wizard, "FinishButton")
     hand.enter(wizard, "machineName", "Große Kuka")
-    assert "cannot be the name" in refused(person, hand, wizard, "FinishButton")
+    assert refused(person, hand, wizard, "FinishButton").startswith("Name in jobs: 'Große Kuka' cannot be the name")
     hand.enter(wizard, "machineName", "big-kuka")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
     made = machine.load("big-kuka", user_machines.folders())

@@ -107,8 +107,18 @@ def unit_values(sliding: NDArray[np.bool_]) -> Array:
 
 
 def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
-    """Id and title of every machine, built in and in the user's `folders`, in order of id."""
-    return [(name, read(path)["title"].text()) for name, path in sorted(_files(folders).items())]
+    """Id and title of every machine, built in and in the user's `folders`, in order of id.
+
+    A file that is no machine file stands among them with what is wrong in place of a title: `load` refuses it alone.
+    """
+    return [(name, _title(path)) for name, path in sorted(_files(folders).items())]
+
+
+def _title(path: Path) -> str:
+    try:
+        return read(path)["title"].text()
+    except InputError as error:
+        return f"BAD_MACHINE: {error.message}"
 
 
 def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:

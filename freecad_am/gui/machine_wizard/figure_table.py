@@ -44,6 +44,7 @@ class FigureTable:
         for column, text in enumerate(self.helps[: len(columns)]):
             self.widget.horizontalHeaderItem(column).setToolTip(text)
         self.widget.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.Stretch)
+        self.widget.setTextElideMode(QtCore.Qt.ElideNone)  # '0.7071', not '0.…', where a column is narrow
         self.fit()
 
     def fit(self) -> None:

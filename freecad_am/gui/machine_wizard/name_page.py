@@ -82,14 +82,21 @@ class NamePage(Page):
     def take(self) -> None:
         """Write the machine file."""
         draft, source = self.owner.draft, self.source.text().strip()
-        if not source:
-            raise InputError("NO_INPUT", tr("Where the check poses are from"), tr("tell it; a machine is only as good"))
+        title = self.title_of.text().strip()
+        if not title:
+            raise InputError("BAD_NAME", tr("Maker and model"), tr("it is empty; give maker and model"))
         sources = tuple(dict.fromkeys((*self.owner.geometry_sources, f"check poses: {source}")))
         draft = replace(
-            draft, id=self.name.text().strip(), title=self.title_of.text().strip(), sources=sources,
+            draft, id=self.name.text().strip(), title=title, sources=sources,
             remarks=tuple(filter(None, [self.remark.text().strip()])),
             posts=tuple(name for name, box in self.posts.items() if box.isChecked()),
         )
-        text = machine_draft.text(draft)
+        try:
+            text = machine_draft.text(draft)
+        except InputError as error:
+            raise InputError(error.code, tr("Name in jobs"), error.message) if error.where == "id" else error from None
+        if not source:
+            raise InputError("NO_INPUT", tr("Where the check poses are from"),
+                             tr("it is empty; a machine file is worth no more than its check poses"))
         self.owner.saved = user_machines.save(draft.id, text)
         self.owner.draft = draft

@@ -114,6 +114,18 @@ def test_the_user_s_folder_goes_first(tmp_path):
         machine.load("fanuc-arcmate120ic", [tmp_path])
 
 
+@pytest.mark.parametrize("text", ['{"id": "broken", ', "{}", "[1, 2]", '{"title": 3}', "caf\u00e9"])
+def test_a_file_that_is_no_machine_does_not_hide_the_others(tmp_path, text):
+    (tmp_path / "broken.json").write_text(text, encoding="latin-1")
+    (tmp_path / "mine.json").write_text(json.dumps(GOOD), encoding="utf-8")
+    known = dict(machine.known([tmp_path]))
+    assert known["broken"].startswith("BAD_MACHINE: ") and len(known["broken"]) > 20
+    assert known["mine"] == GOOD["title"] and known["kuka-kr16-2"] == machine.load("kuka-kr16-2").title
+    with pytest.raises(InputError) as info:
+        machine.load("broken", [tmp_path])
+    assert info.value.code == "BAD_MACHINE" and "broken.json" in info.value.where
+
+
 def changed(*path, value=None, remove=False):
     content = copy.deepcopy(GOOD)
     node = content
@@ -208,8 +220,7 @@ def test_a_file_that_is_no_json_is_refused(content, tmp_path):
         machine.load(path)
     assert (info.value.code, info.value.exit_status) == ("BAD_MACHINE", 2)
     assert str(path) in info.value.where
-    with pytest.raises(InputError):
-        machine.known([tmp_path])
+    assert dict(machine.known([tmp_path]))["arm"].startswith("BAD_MACHINE: ")
 
 
 def test_numbers_that_are_none_are_refused(tmp_path):
