@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..objects.stage import stage_of
 from ..objects.store import Place
 from .lines import Array, placed, turned
 from .machine_links import MachineNodes, of_solid
+from .path import path_view
 from .texts import tr
 from .view_base import StageView
 
@@ -39,6 +41,7 @@ class CellView(StageView):
         "ShowMachine": ("App::PropertyBool", False, "Show the machine at rest, the nozzle upright on the highest point."),
     }
     machine: MachineNodes | None = None
+    stands_on = ""  # the key of the toolpath that platform and nozzle were placed by, "" for none
 
     def scene(self, root: Any) -> None:
         self.platform, self.nozzle, self.links = coin.SoSeparator(), coin.SoSeparator(), coin.SoSeparator()
@@ -48,6 +51,7 @@ class CellView(StageView):
 
     def draw(self, obj: Any, value: Any) -> None:
         standing = _standing(obj)
+        self.stands_on = "" if standing is None else _key_of_toolpath(obj)
         mount, tip, axis = np.eye(4), np.zeros(3), np.array([0.0, 0.0, 1.0])
         if standing is not None:
             points, tools, frame, family = standing
@@ -66,6 +70,11 @@ class CellView(StageView):
         self.nozzle.addChild(nozzle_node(value))
         if self.machine is not None:
             self.nozzle.addChild(holder_node(value))
+
+    def follow(self) -> None:
+        """Draw anew where the toolpath is another than it was."""
+        if self.drawn and self.stands_on != _key_of_toolpath(self.obj):
+            self.refresh()
 
     def _draw_machine(self, value: CellParameters, toolpath: Any, mount: Array) -> tuple[Array, Array]:
         """Draw the machine at rest; where the nozzle's tip is then, and its axis."""
@@ -157,11 +166,33 @@ def _standing(obj: Any) -> Any:
 
 
 def _of_toolpath(obj: Any, *places: Place) -> Any:
-    for follower in obj.InList:
-        stage = stage_of(follower)
-        if stage is not None and stage.kind == "toolpath" and follower.Key:
-            try:
-                return stage.picked(follower, *places)
-            except InputError:  # within undo
-                return None
+    toolpath = _toolpath_in(obj)
+    if toolpath is not None:
+        with contextlib.suppress(InputError):  # within undo
+            return stage_of(toolpath).picked(toolpath, *places)
     return None
+
+
+def _key_of_toolpath(obj: Any) -> str:
+    toolpath = _toolpath_in(obj)
+    return "" if toolpath is None else str(toolpath.Key)
+
+
+def _toolpath_in(obj: Any) -> Any:
+    """The toolpath object that is for a cell, or that a joint path is planned of in it; None without one."""
+    for follower in obj.InList:
+        kind = getattr(stage_of(follower), "kind", "")
+        toolpath = follower if kind == "toolpath" else follower.Toolpath if kind == "joint path" else None
+        if toolpath is not None and toolpath.Key:
+            return toolpath
+    return None
+
+
+def _path_changed(view: path_view.PathView) -> None:
+    """A toolpath or joint path was drawn: the cell it is for goes with it."""
+    cell = view.obj.Cell
+    if cell is not None and isinstance(cell.ViewObject.Proxy, CellView):
+        cell.ViewObject.Proxy.follow()
+
+
+path_view.listen(_path_changed)

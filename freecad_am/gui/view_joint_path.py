@@ -53,6 +53,15 @@ class JointPathView(PathView):
         motion = value.motion
         self.motion, self.at = motion, np.flatnonzero(motion.deposit)  # the row of the motion of each point
         self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
+        self.find_wrong(obj)
+        super().draw(obj, value)
+        if not self.source_hidden:  # the beads lie where those of the toolpath do
+            self.source_hidden = True
+            obj.Toolpath.ViewObject.Visibility = False
+
+    def find_wrong(self, obj: Any) -> None:
+        """The rows of the motion that the machine does not reach, or that a finding forbids a program for."""
+        motion = self.motion
         wrong = motion.deposit & ~motion.reachable
         for issue in issues_of(obj):
             if issue.level == ERROR and issue.layer is not None:
@@ -61,10 +70,13 @@ class JointPathView(PathView):
                     here &= True if index is None else column == index
                 wrong |= here
         self.bad = np.flatnonzero(wrong)
-        super().draw(obj, value)
-        if not self.source_hidden:  # the beads lie where those of the toolpath do
-            self.source_hidden = True
-            obj.Toolpath.ViewObject.Visibility = False
+
+    def updateData(self, obj: Any, name: str) -> None:
+        """A property of the object has changed; undo and redo may bring findings back after the result they are of."""
+        super().updateData(obj, name)
+        if name == "Issues" and self.rows is not None and not obj.Document.Restoring:
+            self.find_wrong(obj)
+            self.limited(*self.stretch())
 
     def limited(self, first: int, end: int) -> None:
         low = 0 if first == 0 else int(self.at[first - 1]) + 1  # with what leads to the first bead

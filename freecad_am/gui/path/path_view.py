@@ -46,6 +46,10 @@ class PathView(StageView):
     told: tuple[Any, ...] | None = None  # what the colours are of
     waiting = False
 
+    def __init__(self, vobj: Any) -> None:
+        super().__init__(vobj)
+        vobj.SelectionStyle = "BoundBox"  # a selection that lights up would give tubes other colours than the legend's
+
     # ---- what a view defines
 
     def rows_of(self, obj: Any, value: Any) -> Rows:
