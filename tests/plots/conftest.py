@@ -4,39 +4,21 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import sampled
-from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.parameters.build_direction import BuildDirectionParameters
-from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
-from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.planning import comparison
-from freecad_am.core.planning.motion import assemble
-from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.simulation import deposit
 from freecad_am.core.simulation.margins import on_deposit
-from freecad_am.core.strategies import revolution
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.plots.source import Source
+from tests.core.planned_dome import planned_dome
 
 
 @pytest.fixture(scope="session")
 def dome():
     """The source of a dome, and what the report tells of its joints."""
     process = ProcessParameters(lead_on=0.5, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0))
-
-    def profile(t):
-        return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
-
-    wall = RevolvedWall(Meridian.chained([sampled(profile, [0, np.pi / 2])]), np.eye(4))
-    toolpath = revolution.plan(
-        wall, RevolutionParameters(layer_height=9.0), BuildDirectionParameters(), process, NozzleParameters(), 113.0, None
-    )
-    cell = cells.resolve(CellParameters(limits="paper"), toolpath.frame)
-    path = plan_joints(toolpath, cell, JointParameters())
-    motion, _ = assemble(path, cell, process)
+    toolpath, cell, path, motion = planned_dome(9.0, process)
     condition, threshold = (on_deposit(motion.deposit, column) for column in path.judged(motion))
     source = Source(path.toolpath(toolpath), motion, process, cell, condition, threshold, 0.1)
     return source, comparison.of_path(path, cell, JointParameters())

@@ -4,20 +4,11 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import sampled
-from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.motion import Motion
-from freecad_am.core.parameters.build_direction import BuildDirectionParameters
-from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning.motion import assemble
-from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build
-from freecad_am.core.strategies import revolution
+from tests.core.planned_dome import planned_dome
 
 
 @pytest.fixture(scope="session")
@@ -26,17 +17,7 @@ def blocks_of():
     process = ProcessParameters(
         lead_on=0.5, lead_off=0.25, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0)
     )
-
-    def dome(t):
-        return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
-
-    wall = RevolvedWall(Meridian.chained([sampled(dome, [0, np.pi / 2])]), np.eye(4))
-    toolpath = revolution.plan(
-        wall, RevolutionParameters(layer_height=15.0), BuildDirectionParameters(), process, NozzleParameters(), 113.0, None
-    )
-    cell = cells.resolve(CellParameters(limits="paper"), toolpath.frame)
-    planned = plan_joints(toolpath, cell, JointParameters())
-    motion, _ = assemble(planned, cell, process)
+    toolpath, cell, _, motion = planned_dome(15.0, process)
     waits = [3.0 * k for k in range(len(toolpath.layers))]
     return motion, build(motion, cell, process, ProgramParameters(), "DOME", waits), process, waits
 
