@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 _ALIKE = 3  # pixels that layouts round away
-_SETTLED = 500  # ms until docks stand still
+_SETTLED = 300  # ms in which docks that stand still do not change
 _BESIDE = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
 
 
@@ -32,7 +32,8 @@ class Room:
         self.parts: list[_Part] = []  # in the order in which they were opened
         self.before: dict[str, int] = {}  # names of other docks, and the pixels they had before ours came
         self.wishes: dict[str, int] = {}  # what docks had by the user's hand when they were closed
-        self.made: int | None = None  # what has come of the pixels that were asked for, once it is known
+        self.made: int | None = None  # what has come of the pixels that were asked for, once docks stand still
+        self.last: int | None = None
         self.timer = QtCore.QTimer()
         self.timer.setSingleShot(True)
         self.timer.setInterval(_SETTLED)
@@ -52,7 +53,7 @@ class Room:
         shown = [part.dock for part in self.parts if self._stands(part.dock)]
         if shown:
             self._resize(shown[-1:], [self._wanted()])
-            self.made = None
+            self.made = self.last = None
             self.timer.start()
 
     def leave(self, dock: Any) -> None:
@@ -95,7 +96,12 @@ class Room:
             self.parts[-1].asked, self.parts[-1].by_hand = found, True
 
     def _measure(self) -> None:
-        self.made = self._found()
+        found = self._found()
+        if found is not None and found != self.last:  # Qt moves docks little by little
+            self.last = found
+            self.timer.start()
+        else:
+            self.made = found
 
     def _found(self) -> int | None:
         """The pixels of ours now; None where none is seen."""

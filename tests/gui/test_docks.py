@@ -27,8 +27,20 @@ def path(person, hemisphere):
     made.Label = "A joint path whose label goes on and on, as that of a part of an assembly of assemblies may do"
     person.window.showNormal()
     person.window.setGeometry(0, 0, WIDE, HIGH)
-    person.idle(0.5)
+    still(person)
     return made
+
+
+def still(person):
+    """Wait until docks no longer move, which they do little by little."""
+    seen = []
+
+    def same():
+        docks = person.window.findChildren(person.widgets.QDockWidget)
+        seen.append([dock.geometry().getRect() for dock in docks if dock.isVisible()])
+        return len(seen) > 18 and all(one == seen[-1] for one in seen[-18:])
+
+    person.until(same, "docks to stand still")
 
 
 def opened(person, path, command):
@@ -36,13 +48,13 @@ def opened(person, path, command):
     person.select(path)
     person.click(command)
     dock = person.panel({**BELOW, "RoboticAM_Simulate": simulations.NAME}[command])
-    person.idle(0.9)
+    still(person)
     return dock
 
 
 def close(person, dock):
     dock.close()
-    person.idle(0.9)
+    still(person)
 
 
 def in_front(dock):
@@ -85,7 +97,7 @@ def test_where_the_user_has_put_them_they_are_again(person, path):
     person.window.addDockWidget(right, first)
     second.setFloating(True)
     second.setGeometry(300, 200, 800, 400)
-    person.idle(0.5)
+    still(person)
     close(person, first)
     close(person, second)
     assert opened(person, path, "RoboticAM_Path") is first and person.window.dockWidgetArea(first) == right
@@ -96,7 +108,7 @@ def test_where_the_user_has_put_them_they_are_again(person, path):
     person.window.splitDockWidget(first, third, person.core.Qt.Vertical)
     simulation = opened(person, path, "RoboticAM_Simulate")
     person.window.addDockWidget(person.core.Qt.LeftDockWidgetArea, simulation)
-    person.idle(0.5)
+    still(person)
     for dock, command in ((third, "RoboticAM_SpinMap"), (simulation, "RoboticAM_Simulate")):
         area = person.window.dockWidgetArea(dock)
         close(person, dock)
@@ -135,7 +147,7 @@ def test_the_height_they_take_is_given_back(person, path, order):
 def test_a_height_that_the_user_has_given_stays(person, path):
     dock = opened(person, path, "RoboticAM_SpinMap")
     person.window.resizeDocks([dock], [430], person.core.Qt.Vertical)
-    person.idle(0.5)
+    still(person)
     high = dock.height()
     assert high > 400
     beside = opened(person, path, "RoboticAM_Path")

@@ -26,7 +26,7 @@ from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, 
 
 NAME = "RoboticAM_Plots"
 HEIGHT = 250
-LABEL, NARROW = 9, 14  # letters of a label there is room for, and to which it shrinks where the window is narrow
+LABEL, NARROW, WIDE = 9, 14, 36  # letters: of a label there is room for, to which it shrinks and grows
 CHANGES = ("Key", "Status", "Label", "StartAtLayer", "StartAtBead")
 KINDS = (TOOLPATH, JOINT_PATH, PROGRAM, "cell")
 
@@ -63,6 +63,7 @@ class PlotsDock(Follower):
         """The fields, in the language of the window, about the canvas."""
         form = QtGui.QWidget()
         self.choice = self._combo("plotted", tr("The toolpath, joint path or program to look at"), LABEL)
+        self.choice.setMaximumWidth(WIDE * self.choice.fontMetrics().averageCharWidth())  # leave room for the rest
         self.which = self._combo("picture", tr("What is drawn"))
         self.over = self._combo("over", tr("Along the time of the job, or along its path"))
         self.first, self.last = self._layer("from", tr("The first layer")), self._layer("to", tr("The last layer"))

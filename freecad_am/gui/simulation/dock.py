@@ -40,7 +40,6 @@ class Simulation:
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
-        self.scroll.setMinimumWidth(WIDE)
         self.timer = QtCore.QTimer(self.scroll)
         self.timer.setInterval(FRAME)
         self.timer.timeout.connect(self._tick)
@@ -105,6 +104,8 @@ class Simulation:
         column.addWidget(self._totals())
         column.addStretch(1)
         self.scroll.setWidget(form)  # what was there goes
+        bar = self.scroll.verticalScrollBar().sizeHint().width()
+        self.scroll.setMinimumWidth(max(WIDE, form.minimumSizeHint().width() + bar))
         self._tell_finding(None)
 
     def _label(self, name: str, text: str = "") -> Any:
