@@ -7,6 +7,7 @@ import Part
 import pytest
 
 from freecad_am import api
+from tests.gui.nested_cone import nested_cone
 
 V = App.Vector
 PANEL = "RoboticAM_RevolutionFeature"
@@ -16,13 +17,7 @@ PANEL = "RoboticAM_RevolutionFeature"
 def scene(person):
     """A cone of PartDesign, within a part that is moved and turned, with a link to it, a mesh, a profile and a box."""
     doc = App.newDocument("Inputs")
-    outer = doc.addObject("App::Part", "Outer")
-    outer.Placement = App.Placement(V(60, -20, 5), App.Rotation(V(1, 2, 3), 50))
-    body = doc.addObject("PartDesign::Body", "Body")
-    outer.addObject(body)
-    cone = doc.addObject("PartDesign::AdditiveCone", "Cone")
-    body.addObject(cone)
-    cone.Radius1, cone.Radius2, cone.Height = 20, 10, 30
+    _, body = nested_cone(doc, V(60, -20, 5), 30)
     link = doc.addObject("App::Link", "Link")
     link.LinkedObject = body
     link.Placement = App.Placement(V(0, 90, 0), App.Rotation(V(0, 1, 0), 20))

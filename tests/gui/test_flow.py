@@ -10,6 +10,7 @@ import pytest
 from freecad_am import api
 from freecad_am.gui.commands import GROUPS
 from freecad_am.objects.job_group import is_group
+from tests.gui.nested_cone import nested_cone
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
 V = App.Vector
@@ -39,13 +40,7 @@ def new_job(person, **texts):
 
 def cup(doc):
     """A body of PartDesign that is a cone, within a part that is moved and turned; the body and its outer part."""
-    outer = doc.addObject("App::Part", "Outer")
-    outer.Placement = App.Placement(V(40, -20, 5), App.Rotation(V(1, 2, 3), 50))
-    body = doc.addObject("PartDesign::Body", "Body")
-    outer.addObject(body)
-    cone = doc.addObject("PartDesign::AdditiveCone", "Cone")
-    body.addObject(cone)
-    cone.Radius1, cone.Radius2, cone.Height = 20, 10, 12
+    outer, body = nested_cone(doc, V(40, -20, 5), 12)
     body.Placement.Base = V(3, 4, 5)
     doc.recompute()
     return outer, body
