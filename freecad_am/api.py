@@ -45,6 +45,7 @@ from .objects import user_machines
 from .objects.cell import Cell
 from .objects.developable_feature import DevelopableFeature
 from .objects.feature import RevolutionFeature
+from .objects.findings import issues_of
 from .objects.inspection import Inspection, files_of_figures
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
@@ -264,7 +265,7 @@ def result(obj: Any) -> Any:
 def issues(obj: Any) -> tuple[Issue, ...]:
     """The findings about a stage. `[issue.message for issue in am.issues(doc.JointPath)]`"""
     _stage(obj)
-    return stages.issues_of(obj)
+    return issues_of(obj)
 
 
 def stages_of(doc: Any, kind: str = "") -> list[Any]:

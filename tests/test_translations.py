@@ -307,7 +307,7 @@ def written_out(text: ast.expr) -> str:
 
 def test_each_message_that_stages_are_given_is_recognised(phrases):
     tree = ast.parse((ROOT / "freecad_am" / "objects" / "stage.py").read_text(encoding="utf-8"))
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and collect.called(node) == "_say"]
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and collect.called(node) == "say"]
     texts = list(filter(None, (written_out(call.args[2]) for call in calls)))
     assert len(texts) >= 3 and "waits for Ab; recompute" in texts
     assert [text for text in texts if phrases.find(text) is None] == []

@@ -16,9 +16,10 @@ from PySide import QtCore, QtGui
 from ..core.issues import AmError, InputError
 from ..core.parameters.field import check_value
 from ..objects import expressions, preferences
+from ..objects.findings import issues_of
 from ..objects.progress import Cancelled
 from ..objects.rows import group_of, rows
-from ..objects.stage import Stage, issues_of
+from ..objects.stage import Stage
 from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold

@@ -13,7 +13,7 @@ from ..core.kinematics import machine as machines
 from ..core.parameters.strategy import RevolutionParameters
 from ..core.simulation.margins import from_next, margins, speed_ratios
 from ..objects import user_machines
-from ..objects.stage import issues_of
+from ..objects.findings import issues_of
 from .lines import DASHED, Array, Lines, Points
 from .path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
 from .path.path_view import OPTIONS, TUBES, PathView

@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
-import json
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ import FreeCAD as App
 
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
 from . import expressions, faults, hooks, progress, properties, staleness, store
+from .findings import as_text, first_message, issues_of, say
 from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 
@@ -158,22 +158,22 @@ class Stage:
             found = issues_of(obj)
             with self._own_changes():
                 if outdated:
-                    _say(obj, STALE, "an input changed while it was computed; recompute")
+                    say(obj, STALE, "an input changed while it was computed; recompute")
                 else:
-                    _say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
+                    say(obj, INFEASIBLE if has_errors(found) else UP_TO_DATE, first_message(found))
         except progress.Cancelled:
             if _there(obj) and key != obj.Key:
                 with self._own_changes():
-                    _say(obj, STALE, "cancelled; recompute")
+                    say(obj, STALE, "cancelled; recompute")
             raise
         except InfeasibleError as error:
             with self._own_changes():
-                obj.Issues = _issues_text(error.issues or (Issue(ERROR, error.code, error.message),))
-                _say(obj, INFEASIBLE, str(error))
+                obj.Issues = as_text(error.issues or (Issue(ERROR, error.code, error.message),))
+                say(obj, INFEASIBLE, str(error))
             raise
         except BaseException as error:
             with self._own_changes():
-                _say(obj, FAILED, str(error) if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
+                say(obj, FAILED, str(error) if isinstance(error, AmError) else f"{type(error).__name__}: {error}")
             raise
         return self.value(obj)
 
@@ -252,7 +252,7 @@ class Stage:
         self, obj: Any, outcome: Outcome, floats: list[float], text: str, key: str, seconds: float
     ) -> None:
         obj.ResultData, obj.ResultLayout, obj.Seconds = floats, text, seconds
-        obj.Issues = _issues_text(outcome.issues)
+        obj.Issues = as_text(outcome.issues)
         for name, figure in outcome.figures:
             setattr(obj, name, figure)
         self._kept = (key, outcome.value)
@@ -261,7 +261,7 @@ class Stage:
     def say_failed(self, obj: Any, error: AmError) -> None:
         """Say why it will fail, before what it waits for is computed."""
         with self._own_changes():
-            _say(obj, FAILED, str(error))
+            say(obj, FAILED, str(error))
 
     # ---- called by FreeCAD
 
@@ -273,7 +273,7 @@ class Stage:
         stale = next((linked.Label for linked in self._linked_stages(obj) if linked.Status == STALE), "")
         if stale:
             with self._own_changes():
-                _say(obj, STALE, f"waits for {stale}; recompute")
+                say(obj, STALE, f"waits for {stale}; recompute")
             return
         try:
             self.renew(obj)
@@ -301,7 +301,7 @@ class Stage:
             self.complete(obj)
             missing = self.missing(obj)
             if missing:
-                _say(obj, FAILED, missing)
+                say(obj, FAILED, missing)
         hooks.attach(obj)
 
     def dumps(self) -> None:
@@ -341,24 +341,6 @@ def stage_of(obj: Any) -> Stage | None:
     return proxy if isinstance(proxy, Stage) else None
 
 
-def issues_of(obj: Any) -> tuple[Issue, ...]:
-    """The findings stored with the object."""
-    return tuple(Issue(**entry) for entry in json.loads(obj.Issues or "[]"))
-
-
-def first_message(issues: tuple[Issue, ...]) -> str:
-    """The first error, else the first warning, with its place; '' when there is neither."""
-    for level in (ERROR, "warning"):
-        for issue in issues:
-            if issue.level == level:
-                return f"{issue.where}: {issue.message}" if issue.where else issue.message
-    return ""
-
-
-def _issues_text(issues: tuple[Issue, ...]) -> str:
-    return json.dumps([issue.as_dict() for issue in issues])
-
-
 def _broken(value: Any) -> str:
     """The label of a FreeCAD link whose object is gone, '' when all is well."""
     for one in value if isinstance(value, list) else [value]:
@@ -374,13 +356,6 @@ def _there(obj: Any) -> bool:
         return obj.Document is not None and obj.Document.getObject(obj.Name) is not None
     except (ReferenceError, RuntimeError, AttributeError, TypeError):
         return False
-
-
-def _say(obj: Any, status: str, message: str) -> None:
-    if obj.Message != message:
-        obj.Message = message
-    if obj.Status != status:
-        obj.Status = status
 
 
 def checked(obj: Any, link: Link) -> Any:

@@ -30,8 +30,9 @@ from ...core.simulation.totals import Totals, totals
 from ...core.simulation.watch import Watch, watch
 from ...core.toolpath import Toolpath
 from ...objects import user_machines
+from ...objects.findings import issues_of
 from ...objects.joint_path import Planned, planned_of
-from ...objects.stage import issues_of, stage_of
+from ...objects.stage import stage_of
 from ...objects.staleness import STALE
 from ..lines import Array
 from ..link_meshes import meshes_of

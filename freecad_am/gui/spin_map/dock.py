@@ -14,8 +14,8 @@ from PySide import QtCore, QtGui
 from ...core.issues import AmError
 from ...core.planning.points import TURN
 from ...core.planning.spin_curve import Compared
+from ...objects.findings import first_message, issues_of
 from ...objects.progress import Cancelled
-from ...objects.stage import first_message, issues_of
 from ...objects.staleness import UP_TO_DATE
 from .. import docks, preference_watch, recorded
 from ..later import Later
