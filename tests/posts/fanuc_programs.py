@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs of plain numbers for FANUC's post, those of the golden files among them, and its refusals."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitInput
+from freecad_am.posts import fanuc
+
+UPRIGHT = ("front", "up", "flip")
+
+
+def moves(kind, degrees, duration=0.1, layer=0, bead=0, **extra):
+    degrees = np.atleast_2d(np.asarray(degrees, float))
+    duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
+    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), 6.0), **extra)
+
+
+def program(*blocks, name="part", endless=(False,) * 6, **options):
+    return Program(name, "a machine", blocks, endless, **options)
+
+
+def beads(count, points, layers=1, **options):
+    """Beads of so many points each, each with two rapid moves before it."""
+    blocks = []
+    for layer in range(layers):
+        blocks.append(LayerStart(layer))
+        for bead in range(count):
+            value = np.arange(points)[:, None] * 0.1 + np.zeros(6)
+            blocks += [moves("rapid", np.zeros((2, 6)), layer=layer, bead=bead), DepositOn()]
+            blocks += [moves("deposit", value, layer=layer, bead=bead), DepositOff()]
+    return program(*blocks, **options)
+
+
+def refusal(of, *, code, where=None):
+    with pytest.raises(InputError) as raised:
+        fanuc.write(of)
+    assert raised.value.code == code and where in (None, raised.value.where)
+    return raised.value.message
+
+
+GOLDEN_JOINT = program(
+    moves("rapid", [[0.0, -30.0, 30.0, 0.0, -60.0, 170.0], [1.25, -29.5, 30.25, 0.1, -60.5, 175.0]], [1.0, 2.5]),
+    DepositOn(0.5),
+    moves(
+        "deposit",
+        [[2.5, -29.0, 30.5, -0.0004, -61.0, 179.9996],
+         [2.5, -29.0, 30.5, -0.0006, -61.0, 190.0],
+         [-170.0, 1.0, 2.0, 3.0, 4.0, 290.25]],
+        [0.3154, 0.3154, 33.04],
+    ),
+    DepositOff(0.25),
+    Wait(700.0), WaitInput(3), Call("clean"),
+    LayerStart(1),
+    moves("rapid", [[0.0, -30.0, 30.0, 0.0, -60.0, 400.0]], 1.0, layer=1),
+    name="Joint", endless=(False,) * 5 + (True,), remarks=("pendant J3 = q3 - q2: a remark of more than one line",),
+)  # fmt: skip
+
+ABOUT_X = np.diag([1.0, -1.0, -1.0])
+GOLDEN_TABLE = program(
+    moves("rapid", [[0.0, 0.0, 0.0, 0.0, -90.0, 0.0]], position=np.array([[0.0, 0.0, 50.0]]), rotation=ABOUT_X[None],
+          configuration=(UPRIGHT,)),
+    DepositOn(),
+    moves("deposit", [[0.0, 0.0, 0.0, 0.0, -90.0, 180.0], [0.0, 0.0, 0.0, 0.0, 45.0, -200.0]],
+          position=np.array([[10.0, 0.25, 5.0], [20.5, -0.5, 5.0]]),
+          # Rz(90) Rx(180), and Ry(90) where only R - W counts
+          rotation=np.array([[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
+                             [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]]),
+          configuration=(UPRIGHT, ("front", "down", "noflip"))),
+    DepositOff(),
+    name="TABLE", motion="cartesian", setup="tool-on-robot", user_frame=2, tool_frame=3, deposit_output=7, blend=50,
+)  # fmt: skip
