@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import subprocess
+import time
 from pathlib import Path
 
 import FreeCAD as App
@@ -20,6 +21,7 @@ from freecad_am import api
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = ROOT / "docs" / "tutorials"
 DIALOG = 30  # s until a dialog has come and gone
+AGAIN = 3  # s after Enter until a path is typed into a dialog once more
 NOISY = ("Report view", "Python console", "Selection view")
 SIDES = ("Combo View", "Model", "Tasks", "Tree view", "Property view")
 TREES = ("Combo View", "Model", "Tree view")
@@ -108,7 +110,7 @@ class Lesson:
     def in_file_dialog(self, path, trigger):
         """Do what brings up FreeCAD's dialog for files, type a path there and press Enter."""
         core, widgets, watch = self.person.core, self.person.widgets, self.person.watch
-        state = {"typing": None, "entered": False, "asked": False}
+        state = {"typing": None, "entered": None, "asked": False}
 
         def look():
             dialog = widgets.QApplication.activeModalWidget()
@@ -117,14 +119,18 @@ class Lesson:
                 button = dialog.findChild(widgets.QDialogButtonBox).button(widgets.QDialogButtonBox.Ok)
                 middle = button.mapToGlobal(button.rect().center())
                 subprocess.Popen(["xdotool", "mousemove", str(middle.x()), str(middle.y()), "click", "1"])
-            if not isinstance(dialog, widgets.QFileDialog) or state["entered"]:
+            if not isinstance(dialog, widgets.QFileDialog):
+                return
+            if state["entered"] is not None:  # where the machine is busy, the list of proposals may have taken Enter
+                if time.monotonic() > state["entered"] + AGAIN:
+                    state.update(typing=None, entered=None)
                 return
             line = dialog.findChild(widgets.QLineEdit, "fileNameEdit")
             if state["typing"] is None and line.hasFocus():
                 state["typing"] = subprocess.Popen(
                     ["xdotool", "key", "ctrl+a", "type", "--delay", "5", str(path)])
             elif state["typing"] is not None and state["typing"].poll() is not None and line.text() == str(path):
-                state["entered"] = True
+                state["entered"] = time.monotonic()
                 subprocess.Popen(["xdotool", "key", "Return"])
 
         timer = core.QTimer()
@@ -133,7 +139,7 @@ class Lesson:
         timer.start(100)
         try:
             trigger()
-            self.person.until(lambda: state["entered"], "the file dialog", DIALOG)
+            self.person.until(lambda: state["entered"] is not None, "the file dialog", DIALOG)
             self.person.until(lambda: widgets.QApplication.activeModalWidget() is None, "the file dialog to close", DIALOG)
         finally:
             timer.stop()
