@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 from PySide import QtCore, QtGui
@@ -11,6 +12,29 @@ from .colours import WRONG
 
 WIDEST_LABEL = 96  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
+
+
+class Note(QtGui.QLabel):
+    """A text that has room for all its lines; a form cuts off the last ones of other labels where it is narrow."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setWordWrap(True)
+
+    def minimumSizeHint(self) -> Any:
+        """Called by Qt."""
+        hint = super().minimumSizeHint()
+        return QtCore.QSize(hint.width(), max(hint.height(), self.heightForWidth(self.width())))
+
+    def resizeEvent(self, event: Any) -> None:
+        """Called by Qt: another width may take more lines, or fewer."""
+        super().resizeEvent(event)
+        if event.oldSize().width() != event.size().width():
+            QtCore.QTimer.singleShot(0, self._renew)  # the layout that gives it the width would overlook it
+
+    def _renew(self) -> None:
+        with contextlib.suppress(RuntimeError):  # the panel is closed
+            self.updateGeometry()
 
 
 class Fold:
@@ -47,9 +71,8 @@ class Fold:
         for one in (widget, *widget.findChildren(QtGui.QWidget), name):
             if not one.whatsThis():
                 one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
-        note = QtGui.QLabel()
+        note = Note()
         note.setObjectName(f"{widget.objectName()}Note")
-        note.setWordWrap(True)
         note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
         note.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
         note.hide()

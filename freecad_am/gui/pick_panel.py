@@ -35,6 +35,7 @@ class PickPanel(StagePanel):
     is_open = True
     armed: PickField | None = None  # the one that waits for clicks
     refused: Any = None  # the entries that OK or Apply did not take
+    tells_result = False  # whether what is told is of a preview that is there
 
     def __init__(self, title: str, picks: list[PickField], obj: Any, nodes: WallNodes) -> None:
         self.picks, self.nodes = picks, nodes
@@ -43,6 +44,7 @@ class PickPanel(StagePanel):
         self.seen: Any = None  # the entries at the last look
         self.shown: Any = None  # those that are previewed
         self.state = self._note("preview", "palette(text)")
+        self.state.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
         self.column.removeWidget(self.state)
         self.column.insertWidget(2, self.state)
         self.preview = Preview(self.document, nodes.switch)
@@ -214,7 +216,7 @@ class PickPanel(StagePanel):
         """Show what was computed, or what is wrong."""
         try:
             made, drawing = worker.result()
-            self._say(self._draw(made, drawing), False)
+            self._say(self._draw(made, drawing), False, True)
         except AmError as error:
             self._refuse(error)
         except ReferenceError:
@@ -257,7 +259,13 @@ class PickPanel(StagePanel):
                 return place, f"{error.where.removeprefix(label)} {translated(error.message)}".strip()
         return "", translated_error(error)
 
-    def _say(self, text: str, wrong: bool) -> None:
+    def _say(self, text: str, wrong: bool, of_result: bool = False) -> None:
+        """Tell about the preview. While there is none its text keeps its room: a field that is typed into stays in place."""
+        if of_result:
+            self.state.setMinimumHeight(0)
+        elif self.tells_result and self.state.isVisible():
+            self.state.setMinimumHeight(self.state.height())
+        self.tells_result = of_result
         self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
         self.state.setText(text)
         self.state.setVisible(bool(text))

@@ -197,6 +197,32 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     person.idle()
 
 
+def test_a_field_that_is_typed_into_stays_in_place_while_nothing_can_be_previewed(person, hand, blades):
+    hub, first, second = blades
+    person.gui.Selection.addSelection(hub.Document.Name, first.Name)
+    person.gui.Selection.addSelection(hub.Document.Name, second.Name)
+    person.gui.Selection.addSelection(hub.Document.Name, hub.Name, cone(hub))
+    hand.click(person.button("RoboticAM_SolidsOnHub"))
+    panel = person.panel(PANEL)
+    previewed(person, panel)
+    told, field = person.field(panel, "preview"), person.field(panel, "LayerHeight")
+
+    def place():
+        return field.mapTo(panel, person.core.QPoint(0, 0)).y()
+
+    before = place()
+    assert told.height() > 1.5 * told.fontMetrics().lineSpacing(), "a text of several lines"
+    person.type(panel, "LayerHeight", "0 mm")
+    person.until(lambda: told.text().startswith("No preview"), "that there is none", 5)
+    person.idle(0.2)
+    assert place() == before
+    person.type(panel, "LayerHeight", "2 mm")
+    previewed(person, panel)
+    person.idle(0.2)
+    assert place() == before and told.minimumHeight() == 0
+    ok(person, hand, "Cancel")
+
+
 def test_a_feature_is_changed_and_its_hub_may_be_a_face_of_its_only_solid(person, rotor):
     hub, first, second = rotor
     document = hub.Document

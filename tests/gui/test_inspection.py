@@ -81,6 +81,24 @@ def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, p
     person.panel_closed()
 
 
+def test_a_long_message_is_seen_whole_in_a_narrow_panel(person, part, tmp_path):
+    person.select(part)
+    person.click("RoboticAM_Inspect")
+    panel = person.panel(PANEL)
+    panel.setFixedWidth(220)
+    (tmp_path / "commas.csv").write_text("1,5,2,5,3,5\n2,5,3,5,4,5\n")
+    (tmp_path / "words.csv").write_text("a;b;c\n")
+    note = person.field(panel, "FileNote")
+    for name in (str(tmp_path / "commas.csv"), "nowhere.csv", str(tmp_path / "words.csv"), str(tmp_path / "commas.csv")):
+        person.type(panel, "File", name)
+        person.press("Ok")
+        person.until(lambda: note.isVisible() and note.height() >= note.heightForWidth(note.width()), f"all about {name}", 5)
+        assert note.height() > 2 * note.fontMetrics().lineSpacing()
+        assert note.parentWidget().height() >= note.geometry().bottom()
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part, points, tmp_path):
     document = part.Document
     person.select(part)
