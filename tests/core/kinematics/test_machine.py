@@ -235,7 +235,7 @@ import locale
 locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
 assert locale.localeconv()["decimal_point"] == ","
 from freecad_am.core.kinematics import machine
-print(repr(machine.load("staubli-tx2-60l").limits("maker").upper[1]))
+print(repr(float(machine.load("staubli-tx2-60l").limits("maker").upper[1])))
 """
 
 

@@ -44,7 +44,7 @@ def test_a_machine_as_urdf_is_the_same_machine(name, tmp_path):
     np.testing.assert_allclose(np.eye(4) if found.base is None else found.base, given.base, atol=1e-9)
 
 
-@pytest.mark.parametrize("name,modified", itertools.product(NAMES, (False, True)))
+@pytest.mark.parametrize("name,modified", list(itertools.product(NAMES, (False, True))))
 def test_a_machine_as_table_is_the_same_machine(name, modified):
     given = machine.load(name)
     table = dh.table_of(given.chain, modified)
