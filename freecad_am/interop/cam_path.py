@@ -24,6 +24,7 @@ def add(document: Any, lines: Sequence[Line], label: str) -> Any:
         raise neighbour.lacking("CAM path", "CAM (Path)", "write STEP or DXF") from None
     obj = neighbour.added(document, "Path::Feature", "AmPath", label)
     obj.Path = Path.Path([Path.Command(name, words) for name, words in commands(lines)])
+    obj.purgeTouched()  # nothing is left to recompute, which the tree would ask for
     return obj
 
 

@@ -29,6 +29,7 @@ def add(document: Any, lines: Sequence[Line], label: str, tolerance: float, turn
         Robot.Waypoint(place, type="LIN", name=name, vel=speed) for name, place, speed in waypoints(lines, tolerance, turn)
     ])
     obj.Trajectory = trajectory
+    obj.purgeTouched()  # nothing is left to recompute, which the tree would ask for
     return obj
 
 

@@ -123,6 +123,7 @@ def test_dxf_is_read_by_freecad(job, tmp_path):
 def test_cam_path_runs_through_every_bead_and_survives_saving(job, tmp_path):
     doc = job.Document
     made = api.make_cam_path(job)
+    assert "Touched" not in made.State
     commands = [(command.Name, command.Parameters) for command in made.Path.Commands]
     place, on, runs = None, False, []
     for name, words in commands:
@@ -155,6 +156,7 @@ def test_cam_path_runs_through_every_bead_and_survives_saving(job, tmp_path):
 def test_trajectory_keeps_within_what_was_asked_and_survives_saving(job, tmp_path):
     doc = job.Document
     made = api.make_trajectory(job, tolerance=0.05, turn=1.0)
+    assert "Touched" not in made.State
     waypoints = made.Trajectory.Waypoints
     lines = of_motion(api.result(job).motion)
     assert 2 < len(waypoints) < 0.8 * sum(len(line.points) for line in lines)
