@@ -11,7 +11,8 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ..core.issues import InputError
-from ..objects import preferences
+from ..core.kinematics import machine
+from ..objects import preferences, user_machines
 from ..posts import catalogue
 from . import fields, suggestions
 from .texts import tr, translated
@@ -122,8 +123,6 @@ class PreferencesPage:
 
     def saveSettings(self) -> None:
         """Keep what is shown. What cannot be is told on the report view, and stays as it was."""
-        machine = self.machine.currentText().strip()
-        preferences.keep("Machine", "" if machine == preferences.builtin_machine() else machine)
         preferences.keep("Post", self.post.currentData())
         for name, edit in (("MachineFolder", self.machines), ("ProgramsFolder", self.programs)):
             folder = edit.text().strip()
@@ -131,12 +130,22 @@ class PreferencesPage:
                 _warn(tr("there is no folder {}").format(folder))
             else:
                 preferences.keep(name, folder)
+        self._keep_machine()  # it may be in the folder
         preferences.keep_process(self._figures())
         preferences.keep("SpeedUnit", "" if self.unit.currentIndex() == 0 else self.unit.currentText())
         preferences.keep("Ramp", "" if self.ramp.currentIndex() == 0 else self.ramp.currentData())
         colour = self.colour.property("color")
         plain = QtGui.QColor.fromRgbF(*preferences.MACHINE_COLOUR).name()
         preferences.keep("MachineColour", "" if colour.name() == plain else colour.name())
+
+    def _keep_machine(self) -> None:
+        name = self.machine.currentText().strip() or preferences.builtin_machine()
+        try:
+            machine.load(name, user_machines.folders())
+        except InputError as error:
+            _warn(tr("{}: {}").format(tr("Machine"), translated(error.message)))
+        else:
+            preferences.keep("Machine", "" if name == preferences.builtin_machine() else name)
 
     def _figures(self) -> dict[str, float]:
         """The figures that are sound, in outer units by row key."""

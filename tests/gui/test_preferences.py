@@ -227,10 +227,13 @@ def test_what_cannot_be_is_told_and_not_kept(person, page):
     page.machines.setText("/nowhere/at all")
     line = page.process["travel_speed"].widget.findChild(person.widgets.QLineEdit)
     line.setText("-3 mm/s")
+    page.machine.setEditText("kuka-kr99")
     page.saveSettings()
     assert preferences.machine_folder() == "" and preferences.process() == {}
+    assert preferences.machine() == preferences.builtin_machine()
     person.until(lambda: "there is no folder /nowhere/at all" in person.console(), "the warning")
     assert "Travel speed: -3 mm/s is out of range" in person.console()
+    assert "Machine: 'kuka-kr99' is not known; did you mean kuka-kr16-2" in person.console()
 
 
 def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp_path):
