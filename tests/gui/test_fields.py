@@ -214,7 +214,7 @@ def test_every_number_has_its_unit(person):
             line = field.widget if isinstance(field.widget, person.widgets.QLineEdit) else field.widget.findChild(
                 person.widgets.QLineEdit)
             labels[row.key] = field.heading
-            if row.form in quantities and not line.text().endswith((" mm", " µm", " nm", " m", " °", " deg", " mm/s", " s")):
+            if row.form in quantities and not line.text().endswith((" mm", " µm", " nm", " m", "°", " deg", " mm/s", " s")):
                 bare.append((row.key, line.text()))
             if row.form in numbers and row.key not in PURE and not field.heading.endswith(")"):
                 bare.append((row.key, field.heading))
