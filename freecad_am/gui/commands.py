@@ -190,9 +190,9 @@ def _cell() -> None:
 
 
 def _feature() -> None:
-    from ..objects.feature import RevolutionFeature
+    from . import feature_panel, stage_panel
 
-    _open(RevolutionFeature, tr("Feature"))
+    stage_panel.show(feature_panel.FeaturePanel())
 
 
 def _wall() -> None:

@@ -17,8 +17,9 @@ from ..objects.stage import stage_of
 from . import icons, recorded
 from .colours import WRONG
 from .quantity import QuantityField
+from .signals import connect
 from .stage_panel import CLOSED
-from .texts import tr, translated_error
+from .texts import tr, translated, translated_error
 
 STEP, DXF, CAM, TRAJECTORY = "step", "dxf", "cam", "trajectory"
 _FILES = {STEP: ".step", DXF: ".dxf"}
@@ -100,6 +101,13 @@ class ExportPanel:
             (tr("Tolerance"), self.tolerance.box), (tr("Turn"), self.turn.box),
         ):
             self.grid.addRow(text, widget)
+        self.file_note = QtGui.QLabel()
+        self.file_note.setObjectName("FileNote")
+        self.file_note.setWordWrap(True)
+        self.file_note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        self.grid.insertRow(self.grid.getWidgetPosition(self.file_row)[0] + 1, "", self.file_note)
+        self._tell_file("")
+        connect(self.file, "textChanged(QString)", self._file_anew)
         column.addWidget(self.error)
         column.addLayout(self.grid)
         column.addStretch(1)
@@ -107,6 +115,7 @@ class ExportPanel:
     def _follow(self, *_: Any) -> None:
         """Show the fields of the kind that is chosen, and a file name that fits."""
         kind = self.kind.currentData()
+        self._tell_file("")
         for widget, wanted in (
             (self.file_row, kind in _FILES), (self.rapids, kind in _FILES), (self.tolerance.box, kind == TRAJECTORY),
             (self.turn.box, kind == TRAJECTORY),
@@ -143,16 +152,29 @@ class ExportPanel:
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
+    def _tell_file(self, text: str) -> None:
+        """What is wrong with the file, under its field."""
+        self.file_note.setText(text)
+        self.file_note.setVisible(bool(text))
+
+    def _file_anew(self, *_: Any) -> None:
+        """Another file is no longer what was wrong."""
+        self._tell_file("")
+
     # ---- called by FreeCAD
 
     def accept(self) -> bool:
         """Write or make it; True closes the panel, an error is shown in it."""
         self.say("")
+        self._tell_file("")
         kind = self.kind.currentData()
         try:
             recorded.act(self.paths[self.path.currentIndex()], *self._call(kind))
         except AmError as error:
-            self.say(translated_error(error))
+            if kind in _FILES and error.where == self.file.text().strip():
+                self._tell_file(translated(error.message))
+            else:
+                self.say(translated_error(error))
         except Cancelled:
             self.say(tr("Cancelled: nothing was made."))
         except ReferenceError:

@@ -19,6 +19,7 @@ class Input:
 
     label = ""
     widget: Any = None
+    places: tuple[str, ...] = ()  # what errors call it, other than by its link
 
     def tell(self, text: str) -> None:
         """Something about it; the panel shows it under the widget."""
@@ -118,6 +119,10 @@ class ShapeChoice(Input):
         picks = picking.selected(self.document)
         return next((picking.with_faces(pick) for pick in picks if not picking.is_mesh(pick.obj)), None)
 
+    def value(self) -> Any:
+        """As the link of the stage holds it."""
+        return self.present
+
     def _refusal(self) -> str:
         """Why nothing is taken."""
         meshes = [pick.obj.Label for pick in picking.selected(self.document)]
@@ -160,6 +165,9 @@ class ObjectChoice(ShapeChoice):
         told = tr("{} is missing: select it and press its Use selection.")
         return "" if self.present is not None else told.format(self.label)
 
+    def value(self) -> Any:
+        return None if self.present is None else self.present[0]
+
     def arguments(self) -> dict[str, str]:
         return {self.link.key: "None" if self.present is None else recorded.reference(self.present[0])}
 
@@ -184,6 +192,9 @@ class ObjectsChoice(ShapeChoice):
         self.text.setText(text)
         self.text.setToolTip(text)
 
+    def value(self) -> Any:
+        return self.objects
+
     def applied(self) -> None:
         self.told = self.told or bool(self.objects)
 
@@ -195,6 +206,8 @@ class ObjectsChoice(ShapeChoice):
 
 class NameChoice(Input):
     """The name of a program."""
+
+    places = ("name",)
 
     def __init__(self, name: str) -> None:
         self.label = tr("Name")

@@ -23,6 +23,7 @@ from .fold import Fold
 from .guess import Guess
 from .later import Background
 from .picking import Pick
+from .signals import connect
 from .stage_panel import CLOSED
 from .texts import tr, translated, translated_error
 from .worker import Worker
@@ -80,11 +81,15 @@ class JobPanel:
         self.machine.setEditText(_machine_before(self.document))
         self.name = inputs.NameChoice("")
         self.fold = Fold(tr("Inputs"), True)
-        for text, widget in (
+        rows = (
             (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
             (tr("Machine"), self.machine), (tr("Name"), self.name.widget),
-        ):
-            self.fold.add(text, widget)
+        )
+        notes = {widget: self.fold.add(text, widget) for text, widget in rows}
+        # under the fields, by what errors call what is entered there
+        self.notes = {"cell.machine": notes[self.machine], "name": notes[self.name.widget]}
+        connect(self.machine, "editTextChanged(QString)", self._entered_anew)
+        connect(self.name.widget, "textChanged(QString)", self._entered_anew)
         hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
                                "double-click one in the tree to change it."))
         hint.setWordWrap(True)
@@ -188,10 +193,22 @@ class JobPanel:
         self.error.setText(text)
         self.error.setVisible(bool(text))
 
+    def _tell(self, place: str, text: str) -> None:
+        """What is wrong with a field, under it."""
+        self.notes[place].setText(text)
+        self.notes[place].setVisible(bool(text))
+
+    def _entered_anew(self, *_: Any) -> None:
+        """What was wrong is no longer there."""
+        for place in self.notes:
+            self._tell(place, "")
+
     # ---- called by FreeCAD
 
     def accept(self) -> bool:
         """Make all stages; True closes the panel, an error is shown in it."""
+        self.say("")
+        self._entered_anew()
         try:
             self._wait()
             if self.guess.missing or not self.guess.parts:
@@ -200,7 +217,10 @@ class JobPanel:
             before = {obj.Name for obj in self.document.Objects}
             recorded.make(self.document, "make_all", self._arguments())
         except AmError as error:
-            self.say(translated_error(error))
+            if error.where in self.notes:
+                self._tell(error.where, translated(error.message))
+            else:
+                self.say(translated_error(error))
         except Cancelled:
             self.say(tr("Cancelled: the document is as it was."))
         except ReferenceError:

@@ -3,60 +3,31 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore
 
-from ..core.issues import AmError, InputError
-from ..objects import expressions
-from ..objects.stage import Outcome, Stage
+from ..core.issues import AmError
 from . import picking
-from .colours import WRONG
-from .later import Background
 from .pick_field import PickField
-from .preview import Draft, Preview
-from .stage_panel import CLOSED, StagePanel
+from .preview_panel import PreviewPanel
 from .texts import tr, translated, translated_error
 from .wall_nodes import WallNodes
-from .worker import Worker
-
-LOOK_EVERY = 200  # ms; what has not changed between two looks is previewed
-TOLD_AFTER = 400  # ms; when a preview takes longer, that is said
 
 
-class PickPanel(StagePanel):
-    """Makes a feature of what is selected, or changes one. The document is left alone before OK."""
+class PickPanel(PreviewPanel):
+    """Makes a feature of what is selected, or changes one."""
 
-    stage: type[Stage]
-    is_open = True
     armed: PickField | None = None  # the one that waits for clicks
-    refused: Any = None  # the entries that OK or Apply did not take
-    tells_result = False  # whether what is told is of a preview that is there
 
     def __init__(self, title: str, picks: list[PickField], obj: Any, nodes: WallNodes) -> None:
-        self.picks, self.nodes = picks, nodes
+        self.picks = picks
         unclear = self._propose(picking.selected(App.ActiveDocument)) if obj is None else ""
-        super().__init__(self.stage, title, picks, obj)
-        self.seen: Any = None  # the entries at the last look
-        self.shown: Any = None  # those that are previewed
-        self.state = self._note("preview", "palette(text)")
-        self.state.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
-        self.column.removeWidget(self.state)
-        self.column.insertWidget(2, self.state)
-        self.preview = Preview(self.document, nodes.switch)
-        self._show_own(False)
+        super().__init__(title, picks, obj, nodes)
         Gui.Selection.clearSelection()  # or its colour would hide what is previewed
         Gui.Selection.addObserver(self)
-        self.timer = QtCore.QTimer(self.form)
-        self.timer.setInterval(LOOK_EVERY)
-        self.timer.timeout.connect(self._look)
-        self.timer.start()
-        self.background = Background(self.form)
-        self.form.destroyed.connect(self.close)
         self._arm_missing()
         self.say(unclear)
 
@@ -81,26 +52,18 @@ class PickPanel(StagePanel):
         """Why an input does not take what was clicked."""
         raise NotImplementedError
 
-    def _links(self) -> dict[str, Any]:
-        """The inputs as the links of the stage hold them."""
-        raise NotImplementedError
-
     def _link_places(self) -> dict[str, str]:
         """The label of the input that each link is entered by."""
         return {field.link.name: field.label for field in self.picks}
 
-    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
-        """The work, which leaves the document alone, that makes what is entered, and what is drawn of it. Both raise
-        AmError."""
-        raise NotImplementedError
-
-    def _draw(self, made: Outcome, drawing: Any) -> str:
-        """Draw what was computed; what to tell about it."""
-        raise NotImplementedError
-
-    def _draw_without(self) -> None:
-        """Draw what can be drawn where nothing can be computed."""
-        raise NotImplementedError
+    def _lacks(self) -> str:
+        lacking = self._lacking()
+        if lacking is None:
+            return ""
+        told = tr("{} are missing: click them in the tree or the 3D view.") if lacking.several else tr(
+            "{} is missing: click it in the tree or the 3D view."
+        )
+        return told.format(lacking.label)
 
     # ---- picking
 
@@ -155,98 +118,6 @@ class PickPanel(StagePanel):
                     one.pick.setChecked(False)
                 self._arm_missing()
 
-    # ---- preview
-
-    def _look(self) -> None:
-        """Preview what is entered once it no longer changes."""
-        try:
-            now = self._entered()
-            if now != self.seen:
-                self.seen = now
-            elif now != self.shown:
-                self.shown = now
-                self._renew()
-        except ReferenceError:
-            self._gone()
-
-    def _gone(self) -> None:
-        """The document or the object is no more: say so, before anything else is clicked or typed."""
-        self.close()
-        with contextlib.suppress(RuntimeError):  # so is the panel
-            self.say(tr(CLOSED))
-
-    def _entered(self) -> Any:
-        texts = []
-        for field, _, _ in self.places.values():
-            try:
-                texts.append((field.row.name, field.value))
-            except InputError as error:
-                texts.append((field.row.name, error.message))
-        return self.document.Name, self._inputs(), texts
-
-    def _renew(self) -> None:
-        """Begin to compute what is entered, in place of what was before."""
-        self.background.cancel()
-        refused = set(self.marked) if self.shown == self.refused else set()
-        for place in set(self.notes) - set(self.told) - refused:
-            self.tell(place, "")
-        lacking = self._lacking()
-        if lacking is not None:
-            missing = tr("{} are missing: click them in the tree or the 3D view.") if lacking.several else tr(
-                "{} is missing: click it in the tree or the 3D view."
-            )
-            self._say(missing.format(lacking.label), False)
-            self._draw_without()
-            return
-        try:
-            draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
-            self.background.start(draft.told(self._work(draft)), self._show_result)
-        except AmError as error:
-            self._refuse(error)
-            return
-        worker = self.background.worker
-        QtCore.QTimer.singleShot(TOLD_AFTER, lambda: self._say_waiting(worker))
-
-    def _say_waiting(self, worker: Worker | None) -> None:
-        if worker is not None and self.background.worker is worker:
-            with contextlib.suppress(RuntimeError):
-                self._say(tr("The preview is being computed."), False)
-
-    def _show_result(self, worker: Worker) -> None:
-        """Show what was computed, or what is wrong."""
-        try:
-            made, drawing = worker.result()
-            self._say(self._draw(made, drawing), False, True)
-        except AmError as error:
-            self._refuse(error)
-        except ReferenceError:
-            self.close()
-        except Exception as error:  # of nobody's making; OK would tell it too
-            self._say(f"{type(error).__name__}: {error}", True)
-            self._draw_without()
-
-    def _refuse(self, error: AmError) -> None:
-        place, text = self._placed(error)
-        if place:
-            self._say(tr("No preview: see the field marked."), False)
-            self._unfolded(place)
-            self.tell(place, text)
-        else:
-            self._say(translated_error(error), True)
-        self._draw_without()
-
-    def _values(self) -> dict[str, Any]:
-        found = {}
-        for place, (field, _, _) in self.places.items():
-            try:
-                value = field.value
-                if expressions.is_expression(value) and field.row.form in expressions.FOLLOW:
-                    value = self._evaluated(field, value)
-                found[field.row.name] = value
-            except InputError as error:
-                raise InputError(error.code, place, error.message) from None
-        return found
-
     def _placed(self, error: AmError) -> tuple[str, str]:
         place, text = super()._placed(error)
         if place:
@@ -259,61 +130,14 @@ class PickPanel(StagePanel):
                 return place, f"{error.where.removeprefix(label)} {translated(error.message)}".strip()
         return "", translated_error(error)
 
-    def _say(self, text: str, wrong: bool, of_result: bool = False) -> None:
-        """Tell about the preview. While there is none its text keeps its room: a field that is typed into stays in place."""
-        if of_result:
-            self.state.setMinimumHeight(0)
-        elif self.tells_result and self.state.isVisible():
-            self.state.setMinimumHeight(self.state.height())
-        self.tells_result = of_result
-        self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
-        self.state.setText(text)
-        self.state.setVisible(bool(text))
-
-    # ---- called by FreeCAD
-
-    def accept(self) -> bool:
-        """Make or change the feature; True closes the panel."""
-        done = super().accept()
-        if done:
-            self.close()
-        return done
-
-    def apply(self) -> bool:
-        """Make or change the feature; the preview goes on standing for what it draws."""
-        done = super().apply()
-        if done:
-            self._show_own(False)
-        return done
-
-    def _carry_out(self) -> bool:
-        self.background.cancel()
-        done = super()._carry_out()
-        if not done:
-            self.seen = self.shown = None  # what was being previewed is begun again
-            with contextlib.suppress(ReferenceError):
-                self.refused = self._entered()
-        return done
-
-    def reject(self) -> bool:
-        """Nothing was done; what was previewed goes."""
-        self.close()
-        return super().reject()
+    # ---- the end
 
     def close(self, *_: Any) -> None:
         """Take away the preview, and look at clicks no more; once or more often."""
-        if not self.is_open:
-            return
-        self.is_open = False
-        self.background.cancel()
-        Gui.Selection.removeObserver(self)
-        self.preview.remove()
-        with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
-            self.timer.stop()
-        with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # the object is gone
-            self._show_own(True)
+        if self.is_open:
+            Gui.Selection.removeObserver(self)
+        super().close()
 
     def _show_own(self, visible: bool) -> None:
-        """Show or hide what the object itself draws, which the preview stands for."""
         if self.obj is not None:
             self.obj.ViewObject.Proxy.wall.show(visible)

@@ -71,9 +71,8 @@ class StagePanel:
         self.column.addStretch(1)
         self._show_findings()
         self.later_entries = Later(self.form, self._judge_entries)
-        for field, _, _ in self.places.values():
-            own = [field.widget] if isinstance(field.widget, QtGui.QLineEdit) else []
-            for line in own or field.widget.findChildren(QtGui.QLineEdit):
+        for widget in (*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in choices)):
+            for line in _lines(widget):
                 connect(line, "textChanged(QString)", self.later_entries.ask)
         self._judge_entries()
         missing = [choice.missing for choice in choices if choice.missing]
@@ -185,7 +184,7 @@ class StagePanel:
         for choice in self.choices:
             own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
             missing = error.code == "NO_INPUT" and error.message.startswith(f"{own} is missing")
-            if missing or error.where in [f"{name}.{own}" for name in names]:
+            if missing or error.where in [*choice.places, *(f"{name}.{own}" for name in names)]:
                 return choice.label, translated(error.message)
         return "", translated_error(error)
 
@@ -203,9 +202,11 @@ class StagePanel:
         return next(choice.widget for choice in self.choices if choice.label == place)
 
     def _entry(self, place: str) -> str:
-        """What is entered at a place, to be compared; '' for an input."""
+        """What is entered at a place, to be compared."""
         try:
-            return repr(self.places[place][0].value) if place in self.places else ""
+            if place in self.places:
+                return repr(self.places[place][0].value)
+            return repr([line.text() for choice in self.choices if choice.label == place for line in _lines(choice.widget)])
         except InputError as error:
             return error.message
 
@@ -322,6 +323,11 @@ class StagePanel:
         return True
 
 
+def _lines(widget: Any) -> list[Any]:
+    """The line edits of a field: itself, or those in it."""
+    return [widget] if isinstance(widget, QtGui.QLineEdit) else list(widget.findChildren(QtGui.QLineEdit))
+
+
 def _narrow(box: Any) -> None:
     with contextlib.suppress(RuntimeError):  # the panel is closed again
         for button in box.buttons():
@@ -363,8 +369,11 @@ def edit(obj: Any) -> None:
 
 def _own_panel(proxy: type[Stage]) -> Any:
     """The panel of a stage that has one of its own, else None."""
-    from . import cell_panel, hub_panel, toolpath_panel, wall_panel
+    from . import cell_panel, feature_panel, hub_panel, toolpath_panel, wall_panel
     from .inspection.panel import InspectionPanel
 
-    own = (hub_panel.HubPanel, wall_panel.WallPanel, cell_panel.CellPanel, toolpath_panel.ToolpathPanel, InspectionPanel)
+    own = (
+        feature_panel.FeaturePanel, hub_panel.HubPanel, wall_panel.WallPanel, cell_panel.CellPanel,
+        toolpath_panel.ToolpathPanel, InspectionPanel,
+    )
     return next((panel for panel in own if panel.stage is proxy), None)

@@ -5,15 +5,11 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..core.geometry.profile import RevolvedWall
 from . import icons
-from .lines import DASHED, Lines
+from .meridian_nodes import MeridianNodes
 from .view_base import StageView
 from .wall_nodes import WallNodes, first_curves
-
-NOTHING = np.zeros((0, 3))
 
 
 class FeatureView(StageView):
@@ -30,26 +26,17 @@ class FeatureView(StageView):
             super().complete(vobj)
 
     def scene(self, root: Any) -> None:
-        self.meridian = Lines(3.0, (0.96, 0.47, 0.0))
-        self.axis = Lines(2.0, (0.96, 0.47, 0.0), DASHED)
-        self.wall = WallNodes(pickable=True)
-        for node in (self.meridian.node, self.axis.node, self.wall.switch):
+        self.revolved, self.wall = MeridianNodes(), WallNodes(pickable=True)
+        for node in (self.revolved.switch, self.wall.switch):
             root.addChild(node)
 
     def draw(self, obj: Any, value: Any) -> None:
         if not isinstance(value, RevolvedWall):
-            self.meridian.set(NOTHING, [])
-            self.axis.set(NOTHING, [])
+            self.revolved.clear()
             self.wall.set_first(first_curves(value))
             self.wall.set_faces(obj.Source[0], value.faces)
             return
-        radius, height = value.meridian.points.T
-        points = value.points(radius, height, np.full(len(radius), value.start))
-        low, high = float(height.min()), float(height.max())
-        over = 0.1 * max(high - low, float(radius.max()))
-        ends = np.array([low - over, high + over])
-        self.meridian.set(points, [len(points)])
-        self.axis.set(value.points(np.zeros(2), ends, np.zeros(2)), [2])
+        self.revolved.set_wall(value)
 
     def style(self, vobj: Any) -> None:
         self.wall.faces.show(getattr(vobj, "ShowFaces", False))

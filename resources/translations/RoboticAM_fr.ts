@@ -1122,6 +1122,11 @@
         <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_panel.py"/>
+        <source>About {} turns along {:.4g} mm of wall</source>
+        <translation>Environ {} tours le long de {:.4g} mm de paroi</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>Acceleration</source>
         <translation>Accélération</translation>
@@ -1882,7 +1887,7 @@
         <translation>Faces de la paroi.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/feature_panel.py"/>
         <source>Feature</source>
         <translation>Élément</translation>
     </message>
@@ -2462,6 +2467,11 @@
         <translation>Couches, trajectoires articulaires et programmes vérifiés pour les robots qui déposent de la matière</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_panel.py"/>
+        <source>Layers: {}, along {:.4g} mm of wall</source>
+        <translation>Couches : {}, le long de {:.4g} mm de paroi</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Lead</source>
         <translation>Angle d&apos;avance</translation>
@@ -2882,7 +2892,7 @@
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_panel.py"/>
+        <location filename="../../freecad_am/gui/preview_panel.py"/>
         <source>No preview: see the field marked.</source>
         <translation>Pas d&apos;aperçu : voyez le champ marqué.</translation>
     </message>
@@ -4057,7 +4067,7 @@
         <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_panel.py"/>
+        <location filename="../../freecad_am/gui/preview_panel.py"/>
         <source>The preview is being computed.</source>
         <translation>L&apos;aperçu est en cours de calcul.</translation>
     </message>

@@ -67,7 +67,16 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
     panel = opened(person)
     person.type(panel, "File", str(tmp_path / "file" / "a.step"))
     refused(person)
-    assert "choose a file you can write" in person.panel_error(panel)
+    note = person.field(panel, "FileNote")
+    assert note.isVisible() and "choose a file you can write" in note.text()
+    assert not person.field(panel, "error").isVisible()
+    person.type(panel, "File", str(tmp_path / "a.txt"))
+    assert not note.isVisible()  # what it was about is no more
+    refused(person)
+    assert note.isVisible() and "end the name" in note.text()
+    person.screenshot("export_error")
+    person.choose(panel, "Kind", "CAM path in this document")
+    assert not note.isVisible()
     person.press("Cancel")
     assert os.listdir(tmp_path) == ["file"]
 

@@ -9,6 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.gui.commands import GROUPS
+from freecad_am.gui.stage_panel import edit
 from freecad_am.objects.job_group import is_group
 from tests.gui.nested_cone import nested_cone
 
@@ -175,6 +176,51 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere):
     person.press("Ok")
     person.panel_closed()
     assert kinds(doc) == ["cell", "cell", "feature", "toolpath", "joint path", "program"]
+
+
+def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere):
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    machine, name = (person.field(panel, f"{field}Note") for field in ("Machine", "ProgramName"))
+    for field, note, wrong, words in (
+        ("Machine", machine, "kuka-kr17", "is not known"), ("ProgramName", name, "my part!", "only the letters"),
+    ):
+        right = person.field(panel, field)
+        right = right.currentText() if field == "Machine" else right.text()
+        person.type(panel, field, wrong)
+        person.press("Ok")
+        assert note.isVisible() and words in note.text(), (field, note.text(), person.panel_error(panel))
+        assert not person.field(panel, "error").isVisible() and api.stages_of(hemisphere.Document) == []
+        person.screenshot(f"new_job_wrong_{field}")
+        person.type(panel, field, right)
+        assert not note.isVisible()  # it was about what is no more there
+    person.press("Ok")
+    person.panel_closed()
+    assert len(api.stages_of(hemisphere.Document)) == 5
+
+
+def test_a_wrong_name_of_a_program_is_told_under_its_field(person, hemisphere):
+    doc = hemisphere.Document
+    cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
+    api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+    for obj in (None, "made"):
+        if obj is None:
+            person.click("RoboticAM_Program")
+            panel = person.panel("RoboticAM_Program")
+        else:
+            api.make_program(doc, doc.JointPath, "RIGHT")
+            edit(doc.Program)
+            panel = person.panel("RoboticAM_Program")
+        person.type(panel, "ProgramName", "9 lives")
+        person.press("Ok")
+        note = person.field(panel, "ProgramNameNote")
+        assert note.isVisible() and "cannot be a program" in note.text(), person.panel_error(panel)
+        assert not person.field(panel, "error").isVisible()
+        person.type(panel, "ProgramName", "LIVES")
+        person.until(lambda note=note: not note.isVisible(), "the note to go", 5)
+        person.press("Cancel")
+        person.panel_closed()
 
 
 def test_the_result_is_seen_whole_and_the_next_step_is_told(person, hemisphere):

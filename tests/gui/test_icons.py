@@ -18,11 +18,13 @@ SAME = {"preferences-robotic_am", "workbench"}  # one for FreeCAD's preferences,
 
 
 def on(person, icon, ground):
-    """An icon in the smallest size on a ground, (16, 16, 3) 0..255."""
+    """An icon in the smallest size on a ground, (16, 16, 3) 0..255, drawn as FreeCAD does."""
+    from PySide import QtSvg
+
     image = person.widgets.QImage(SIZE, SIZE, person.widgets.QImage.Format_RGB32)
     image.fill(person.widgets.QColor(*ground))
     painter = person.widgets.QPainter(image)
-    painter.drawPixmap(0, 0, person.widgets.QIcon(str(icon)).pixmap(SIZE, SIZE))
+    QtSvg.QSvgRenderer(str(icon)).render(painter)
     painter.end()
     return np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(SIZE, SIZE, 4)[..., 2::-1].astype(float)
 
