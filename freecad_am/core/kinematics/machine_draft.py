@@ -36,8 +36,8 @@ class Draft:
     """What a machine file is made of.
 
     Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk` (axes,) rad and mm and per s,
-    infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None without.
-    `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm, with
+    infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
+    without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm, with
     flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
     """
 
@@ -108,7 +108,8 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
     return Draft(
         id=f"{machine.id}-copy", title=machine.title, chain=machine.chain, joints=names, lower=limits.lower[:count],
         upper=limits.upper[:count], max_speed=machine.max_speed, max_acceleration=machine.max_acceleration,
-        max_jerk=machine.max_jerk, base=machine.base, shown=shown, shapes=machine.shapes, sources=(f"copy of {machine.id}", *machine.sources),
+        max_jerk=machine.max_jerk, base=machine.base, shown=shown, shapes=machine.shapes,
+        sources=(f"copy of {machine.id}", *machine.sources),
         horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2]) if coupled else None,
         posts=machine.posts, values=machine.to_controller(q) / machine.unit_values, poses=poses,
     )
