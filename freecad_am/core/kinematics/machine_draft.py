@@ -37,8 +37,8 @@ class Draft:
 
     Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk` (axes,) rad and mm and per s,
     infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
-    without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm, with
-    flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
+    without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm,
+    with flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
     """
 
     id: str
