@@ -92,7 +92,8 @@ def test_without_a_selection_the_panel_says_what_to_do(person, hemisphere):
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_Feature")
     panel = person.panel("RoboticAM_RevolutionFeature")
-    assert "Select the shape" in person.panel_error(panel)
+    state = person.field(panel, "preview")
+    person.until(lambda: "Select the shape" in state.text(), "what to do", 5)
     person.press("Ok")
     assert "Source is missing" in person.panel_error(panel) and doc.UndoCount == 0
     person.select(hemisphere)

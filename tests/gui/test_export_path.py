@@ -74,7 +74,6 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
     assert not note.isVisible()  # what it was about is no more
     refused(person)
     assert note.isVisible() and "end the name" in note.text()
-    person.screenshot("export_error")
     person.choose(panel, "Kind", "CAM path in this document")
     assert not note.isVisible()
     person.press("Cancel")

@@ -118,7 +118,7 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     hand.do("key", "ctrl+shift+z")
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
     console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
-    call = console[console.index("am.make_developable_feature("):].split("\n>>>")[0].replace("\n", " ")
+    call = console[console.rindex("am.make_developable_feature("):].split("\n>>>")[0].replace("\n", " ")
     again = eval(call, {"App": App, "am": api})
     assert again.Key == key  # the recorded call makes the same
     document.removeObject(again.Name)
