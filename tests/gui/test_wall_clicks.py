@@ -61,6 +61,8 @@ def ok(person, hand, name="Ok"):
 def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     part, pipe = bend
     document, steps = part.Document, part.Document.UndoCount
+    console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console")
+    before = console.toPlainText().count("make_surface_feature")  # of tests before
     assert person.screen_pixels(ORANGE) == 0
     hand.click_face(part, "Face1")
     assert [(entry.Object, entry.SubElementNames) for entry in person.gui.Selection.getSelectionEx()] == [(part, ("Face1",))]
@@ -74,7 +76,7 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     hand.enter(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     person.screenshot("panel_wall_on_part")
-    said = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
+    said = console.toPlainText()
     ok(person, hand)
     assert previews(person) == 0
     feature = document.getObject("Feature")
@@ -87,11 +89,11 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     person.gui.getMainWindow().activateWindow()
     hand.do("key", "ctrl+z")
     assert set(document.Objects) == set(bend) and person.screen_pixels(ORANGE) == 0
-    console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
-    assert "make_surface_feature" not in said
+    console = console.toPlainText()
+    assert said.count("make_surface_feature") == before
     hand.do("key", "ctrl+shift+z")
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
-    call = console[console.index("am.make_surface_feature("):].split("\n>>>")[0].replace("\n", " ")
+    call = console[console.rindex("am.make_surface_feature("):].split("\n>>>")[0].replace("\n", " ")
     again = eval(call, {"App": App, "am": api})
     assert again.Key == key  # the recorded call makes the same
 
