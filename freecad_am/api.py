@@ -32,6 +32,7 @@ import FreeCAD as App
 from .core.issues import AmError, InputError, Issue
 from .core.kinematics import machine as machines
 from .core.kinematics.cell import ROTARY_TABLE
+from .core.kinematics.proposed_point import proposed
 from .core.parameters.build_direction import BuildDirectionParameters
 from .core.parameters.cell import CellParameters
 from .core.parameters.inspection import InspectionParameters
@@ -170,7 +171,8 @@ def make_all(
     kind: revolution, surface (a wall of the source's faces on the substrate) or developable (source and further solids on
     the substrate, on its base_faces). The program is for the machine's controller, in the words of `post` where it reads
     them; there is none when no post is known for it, or the joint path is infeasible. process: parameters of the toolpath
-    by key. `am.make_all(doc, doc.Revolve)`
+    by key. Another robot than the default one gets a deposition point and a branch that suit it. `am.make_all(doc,
+    doc.Revolve)`
     """
     chosen = _cell_of(machine)
     with _one_step(doc, "New job"):
@@ -195,10 +197,12 @@ def make_all(
 
 
 def _cell_of(machine: str) -> CellParameters:
-    """The parameters of a cell with a machine, '' for the default. InputError for an unknown one."""
+    """The parameters of a cell with a machine, '' for the default: where another robot than that would deposit is proposed.
+    InputError for an unknown one."""
     chosen = CellParameters(machine=machine) if machine else CellParameters()
-    is_table = machines.load(chosen.machine, user_machines.folders()).is_table
-    return dataclasses.replace(chosen, setup=ROTARY_TABLE) if is_table else chosen
+    if machines.load(chosen.machine, user_machines.folders()).is_table:
+        return dataclasses.replace(chosen, setup=ROTARY_TABLE)
+    return chosen if chosen == CellParameters() else proposed(chosen, user_machines.folders())
 
 
 def change(obj: Any, **values: Any) -> Any:

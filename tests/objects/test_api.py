@@ -245,3 +245,15 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
     own.write_text(own.read_text(encoding="utf-8").replace("(= M-20iA", "(ours, = M-20iA"), encoding="utf-8")
     api.recompute(doc)
     assert cell.Key != key and "ours" in cell.MachineTitle
+
+
+@pytest.mark.parametrize("machine", ["kuka-kr6-r900-2", "motoman-ma2010", "staubli-tx60"])
+def test_a_new_job_of_another_robot_can_be_carried_out(doc, machine):
+    """At the deposition point and in the branch of the default robot each of these is out of reach or past a limit."""
+    part = doc.addObject("Part::Sphere", "Dome")
+    part.Radius, part.Angle1 = 30, 0
+    doc.recompute()
+    cell, _, toolpath, joint_path = api.make_all(doc, part, machine=machine)[:4]
+    assert (joint_path.Status, cell.Machine) == ("up to date", machine)
+    like_default = api.make_cell(doc, machine=machine)
+    assert api.make_joint_path(doc, toolpath, like_default).Status == "infeasible"

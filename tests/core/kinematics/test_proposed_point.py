@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where a robot is told to deposit, it can: looked at by its chain, on other poses than were tried."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.kinematics import opw
+from freecad_am.core.kinematics.cell import resolve
+from freecad_am.core.kinematics.proposed_point import BALL, proposed
+from freecad_am.core.parameters.cell import CellParameters
+
+ROBOTS = [name for name, _ in machines.known() if machines.load(name).opw is not None]
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_robot_holds_a_dome_there_within_its_limits(name):
+    """Any point of the dome, leaning any way: some rotation suits, told by the chain's poses and the limits of the file."""
+    parameters = proposed(CellParameters(machine=name))
+    cell = resolve(parameters, np.eye(4))
+    random = np.random.default_rng(1)
+    tilt, round_about = np.radians(random.uniform(0, 85, 60)), random.uniform(-np.pi, np.pi, 60)
+    axes = np.column_stack([np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)])
+    phi = np.linspace(-np.pi, np.pi, 91)[:, None]
+    poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (91, 60))).reshape(-1, 4, 4)
+    joints = cell.machine.opw.inverse_branch(poses, cell.branch)
+    good = np.isfinite(joints).all(axis=1)
+    assert np.abs(cell.machine.chain.forward(joints[good]) - poses[good]).max() < 1e-6
+    within = (cell.limits.margin(joints)[:, :5] > 0.0).all(axis=1) & good
+    assert within.reshape(91, 60).any(axis=0).all()
+    assert parameters.branch == opw.branch_name(cell.branch)
+
+
+def test_what_is_no_robot_with_the_part_stays_as_it_is():
+    for parameters in (
+        CellParameters(machine="table-xyzac", setup="rotary-table"),
+        CellParameters(machine="kuka-kr16-2", setup="tool-on-robot"),
+    ):
+        assert proposed(parameters) == parameters
