@@ -31,7 +31,7 @@ PARTS = {  # pixels: the window without toolbars, the 3D view alone, above a doc
     "all": (0, 97, 1398, 870), "view": (334, 98, 1398, 845), "above": (334, 98, 1270, 605), "left": (334, 98, 1040, 640),
     "middle": (334, 220, 1040, 845),
 }
-HIGH = 240
+HIGH = 400
 COLOURS, EXACT = 256, 96  # of a picture: how many, and how many of them the most frequent as they are
 RECORDED = ("hemisphere", "tube-on-pipe")  # the documents that are kept
 
