@@ -109,6 +109,7 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
 def test_it_leaves_the_view_and_the_document_as_they_were(person, hemisphere):
     path = job(hemisphere)
     doc = hemisphere.Document
+    person.select(path)  # what is selected has a box about it in FreeCAD 1.1
     person.look()
     view = person.gui.activeDocument().activeView()
     graph = view.getSceneGraph()
