@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Paths layer by layer and point by point, as lines and as tubes, coloured by what the machine has left."""
+"""Paths layer by layer and point by point, as lines and as tubes, and clicks on them."""
 
 import dataclasses
 import gc
@@ -10,26 +10,10 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.kinematics import machine as machines
-from freecad_am.core.simulation.margins import margins, speed_ratios
 from freecad_am.core.toolpath import Layer
-from freecad_am.gui.colours import ramp
-from freecad_am.gui.path import clicks, colouring, dock, legend
+from freecad_am.gui.path import clicks, colouring, dock
 from freecad_am.gui.path.facts import facts
 from freecad_am.gui.path.rows import PIECE, Rows
-
-RED = tuple(round(255 * part) for part in colouring.UNREACHABLE)
-
-
-@pytest.fixture
-def joint_path(person, hemisphere):
-    document = hemisphere.Document
-    cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
-    made = api.make_joint_path(document, toolpath, cell)
-    cell.ViewObject.Visibility = document.Feature.ViewObject.Visibility = False
-    person.idle()
-    return made
 
 
 def drawn(person):
@@ -147,51 +131,6 @@ def test_tubes_are_as_wide_and_as_high_as_they_are(person, joint_path):
     assert drawn(person).sum() > 3 * lines.sum()
 
 
-def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_path):
-    document, vobj = joint_path.Document, joint_path.ViewObject
-    assert vobj.getEnumerationsOfProperty("Colouring") == list(colouring.JOINT_KINDS)
-    assert not document.Toolpath.ViewObject.Visibility  # it lies at the same place
-    planned = api.result(joint_path)
-    motion, machine = planned.motion, machines.load(document.Cell.Machine)
-    limits = machine.limits(planned.joint_path.limits)
-    share = np.nanmin(np.concatenate([
-        margins(motion.joints, limits.lower, limits.upper),
-        margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)], axis=1), axis=1)
-    scale = vobj.Proxy.scale
-    assert (scale.title, scale.unit) == ("joint margin", "%")
-    assert scale.least == pytest.approx(100 * share[motion.deposit].min())
-    assert scale.most == pytest.approx(100 * share[motion.deposit].max())
-    assert scale.told(7) == f"joint margin {100 * share[motion.deposit][7]:.3g} %"
-    vobj.Colouring = "joint speed"
-    ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
-    assert vobj.Proxy.scale.most == pytest.approx(100 * ratio[motion.deposit].max())
-    vobj.Colouring = "condition"
-    assert vobj.Proxy.scale.least == pytest.approx(joint_path.SmallestCondition)
-    for kind in colouring.JOINT_KINDS:
-        vobj.Colouring = kind
-        person.idle()
-        assert [one.title for one in legend.shown(document)] == [kind]
-        person.screenshot(f"joint_path_{kind.replace(' ', '_')}")
-
-
-def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
-    values = np.array([np.nan, -0.1, 0.0, 0.5, 1.0, 1.4])
-    colours, scale = colouring.by_machine(values, colouring.MARGIN)
-    assert (colours[0] == colouring.UNREACHABLE).all() and (colours[1] == colouring.TOO_NEAR).all()
-    assert scale.told(0) == "joint margin unreachable" and scale.told(3) == "joint margin 50 %"
-    assert scale.without == "unreachable" and scale.below == "beyond a limit" and not scale.above
-    colours, scale = colouring.by_machine(values, colouring.RATIO)
-    assert (colours[5] == colouring.TOO_FAR).all() and scale.above == "faster than it can" and not scale.below
-    assert np.array_equal(colours[[2, 3, 4]], ramp(np.array([0.1, 0.6, 1.1]) / 1.1))
-    # where nothing can be told, no number is: neither 0 nor a ramp
-    scale = colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1]
-    assert scale.classes == (("unreachable", colouring.UNREACHABLE),) and scale.ticks == ()
-    assert scale.told(1) == "condition unreachable"
-    scale = colouring.by_machine(np.array([np.nan, -0.2]), colouring.MARGIN)[1]
-    assert scale.classes == (("beyond a limit", colouring.TOO_NEAR), ("unreachable", colouring.UNREACHABLE))
-    assert scale.ticks == () and scale.told(1) == "joint margin -20 %"
-
-
 def test_each_kind_of_bead_is_told(person, joint_path):
     bead = joint_path.ViewObject.Proxy.rows.beads[0]
     kinds = ("", "contour", "zigzag", "line", "spiral", "centre", "closing")
@@ -208,32 +147,6 @@ def test_of_several_beads_the_point_is_told_as_the_dock_counts(person, joint_pat
     told = facts(rows, first + 3)
     assert "bead 1 (0 to 1), closed" in told
     assert f"point {first + 3} (0 to {first + second - 1}) of the layer, of the bead point 3 (0 to {second - 1}) at" in told
-
-
-def test_unreachable_points_are_red(person, hemisphere):
-    document = hemisphere.Document
-    cell = api.make_cell(document, limits="paper")
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
-    joint_path = api.make_joint_path(document, toolpath, cell, method="constant")
-    assert joint_path.Status == "infeasible"
-    person.look()
-    assert person.screen_pixels(RED, 12) > 20
-    joint_path.ViewObject.Proxy.show((0, 0, None))
-    person.idle()
-
-
-@pytest.mark.parametrize("kind", [colouring.MARGIN, colouring.RATIO, colouring.CONDITION])
-def test_the_legend_of_what_is_out_of_reach_altogether_says_so(person, hemisphere, kind):
-    document = hemisphere.Document
-    cell = api.make_cell(document, limits="paper", deposition_point=(9000, 0, 0, 0, 0, 0))
-    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=9), cell)
-    path = api.make_joint_path(document, toolpath, cell)
-    path.ViewObject.Colouring = kind
-    person.idle(0.3)
-    scale, = legend.shown(document)
-    assert scale.title == kind and scale.ticks == () and scale.classes == (("unreachable", colouring.UNREACHABLE),)
-    person.screenshot(f"legend_unreachable_{kind.replace(' ', '_')}")
-    assert person.screen_pixels(RED, 4) > 100  # its mark in the legend
 
 
 def test_directions_and_rapids_are_of_what_is_shown(person, joint_path):
