@@ -21,7 +21,6 @@ step of undo. Errors are `core.issues.InputError` and `InfeasibleError`; a funct
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,8 +30,7 @@ import FreeCAD as App
 
 from .core.issues import AmError, InputError, Issue
 from .core.kinematics import machine as machines
-from .core.kinematics.cell import ROTARY_TABLE
-from .core.kinematics.proposed_point import proposed
+from .core.kinematics.proposed_cell import cell_of
 from .core.parameters.build_direction import BuildDirectionParameters
 from .core.parameters.cell import CellParameters
 from .core.parameters.inspection import InspectionParameters
@@ -171,10 +169,9 @@ def make_all(
     kind: revolution, surface (a wall of the source's faces on the substrate) or developable (source and further solids on
     the substrate, on its base_faces). The program is for the machine's controller, in the words of `post` where it reads
     them; there is none when no post is known for it, or the joint path is infeasible. process: parameters of the toolpath
-    by key. Another robot than the default one gets a deposition point and a branch that suit it. `am.make_all(doc,
-    doc.Revolve)`
+    by key. A robot other than the default one gets a deposition point and a branch that suit it. `am.make_all(doc, doc.Pot)`
     """
-    chosen = _cell_of(machine)
+    chosen = cell_of(machine, user_machines.folders())
     with _one_step(doc, "New job"):
         made = [make_cell(doc, parameters=chosen)]
         if kind == "surface":
@@ -194,15 +191,6 @@ def make_all(
             made.append(make_program(doc, made[3], name=name or proposed_name(source.Label), post=post))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
-
-
-def _cell_of(machine: str) -> CellParameters:
-    """The parameters of a cell with a machine, '' for the default: where another robot than that would deposit is proposed.
-    InputError for an unknown one."""
-    chosen = CellParameters(machine=machine) if machine else CellParameters()
-    if machines.load(chosen.machine, user_machines.folders()).is_table:
-        return dataclasses.replace(chosen, setup=ROTARY_TABLE)
-    return chosen if chosen == CellParameters() else proposed(chosen, user_machines.folders())
 
 
 def change(obj: Any, **values: Any) -> Any:

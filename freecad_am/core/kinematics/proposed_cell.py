@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the deposition point of a robot that carries the part may well be, and the branch to work in.
+"""The cell that a machine is given until somebody says what it really has.
 
-Points before the robot are tried on a grid in the plane of its arm. At each the robot holds a ball of deposit from upright
-to lying, turned about the tool axis however suits it; what counts is the worst of these poses: how near an axis comes to a
-limit, the wrist to being stretched and the arm to its reach. Axis 6 is left out: it turns the part, so where on the ball
-one looks decides it.
+Of a robot that carries the part: where the deposition point may well be, and the branch to work in. Points before the
+robot are tried on a grid in the plane of its arm. At each the robot holds a ball of deposit from upright to lying, turned
+about the tool axis however suits it; what counts is the worst of these poses: how near an axis comes to a limit, the
+wrist to being stretched and the arm to its reach. Axis 6 is left out: it turns the part, so where on the ball one looks
+decides it.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from ..parameters.cell import CellParameters, Pose
 from . import machine as machines
 from . import opw
-from .cell import PART_ON_ROBOT, resolve
+from .cell import PART_ON_ROBOT, ROTARY_TABLE, resolve
 from .machine import Machine
 
 Array = NDArray[np.float64]
@@ -28,6 +29,16 @@ BALL = 50.0  # mm, radius of the deposit held
 TURNS = 36  # rotations about the tool axis that are tried
 AHEAD = np.linspace(0.4, 0.85, 8)  # of the reach, from axis 2 on
 ABOVE = np.linspace(-0.5, 0.7, 9)
+
+
+def cell_of(machine: str, folders: Sequence[str] = ()) -> CellParameters:
+    """The parameters of a cell with a machine, '' for the default one, whose cell is that of the papers. InputError for an
+    unknown one."""
+    default = CellParameters()
+    chosen = replace(default, machine=machine or default.machine)
+    if machines.load(chosen.machine, tuple(folders)).is_table:
+        return replace(chosen, setup=ROTARY_TABLE)
+    return default if chosen == default else proposed(chosen, folders)
 
 
 def proposed(parameters: CellParameters, folders: Sequence[str] = ()) -> CellParameters:

@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import resolve
-from freecad_am.core.kinematics.proposed_point import BALL, proposed
+from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed
 from freecad_am.core.parameters.cell import CellParameters
 
 ROBOTS = [name for name, _ in machines.known() if machines.load(name).opw is not None]
@@ -17,6 +17,7 @@ ROBOTS = [name for name, _ in machines.known() if machines.load(name).opw is not
 def test_every_robot_holds_a_dome_there_within_its_limits(name):
     """Any point of the dome, leaning any way: some rotation suits, told by the chain's poses and the limits of the file."""
     parameters = proposed(CellParameters(machine=name))
+    assert cell_of(name) == (CellParameters() if name == CellParameters().machine else parameters)
     cell = resolve(parameters, np.eye(4))
     random = np.random.default_rng(1)
     tilt, round_about = np.radians(random.uniform(0, 85, 60)), random.uniform(-np.pi, np.pi, 60)
@@ -37,3 +38,8 @@ def test_what_is_no_robot_with_the_part_stays_as_it_is():
         CellParameters(machine="kuka-kr16-2", setup="tool-on-robot"),
     ):
         assert proposed(parameters) == parameters
+
+
+def test_machines_with_rotary_axes_get_their_set_up_and_none_given_is_the_default():
+    assert cell_of("table-xyzac") == CellParameters(machine="table-xyzac", setup="rotary-table")
+    assert cell_of("") == CellParameters()
