@@ -82,6 +82,24 @@ def test_every_picture_is_seen(person, planned, panel):
         np.testing.assert_allclose(drawn, motion.joints[:, axis], atol=1e-12)
 
 
+def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(person, planned, panel):
+    first, last = person.field(panel, "from"), person.field(panel, "to")
+    last.setValue(1)
+    first.setValue(1)
+    seen(person)
+    names = planned.Document.Name, planned.Name
+    App.closeDocument(planned.Document.Name)
+    document = App.newDocument(names[0])
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1 = 45, 0
+    document.recompute()
+    other = api.make_all(document, part)[3]
+    assert (other.Document.Name, other.Name) == names
+    docks.show(other)
+    seen(person)
+    assert (first.value(), last.value()) == (0, other.Toolpath.Layers - 1)
+
+
 def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     dock = take(person, panel, "angles")
     canvas = dock.canvas

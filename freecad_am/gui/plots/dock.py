@@ -38,7 +38,8 @@ class PlotsDock(Follower):
         self.target: tuple[str, str] | None = None  # names of document and object
         self.source: tuple[Any, Source] | None = None  # its key, and what was made from it
         self.picture: Picture | None = None
-        self.shown: tuple[Any, ...] = ()  # target, picture and axis that are looked at
+        self.shown: tuple[Any, ...] = ()  # object, picture and axis that are looked at
+        self.layers_of: tuple[str, str] | None = None  # whose layers are chosen: names are those of other documents too
         self.dock = docks.dock(NAME, docks.BELOW)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
@@ -215,15 +216,16 @@ class PlotsDock(Follower):
             source = known or make()
             return source, catalogue.picture(name, source, over, layers)
 
-        shown = (obj.Document.Name, obj.Name, name, over, layers)  # told now: the object may be gone then
+        shown = (*_identity(obj), name, over, layers)  # told now: the object may be gone then
         self.building.start(work, lambda worker: self._built(worker, key, shown))
 
     def _layers(self, obj: Any) -> None:
         """The layers there are to choose from; all of them of another object."""
         toolpath = made_from(obj)[min(1, len(made_from(obj)) - 1)]
         most = max(len(toolpath.Proxy.value(toolpath).layers) - 1, 0)
-        anew = self.shown[:2] != self.target or self.last.value() == self.last.maximum()
-        for spin, value in ((self.first, 0 if self.shown[:2] != self.target else self.first.value()),
+        other, self.layers_of = self.layers_of != _identity(obj), _identity(obj)
+        anew = other or self.last.value() == self.last.maximum()
+        for spin, value in ((self.first, 0 if other else self.first.value()),
                             (self.last, most if anew else self.last.value())):
             blocked = spin.blockSignals(True)
             spin.setRange(0, most)
@@ -276,6 +278,10 @@ class PlotsDock(Follower):
         """A property of an object has changed."""
         if name in CHANGES and self.dock.isVisible() and kind_of(obj) in KINDS:
             self.changed.ask()
+
+
+def _identity(obj: Any) -> tuple[str, str]:
+    return str(obj.Document.Uid), str(obj.Name)
 
 
 def _plottable() -> list[Any]:
