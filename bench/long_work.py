@@ -7,7 +7,6 @@ Peer: what is allowed. Jobs are those of the tests (tests/gui/long_jobs.py), whi
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 import in_window
@@ -23,14 +22,9 @@ ALLOWED = (  # key, what it is, s
 
 def run() -> list[Row]:
     """A row for each thing that is allowed so long, of every kind of work."""
-    freecad = in_window.freecad()
-    if freecad is None:
-        return []
-    with tempfile.TemporaryDirectory() as folder:
-        measured = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST)
     return [
         Row(f"{what}, {one['job']}; what is allowed", one[key], most, "s", 1.0)
-        for one in measured
+        for one in in_window.found_by(SCRIPT, LONGEST)
         for key, what, most in ALLOWED
         if key in one
     ]

@@ -7,7 +7,6 @@ scene at rest, drawn again. Means over frames in the same window, one kind after
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 import in_window
@@ -21,13 +20,8 @@ REQUIRED = 0.4
 
 def run() -> list[Row]:
     """A comparison for every number of points."""
-    freecad = in_window.freecad()
-    if freecad is None:
-        return []
-    with tempfile.TemporaryDirectory() as folder:
-        measured = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST)
     return [
         Row(f"frame of a simulation, {one['points']:,} points (longest {one['longest']:.1f}); the scene drawn again",
             one["ours"], one["peer"], "ms", REQUIRED)
-        for one in measured
+        for one in in_window.found_by(SCRIPT, LONGEST)
     ]
