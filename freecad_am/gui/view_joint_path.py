@@ -10,8 +10,9 @@ import numpy as np
 
 from ..core.issues import ERROR, InputError
 from ..core.kinematics import machine as machines
+from ..core.kinematics.limits import margins
 from ..core.parameters.strategy import RevolutionParameters
-from ..core.simulation.margins import from_next, margins, speed_ratios
+from ..core.simulation.margins import from_next, speed_ratios
 from ..objects import user_machines
 from ..objects.findings import issues_of
 from .lines import DASHED, Array, Lines, Points

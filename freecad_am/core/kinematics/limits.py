@@ -73,3 +73,19 @@ class Limits:
         """Which limits (..., axes + m) the joint vectors (..., axes) exceed by more than `tolerance`, rad."""
         result: NDArray[np.bool_] = self.margin(q) < -tolerance
         return result
+
+
+def margins(joints: Array, lower: Array, upper: Array) -> Array:
+    """(..., a) share of half the range that is left to the nearer limit: 1 in the middle, 0 at a limit, less beyond it.
+
+    joints: (..., a) rad or mm; the share is NaN where these are. lower, upper: (a,), infinite where an axis is endless;
+    there the share is 1.
+    """
+    share = np.empty_like(joints)
+    for axis, (low, high) in enumerate(zip(lower, upper, strict=True)):  # what is as large as the joints takes long to get
+        column, half = joints[..., axis], 0.5 * (high - low)
+        if np.isfinite(half):
+            share[..., axis] = np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0)
+        else:
+            share[..., axis] = np.where(np.isfinite(column), 1.0, np.minimum(column, -column))
+    return share

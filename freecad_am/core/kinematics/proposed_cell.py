@@ -16,10 +16,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry import frames
 from ..parameters.cell import CellParameters, Pose
 from . import machine as machines
 from . import opw
 from .cell import PART_ON_ROBOT, ROTARY_TABLE, resolve
+from .limits import margins
 from .machine import Machine
 
 Array = NDArray[np.float64]
@@ -51,13 +53,14 @@ def proposed(parameters: CellParameters, folders: Sequence[str] = ()) -> CellPar
     reach = arm.c2 + arm.forearm
     axes = np.column_stack([np.sin(TILTS), np.zeros(len(TILTS)), np.cos(TILTS)])
     phi = np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None]
+    cell = resolve(parameters, np.eye(4), folders=folders)
     best: tuple[float, Pose, int] | None = None
     for ahead in AHEAD:
         for above in ABOVE:
             x, z = np.round([arm.a1 + ahead * reach, arm.c1 + above * reach])
             point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
-            cell = resolve(replace(parameters, deposition_point=point), np.eye(4), folders=folders)
-            poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (TURNS, len(TILTS))))
+            there = replace(cell, station=machine.base @ frames.bryant(point))
+            poses = there.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (TURNS, len(TILTS))))
             joints = arm.inverse(poses.reshape(-1, 4, 4)).reshape(8, TURNS, len(TILTS), 6)
             worst = _room(machine, cell.limits.lower, cell.limits.upper, joints).max(axis=1).min(axis=1)
             branch = int(np.argmax(worst))
@@ -73,10 +76,7 @@ def _room(machine: Machine, lower: Array, upper: Array, joints: Array) -> Array:
     and where the robot does not reach."""
     arm = machine.opw
     assert arm is not None
-    first = joints[..., :5]
-    half = 0.5 * (upper[:5] - lower[:5])
-    with np.errstate(invalid="ignore"):
-        left = np.where(np.isfinite(half), np.minimum(first - lower[:5], upper[:5] - first) / half, 1.0).min(axis=-1)
+    left = margins(joints[..., :5], lower[:5], upper[:5]).min(axis=-1)
     turned = joints * np.array(arm.signs, float) - np.array(arm.offsets)
     stretched = np.minimum(np.abs(np.sin(turned[..., 4])), np.abs(np.sin(turned[..., 2] + np.arctan2(arm.a2, arm.c3))))
     room: Array = np.nan_to_num(np.minimum(left, stretched), nan=-1.0)

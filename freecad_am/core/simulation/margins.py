@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How near each row of a motion is to what the machine cannot do: limits, joint speeds, singularities.
+"""How near each row of a motion is to what the machine cannot do; for its limits see `kinematics.limits`.
 
 Rows with unreachable points have NaN joints, and NaN here too.
 """
@@ -10,21 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
-def margins(joints: Array, lower: Array, upper: Array) -> Array:
-    """(n, a) share of half the range that is left to the nearer limit: 1 in the middle, 0 at a limit, less beyond it.
-
-    joints: (n, a) rad or mm. lower, upper: (a,), infinite where an axis is endless; there the share is 1.
-    """
-    share = np.empty_like(joints)
-    for axis, (low, high) in enumerate(zip(lower, upper, strict=True)):  # what is as large as the joints takes long to get
-        column, half = joints[:, axis], 0.5 * (high - low)
-        if np.isfinite(half):
-            share[:, axis] = np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0)
-        else:
-            share[:, axis] = np.where(np.isfinite(column), 1.0, np.minimum(column, -column))
-    return share
 
 
 def speed_ratios(joints: Array, duration: Array, most: Array) -> Array:

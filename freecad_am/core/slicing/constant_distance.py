@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..geometry.surface import Surface
 from ..issues import InputError
-from ..parameters.strategy import MOST_LAYERS
+from .backstop import refuse_endless
 from .offset import Offset, Places
 from .refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer
@@ -62,10 +62,7 @@ def layers(
     grid = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
     done = [first]
     while done[-1].u.min() < u_end:
-        if len(done) >= MOST_LAYERS:
-            raise InputError(
-                "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
-            )
+        refuse_endless(len(done), height, label)
         done.append(next_layer(surface, done[-1], height, grid, label))
     return done
 

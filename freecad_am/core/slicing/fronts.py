@@ -25,8 +25,7 @@ from ..geometry.mesh import Mesh, thinned
 from ..geometry.patch_wall import FirstCurve, Rim
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
-from ..issues import InputError
-from ..parameters.strategy import MOST_LAYERS
+from .backstop import refuse_endless
 from .banded import HEAVY
 from .closing import closing
 from .front_curve import exact, feet
@@ -184,10 +183,7 @@ def layers(
             closed.append(gaps)
         if not state.fronts:
             break
-        if len(done) >= MOST_LAYERS:
-            raise InputError(
-                "LAYER_HEIGHT", wall.label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
-            )
+        refuse_endless(len(done), height, wall.label)
         done.append(state.fronts)
     return Sliced(done, closed)
 

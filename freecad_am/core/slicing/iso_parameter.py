@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..geometry.surface import Surface, dot
 from ..issues import InputError
-from ..parameters.strategy import MOST_LAYERS
+from .backstop import refuse_endless
 from .refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer
 
@@ -41,10 +41,7 @@ def layers(
     """All layers from the first to the first one wholly past u_end."""
     done = [first]
     while done[-1].u.min() < u_end:
-        if len(done) >= MOST_LAYERS:
-            raise InputError(
-                "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
-            )
+        refuse_endless(len(done), height, label)
         done.append(next_layer(surface, done[-1], height, label))
     return done
 

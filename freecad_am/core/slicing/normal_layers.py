@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from ..geometry.surface import Surface, dot
 from ..issues import InputError
-from ..parameters.strategy import MOST_LAYERS
+from .backstop import refuse_endless
 from .wall_layer import WallLayer
 
 Array = NDArray[np.float64]
@@ -65,10 +65,7 @@ def layers(
     v = first.v[0] + (first.v[-1] - first.v[0]) * np.linspace(0.0, 1.0, points + 1)
     done: list[WallLayer] = []
     while not done or done[-1].u.min() < u_end:
-        if len(done) >= MOST_LAYERS:
-            raise InputError(
-                "LAYER_HEIGHT", label, f"more than {MOST_LAYERS} layers of {height:g} mm: use a larger layer height"
-            )
+        refuse_endless(len(done), height, label)
         along = len(done) * height
         if along > place.x[-1]:
             break

@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from freecad_am.core.simulation.margins import from_next, margins, on_deposit, speed_ratios
+from freecad_am.core.kinematics.limits import margins
+from freecad_am.core.simulation.margins import from_next, on_deposit, speed_ratios
 
 LOWER, UPPER = np.array([-2.0, -np.inf, 0.5, -1.0]), np.array([2.0, np.inf, 1.5, 3.0])
 
