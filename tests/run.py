@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 GUI = ROOT / "tests" / "gui"
-GUI_TIMEOUT = "1800"
+WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
 # what depends on FreeCAD's version, and takes a bearable time twice; of the window what users do, and what may crash it
 OF_VERSION = (
     "tests/objects", "tests/brep", "tests/kdl", "tests/posts", "tests/interop", "tests/batch", "tests/test_package.py",
@@ -29,6 +29,7 @@ OF_VERSION = (
 # foreign interpreters read the texts of programs, which the golden files hold equal in all versions
 NOT_OF_VERSION = "tests/posts/test_interpreters.py"
 FAILED, NO_TESTS, UNABLE = 1, 5, 77  # statuses of pytest, and of tests/versions/run.sh
+TOO_LONG = 124  # of timeout
 FEW = 8  # tests of the window that are run again when they failed
 SCREEN = "-screen 0 1400x900x24 -dpi 96 -nolisten tcp"
 PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
@@ -144,12 +145,17 @@ def in_window(freecad: str, arguments: list[str]) -> tuple[int, str, list[str]]:
     """Status, output, and the tests that failed."""
     with tempfile.TemporaryDirectory() as folder:
         env = private_home(Path(folder))
-        noted = Path(folder) / "failed"
-        env["PYTEST_ARGUMENTS"], env["FAILED_TESTS"] = shlex.join(arguments), str(noted)
+        noted, last = Path(folder) / "failed", Path(folder) / "last"
+        env["PYTEST_ARGUMENTS"] = shlex.join(arguments)
+        env["FAILED_TESTS"], env["LAST_TEST"] = str(noted), str(last)
         env.pop("VIRTUAL_ENV", None)
-        window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", GUI_TIMEOUT]
+        window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", str(WINDOW_TIMEOUT)]
         status, text = watched([*window, freecad, str(ROOT / "tests" / "gui_runner.py")], env)
         failures = noted.read_text(encoding="utf-8").splitlines() if noted.exists() else []
+        if status and not any(counts(text).values()):
+            at = last.read_text(encoding="utf-8") if last.exists() else "the beginning"
+            why = f"was stopped after {WINDOW_TIMEOUT} s" if status == TOO_LONG else f"ended with status {status}"
+            print(f"\nfreecad-am: FreeCAD {why} at {at}", flush=True)
         return status, text, list(dict.fromkeys(failures))
 
 

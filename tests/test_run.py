@@ -2,6 +2,7 @@
 """The runner itself: what it makes of tests of the window that fail, and of a FreeCAD that crashes."""
 
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -53,3 +54,23 @@ def test_options_of_pytest_are_its_own(windows):
     waiting, asked = windows
     waiting.append((1, ENDED.format(1, 3), ["a"]))
     assert run.run_window_tests(["-x", "tests/gui"])[0] == 1 and len(asked) == 1
+
+
+@pytest.mark.parametrize(
+    ("status", "text", "told"),
+    [
+        (1, CRASHED, "FreeCAD ended with status 1 at tests/gui/test_a.py::test_b"),
+        (run.TOO_LONG, "...", f"FreeCAD was stopped after {run.WINDOW_TIMEOUT} s at tests/gui/test_a.py::test_b"),
+        (1, ENDED.format(2, 5), ""),
+        (0, "7 passed in 9.00s", ""),
+    ],
+    ids=["crash", "too long", "failed", "sound"],
+)
+def test_an_end_without_a_summary_is_told_with_the_test_at_hand(monkeypatch, capsys, status, text, told):
+    def watched(command, env):
+        Path(env["LAST_TEST"]).write_text("tests/gui/test_a.py::test_b", encoding="utf-8")
+        return status, text
+
+    monkeypatch.setattr(run, "watched", watched)
+    assert run.in_window("freecad", ["tests/gui"]) == (status, text, [])
+    assert capsys.readouterr().out.strip().removeprefix("freecad-am: ") == told
