@@ -21,7 +21,7 @@ from freecad_am import api
 ROOT = Path(__file__).resolve().parents[3]
 PAGES = ROOT / "docs" / "tutorials"
 DIALOG = 30  # s until a dialog has come and gone
-AGAIN = 3  # s after Enter until a path is typed into a dialog once more
+AGAIN = 3  # s without effect until a path is typed into a dialog once more
 NOISY = ("Report view", "Python console", "Selection view")
 SIDES = ("Combo View", "Model", "Tasks", "Tree view", "Property view")
 TREES = ("Combo View", "Model", "Tree view")
@@ -110,7 +110,11 @@ class Lesson:
     def in_file_dialog(self, path, trigger):
         """Do what brings up FreeCAD's dialog for files, type a path there and press Enter."""
         core, widgets, watch = self.person.core, self.person.widgets, self.person.watch
-        state = {"typing": None, "entered": None, "asked": False}
+        state = {"typing": None, "since": time.monotonic(), "entered": False, "asked": False}
+        end = time.monotonic() + 2 * DIALOG
+
+        def now(**changed):
+            state.update(changed, since=time.monotonic())
 
         def look():
             dialog = widgets.QApplication.activeModalWidget()
@@ -121,17 +125,22 @@ class Lesson:
                 subprocess.Popen(["xdotool", "mousemove", str(middle.x()), str(middle.y()), "click", "1"])
             if not isinstance(dialog, widgets.QFileDialog):
                 return
-            if state["entered"] is not None:  # where the machine is busy, the list of proposals may have taken Enter
-                if time.monotonic() > state["entered"] + AGAIN:
-                    state.update(typing=None, entered=None)
+            if time.monotonic() > end:  # nobody but this timer runs while the dialog is open
+                state["entered"] = False
+                dialog.reject()
                 return
             line = dialog.findChild(widgets.QLineEdit, "fileNameEdit")
-            if state["typing"] is None and line.hasFocus():
-                state["typing"] = subprocess.Popen(
-                    ["xdotool", "key", "ctrl+a", "type", "--delay", "5", str(path)])
-            elif state["typing"] is not None and state["typing"].poll() is not None and line.text() == str(path):
-                state["entered"] = time.monotonic()
+            waited = time.monotonic() - state["since"]
+            if state["typing"] is None:
+                if line.hasFocus():
+                    now(typing=subprocess.Popen(["xdotool", "key", "ctrl+a", "type", "--delay", "5", str(path)]))
+            elif state["typing"].poll() is None:
+                now()
+            elif line.text() == str(path) and not state["entered"]:
+                now(entered=True)
                 subprocess.Popen(["xdotool", "key", "Return"])
+            elif waited > AGAIN:  # where the machine is busy, the list of proposals may have taken letters, or Enter
+                now(typing=None, entered=False)
 
         timer = core.QTimer()
         timer.timeout.connect(look)
@@ -139,7 +148,7 @@ class Lesson:
         timer.start(100)
         try:
             trigger()
-            self.person.until(lambda: state["entered"] is not None, "the file dialog", DIALOG)
+            self.person.until(lambda: state["entered"], "the file dialog", DIALOG)
             self.person.until(lambda: widgets.QApplication.activeModalWidget() is None, "the file dialog to close", DIALOG)
         finally:
             timer.stop()
