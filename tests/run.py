@@ -30,6 +30,7 @@ OF_VERSION = (
 NOT_OF_VERSION = "tests/posts/test_interpreters.py"
 FAILED, NO_TESTS, UNABLE = 1, 5, 77  # statuses of pytest, and of tests/versions/run.sh
 TOO_LONG = 124  # of timeout
+SIGNS = {".": "passed", "F": "failed", "E": "failed", "s": "skipped"}  # of pytest, one per test
 FEW = 8  # tests of the window that are run again when they failed
 SCREEN = "-screen 0 1400x900x24 -dpi 96 -nolisten tcp"
 PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
@@ -76,9 +77,15 @@ def watched(command: list[str], env: dict[str, str]) -> tuple[int, str]:
 
 
 def counts(text: str) -> dict[str, int]:
-    """Passed, failed and skipped of the last summary line, of pytest or of this runner."""
+    """Passed, failed and skipped of the last summary line, of pytest or of this runner; where pytest was asked to leave that
+    away (-q), of the signs it wrote, if they are all there."""
     found = {"passed": 0, "failed": 0, "skipped": 0}
     summaries = re.findall(r"^total: .*|^.*\d+ (?:passed|failed|error|skipped).* in [\d.]+s.*", text, re.MULTILINE)
+    signs = re.findall(r"^([.FEsxX]+) +\[ *(\d+)%\]$", text, re.MULTILINE)
+    if not summaries and signs and signs[-1][1] == "100":
+        written = "".join(line for line, _ in signs)
+        for sign, word in SIGNS.items():
+            found[word] += written.count(sign)
     for number, word in re.findall(r"(\d+) (passed|failed|errors?|skipped)", summaries[-1] if summaries else ""):
         found["failed" if word.startswith("error") else word] += int(number)
     return found

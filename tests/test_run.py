@@ -49,6 +49,24 @@ def test_few_that_failed_are_run_once_more(windows, first, second, status, faile
     assert asked == [["tests/gui"], *([first[2]] if second is not None else [])]
 
 
+QUIET = "..s..F.. [ 50%]\n....s... [100%]\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "counted"),
+    [
+        (QUIET, (13, 1, 2)),
+        (QUIET + "=== FAILURES ===\nE   assert 1 == 2\n", (13, 1, 2)),
+        (QUIET + "3 passed, 1 skipped in 2.00s\n", (3, 0, 1)),
+        (QUIET.splitlines()[0] + "\n" + CRASHED, (0, 0, 0)),
+    ],
+    ids=["quiet", "quiet with a failure", "with a summary", "crashed on the way"],
+)
+def test_tests_are_counted_without_a_summary_too(text, counted):
+    """`-q` beside the one of the settings takes pytest's last line away."""
+    assert tuple(run.counts(text).values()) == counted
+
+
 def test_options_of_pytest_are_its_own(windows):
     """With -x the first run is no whole one."""
     waiting, asked = windows
