@@ -148,13 +148,15 @@ class Person:
 
     def will_answer(self, standard_button):
         """Answer the question that the next step brings up; returns a list that then holds the question."""
-        asked = []
+        asked, end = [], time.monotonic() + PATIENCE
 
         def answer():
             dialog = self.widgets.QApplication.activeModalWidget()
             if isinstance(dialog, self.widgets.QMessageBox):
                 asked.append(dialog.text())
                 dialog.button(getattr(self.widgets.QMessageBox, standard_button)).click()
+            elif time.monotonic() < end:  # a busy machine takes its time to ask
+                self.core.QTimer.singleShot(100, answer)
 
         self.core.QTimer.singleShot(500, answer)
         return asked

@@ -72,6 +72,21 @@ class Hand:
         self.do("type", "--delay", "20", text)
         self.do("key", "Tab")
 
+    def undo(self):
+        self._when_able("Std_Undo")
+        self.do("key", "ctrl+z")
+
+    def redo(self):
+        self._when_able("Std_Redo")
+        self.do("key", "ctrl+shift+z")
+
+    def _when_able(self, command):
+        """Wait until a tool is lit: FreeCAD looks at them when it has nothing else to do, and takes no keys for others."""
+        bars = self.person.window.findChildren(self.person.widgets.QToolBar)
+        tools = [tool for bar in bars for tool in bar.actions() if command in (tool.objectName(), tool.data())]
+        assert tools, f"no toolbar has {command}"
+        self.person.until(tools[0].isEnabled, f"{command} to be enabled", 5)
+
     def in_tree(self, label):
         """The place of an object of the tree on the screen, brought into sight."""
         def there():

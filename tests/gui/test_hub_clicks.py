@@ -113,9 +113,9 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     assert feature.BaseFaces == (hub, [cone(hub)]) and isinstance(feature.ViewObject.Proxy, HubView)
     key = feature.Key
 
-    hand.do("key", "ctrl+z")
+    hand.undo()
     assert set(document.Objects) == set(blades) and person.screen_pixels(ORANGE) == 0
-    hand.do("key", "ctrl+shift+z")
+    hand.redo()
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
     console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console").toPlainText()
     call = console[console.rindex("am.make_developable_feature("):].split("\n>>>")[0].replace("\n", " ")

@@ -62,13 +62,13 @@ def test_undo_and_redo_of_all_stages_under_open_docks(person, hand, watched):
     steps = watched.UndoCount
     for _ in range(steps):
         focus(person, hand)
-        hand.do("key", "ctrl+z")
+        hand.undo()
         person.idle(0.3)
     assert api.stages_of(watched) == []
     person.idle(0.5)
     for _ in range(steps):
         focus(person, hand)
-        hand.do("key", "ctrl+shift+z")
+        hand.redo()
         person.idle(0.3)
     assert [obj.Name for obj in api.stages_of(watched)] == names
     watched.recompute()

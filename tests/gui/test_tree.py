@@ -52,17 +52,17 @@ def state(doc):
     return {obj.Name: (obj.Key, obj.Status, obj.Message) for obj in api.stages_of(doc)}
 
 
-def yes_by_mouse(person):
-    """Click Yes in the question that the next step brings up; a list that then holds its texts."""
+def click_soon(person, button_of):
+    """Click a button of the dialog that the next step brings up; a list of the timer that does it, then of the texts."""
     asked = []
 
     def look():
         box = person.widgets.QApplication.activeModalWidget()
-        if not isinstance(box, person.widgets.QMessageBox):
+        if not isinstance(box, person.widgets.QDialog):
             return
         timer.stop()
-        asked.append(" ".join([box.text(), box.informativeText(), box.detailedText()]))
-        button = box.button(person.widgets.QMessageBox.Yes)
+        asked.append(" ".join(str(getattr(box, name, str)()) for name in ("text", "informativeText", "detailedText")))
+        button = button_of(box)
         place = button.mapToGlobal(button.rect().center())
         subprocess.Popen(["xdotool", "mousemove", str(place.x()), str(place.y()), "click", "1"])
 
@@ -72,6 +72,11 @@ def yes_by_mouse(person):
     timer.start()
     asked.append(timer)
     return asked
+
+
+def yes_by_mouse(person):
+    """Click Yes in the question that the next step brings up."""
+    return click_soon(person, lambda box: box.button(person.widgets.QMessageBox.Yes))
 
 
 def delete(person, hand, label):
@@ -144,14 +149,14 @@ def test_the_part_of_a_job_is_deleted_and_brought_back_by_keys(person, hand, job
     job.recompute()
     assert statuses(job) == ["up to date", *["failed"] * 4]
     hand.click_tree("Feature")
-    hand.do("key", "ctrl+z")
+    hand.undo()
     person.until(lambda: job.getObject("Sphere") is not None, "the part to come back", 5)
     job.recompute()
     assert state(job) == before and job.Feature.Source[0] == job.Sphere
-    hand.do("key", "ctrl+shift+z")
+    hand.redo()
     person.until(lambda: job.getObject("Sphere") is None, "the part to go again", 5)
     assert job.Feature.Status == "failed"
-    hand.do("key", "ctrl+z")
+    hand.undo()
     person.until(lambda: job.getObject("Sphere") is not None, "the part to come back again", 5)
     job.recompute()
     assert state(job) == before
@@ -169,7 +174,7 @@ def test_a_stage_is_deleted_and_brought_back_by_keys(person, hand, job, name):
     assert all("is missing" in obj.Message or "waits for" in obj.Message for obj in left)
     assert any("is missing" in obj.Message for obj in left) or name == "Program"
     hand.click_tree("Cup")
-    hand.do("key", "ctrl+z")
+    hand.undo()
     person.until(lambda: job.getObject(name) is not None, f"{label} to come back", 5)
     job.recompute()
     assert state(job) == before and job.getObject(name) in group_of(job).Group
@@ -180,7 +185,32 @@ def test_a_whole_job_is_deleted_and_brought_back_by_keys(person, hand, job):
     assert delete(person, hand, label) == []  # nothing that is left needs it: nothing is asked
     assert [obj.Name for obj in job.Objects] == ["Sphere"]
     hand.click_tree("Cup")
-    hand.do("key", "ctrl+z")
+    hand.undo()
     person.until(lambda: len(api.stages_of(job)) == 5, "the job to come back", 5)
     job.recompute()
     assert state(job) == before and len(group_of(job).Group) == 5
+
+
+def test_a_job_pasted_while_it_is_selected_comes_beside_it(person, hand, job):
+    """FreeCAD would put it, and the copy of its part, into the job."""
+    group, before = group_of(job), state(job)
+    held, names = [obj.Name for obj in group.Group], {obj.Name for obj in job.Objects}
+    hand.click_tree(group.Label)
+    asked = click_soon(person, lambda box: box.findChild(person.widgets.QDialogButtonBox).button(
+        person.widgets.QDialogButtonBox.Ok))
+    person.gui.runCommand("Std_Copy")  # asks what goes along
+    asked.pop(0).stop()
+    person.gui.runCommand("Std_Paste")
+    person.until(lambda: len(api.stages_of(job)) == 10, "the copy", 5)
+    assert [obj.Name for obj in group.Group] == held
+    copied = next(obj for obj in job.Objects if is_group(obj) and obj != group)
+    assert len(copied.Group) == 5 and copied.InList == []
+    assert copied.Group[1].Source[0].Name not in names | {obj.Name for obj in copied.Group}
+    job.recompute()
+    assert statuses(job) == ["up to date"] * 10
+    hand.click_tree("Cup")
+    hand.do("key", "ctrl+z")
+    person.until(lambda: len(api.stages_of(job)) == 5, "the copy to go", 5)
+    assert {obj.Name for obj in job.Objects} == names and [obj.Name for obj in group.Group] == held
+    job.recompute()
+    assert state(job) == before

@@ -87,11 +87,11 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
 
     key = feature.Key
     person.gui.getMainWindow().activateWindow()
-    hand.do("key", "ctrl+z")
+    hand.undo()
     assert set(document.Objects) == set(bend) and person.screen_pixels(ORANGE) == 0
     console = console.toPlainText()
     assert said.count("make_surface_feature") == before
-    hand.do("key", "ctrl+shift+z")
+    hand.redo()
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
     call = console[console.rindex("am.make_surface_feature("):].split("\n>>>")[0].replace("\n", " ")
     again = eval(call, {"App": App, "am": api})
