@@ -3,14 +3,15 @@
 
 A result says many things twice: a motion repeats the points, directions and joints of its beads, a tool axis is mostly
 the build direction. The window of a zip file is too short to notice. Columns that are the same in many rows are runs of
-one number, which is kept once, for FreeCAD reads number by number. Numbers are compared bit by bit. They are put back where
+one number, which is kept once. Numbers are compared bit by bit. They are put back where
 they are asked for only: a view needs a third of them, and new memory is what takes the time.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,8 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Words = NDArray[np.uint64]
 
-SHORTEST = 32  # numbers in a stretch worth leaving out
-EVERY = 16  # numbers from one place that may be found again to the next: half of SHORTEST, so that none is missed
+SHORTEST = 64  # numbers in a stretch worth leaving out
+EVERY = 32  # numbers from one place that may be found again to the next: half of SHORTEST, so that none is missed
 TABLE = 22  # bits
 MOST_TRIED = 300_000
 FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93], dtype=np.uint64)
@@ -65,11 +66,11 @@ def folded(numbers: Array) -> tuple[Array, Index]:
 class Unfolded:
     """The numbers again that were left out, part by part: nothing is put back that is not asked for.
 
-    From a list `rest` of which `copies` were left out, which had `size` numbers before, and from that `runs`. ValueError
-    where they do not belong together.
+    From a list `rest`, or what is sliced like one, of which `copies` were left out, which had `size` numbers before, and
+    from that `runs`. ValueError where they do not belong together.
     """
 
-    def __init__(self, rest: Array, copies: Index, size: int, runs: Index) -> None:
+    def __init__(self, rest: Any, copies: Index, size: int, runs: Index) -> None:
         place, source, length = copies.T
         sound = (length > 0).all() and (source >= 0).all() and (source + length <= place).all()
         if not sound or (place[1:] < (place + length)[:-1]).any() or (place + length > size).any():
@@ -79,23 +80,32 @@ class Unfolded:
         at, count = runs.T
         if (at < 0).any() or (at >= size).any() or (np.diff(at) <= 0).any() or (count < 1).any():
             raise ValueError("its runs are damaged")
-        self.rest = rest[:]
-        self.rest.flags.writeable = False  # parts may share it
+        self.rest = rest
         before = np.cumsum(count - 1)  # that the runs up to each add
         self.runs, self.runs_end = runs.tolist(), (at + 1 + before).tolist()
         self.added = [0, *before.tolist()]
         self.size = size + self.added[-1]
         self.copies, self.copies_end = copies.tolist(), (place + length).tolist()
+        self.places = place.tolist()
         self.left_out = [0, *np.cumsum(length).tolist()]
-        self.copied: list[Array] = []
-        for _, start, long in self.copies:  # each from those before it
-            self.copied.append(_joined(list(self._stretches(start, start + long)), long))
+        self.copied: dict[int, Array] = {}
 
     def part(self, start: int, size: int) -> Array:
         """The numbers (size,) from `start` on, not copied where they stand in one piece. ValueError beyond the end."""
+        self._check(start, size)
+        return _joined(list(self._pieces(start, start + size)), size)
+
+    def fill(self, start: int, column: NDArray[Any]) -> None:
+        """Put the numbers from `start` on into (n,), which may be a column of an array. ValueError beyond the end."""
+        self._check(start, len(column))
+        end = 0
+        for piece, count in self._pieces(start, start + len(column)):
+            column[end : end + count] = piece
+            end += count
+
+    def _check(self, start: int, size: int) -> None:
         if start < 0 or start + size > self.size:
             raise ValueError("it is cut short")
-        return _joined(list(self._pieces(start, start + size)), size)
 
     def _pieces(self, start: int, end: int) -> Iterator[tuple[Array, int]]:
         """Stretches of numbers with how long they are, and for runs (1,) with how long it is."""
@@ -123,9 +133,22 @@ class Unfolded:
                 yield self.rest[start - self.left_out[k] : stop - self.left_out[k]], stop - start
             else:
                 stop = min(end, place + length)
-                yield self.copied[k][start - place : stop - place], stop - start
+                yield self._copy(k)[start - place : stop - place], stop - start
                 k += 1
             start = stop
+
+    def _copy(self, k: int) -> Array:
+        """The stretch that a copy stands for, which may hold copies before it, and these others."""
+        waiting = [] if k in self.copied else [k]
+        while waiting:
+            _, start, length = self.copies[waiting[-1]]
+            first, end = bisect_right(self.copies_end, start), bisect_left(self.places, start + length)
+            within = [j for j in range(first, end) if j not in self.copied]
+            if within:
+                waiting += within
+            else:
+                self.copied[waiting.pop()] = _joined(list(self._stretches(start, start + length)), length)
+        return self.copied[k]
 
 
 def _joined(pieces: list[tuple[Array, int]], size: int) -> Array:

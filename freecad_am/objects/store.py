@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Results of the core as two values a document can hold: one list of floats and one text.
 
-Dataclasses, tuples, arrays, bytes and plain values go in; the same come out. The floats are the arrays one after
-the other (whole numbers and truth values are exact in a float; bytes go compressed together, six to a float), but for
-runs of one number and stretches that are there before; the text is JSON that says what is where. A FloatList is kept as a
-compressed binary file in the FCStd, and unlike an included file it follows undo and copies of the object by value.
+Dataclasses, tuples, arrays, bytes and plain values go in; the same come out. Arrays that stand at the same place of alike
+values, such as the points of all beads, are one table, which is kept column by column as numbers (whole numbers and truth
+values are exact in a float). Of these are left out runs of one number and stretches that are there before; the rest is kept
+as differences, packed. That, and bytes, which are compressed together, go into the floats, seven to each. The text is JSON
+that says what is where. A FloatList is kept as a compressed binary file in the FCStd, and unlike an included file it follows
+undo and copies of the object by value; FreeCAD reads it float by float: the fewer, the sooner a document is open.
 """
 
 from __future__ import annotations
@@ -16,17 +18,19 @@ import importlib
 import json
 import lzma
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from . import repeats
+from . import differences, repeats
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
-_BYTES_PER_FLOAT = 6
+_BYTES_PER_FLOAT = 7
+_HIGHEST_BYTE = 0x40  # makes any seven bytes below it an ordinary number
+_OLDER_BYTES = 6  # of a whole number
 Place = tuple[str | int, ...]
 _DTYPES = ("float64", "int64", "bool")
 
@@ -34,19 +38,18 @@ _DTYPES = ("float64", "int64", "bool")
 def pack(value: Any, key: str) -> tuple[list[float], str]:
     """The floats and the text of a value, both marked with the key. TypeError for what is not data."""
     packer = _Packer()
-    packer.put(np.array([_mark(key)]))
-    tree = packer.tree(value)
-    if packer.data:
-        tree = {"z": packer.put_data(), "v": tree}
-    numbers, runs = repeats.without_runs(np.concatenate(packer.parts))
-    rest, copies = repeats.folded(numbers)
-    if len(copies):
-        tree = {"f": [len(numbers), len(copies)], "v": tree}
-        rest = np.concatenate([rest, copies.astype(np.float64).ravel()])
-    if len(runs):
-        tree = {"r": len(runs), "v": tree}
-        rest = np.concatenate([rest, runs.astype(np.float64).ravel()])
-    return rest.tolist(), f"{key} {json.dumps(tree, separators=(',', ':'))}"
+    tree = packer.tree(value, ())
+    numbers, tables = packer.columns()
+    once, runs = repeats.without_runs(numbers)
+    rest, copies = repeats.folded(once)
+    indices = np.concatenate([copies.ravel(), runs.ravel()]).astype(np.float64)
+    pieces, where = differences.packed(rest), differences.packed(indices)
+    # the files of a program are much alike, and far apart for zlib
+    data = lzma.compress(packer.data, preset=1) if packer.data else b""
+    layout = {"n": [len(rest), len(once), len(copies), len(runs)], "p": [len(data), [*map(len, pieces)], [*map(len, where)]],
+              "t": tables, "v": tree}
+    floats = np.concatenate([[_mark(key)], _floats_of(b"".join([data, *pieces, *where]))])
+    return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
 
 
 def numbers_of(floats: list[float]) -> NDArray[np.float64]:
@@ -70,19 +73,10 @@ def picked(
     try:
         if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
             raise ValueError("it belongs to other inputs")
-        tree, numbers = json.loads(text[len(key):]), np.asarray(floats)
-        runs, copies = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 3), dtype=np.int64)
-        if isinstance(tree, dict) and "r" in tree:
-            numbers, runs = _split(numbers, tree["r"], 2)
-            tree = tree["v"]
-        size = len(numbers)
-        if isinstance(tree, dict) and "f" in tree:
-            (size, count), tree = tree["f"], tree["v"]
-            numbers, copies = _split(numbers, count, 3)
-        reader = _Reader(repeats.Unfolded(numbers, copies, size, runs))
-        if isinstance(tree, dict) and "z" in tree:
-            reader.data, tree = tuple(tree["z"]), tree["v"]
-        return tuple(reader.value(_within(tree, place)) for place in places)
+        layout, numbers = json.loads(text[len(key):]), np.asarray(floats)
+        newer = isinstance(layout, dict) and "n" in layout
+        tree, reader = _newer(layout, numbers, () in places) if newer else _older(layout, numbers)
+        return tuple(reader.value(_within(tree, place), not place) for place in places)
     except (KeyError, ValueError, TypeError, AttributeError, ImportError, IndexError, zlib.error,
             lzma.LZMAError) as error:
         raise InputError("BAD_RESULT", where, f"the stored result cannot be read ({error}); recompute it") from None
@@ -95,10 +89,46 @@ def _within(tree: Any, place: Place) -> Any:
     return tree
 
 
+def _newer(layout: Any, floats: NDArray[np.float64], all_of_it: bool) -> tuple[Any, _Reader]:
+    """The tree of a layout, and what reads it, or parts of it, from the floats."""
+    packed, *lengths = layout["p"]
+    ends = np.cumsum([packed, *lengths[0], *lengths[1]]).tolist()
+    data = _bytes_of(floats[1:], ends[-1])
+    pieces = [data[begin:end] for begin, end in zip(ends, ends[1:])]
+    rest, once, copies, runs = layout["n"]
+    numbers = differences.Unpacked(pieces[: len(lengths[0])], rest)
+    indices = differences.Unpacked(pieces[len(lengths[0]) :], 3 * copies + 2 * runs)
+    where = _table(indices[: 3 * copies], 3), once, _table(indices[3 * copies :], 2)
+    unfolded = repeats.Unfolded(numbers[:] if all_of_it else numbers, *where)
+    return layout["v"], _Reader(unfolded, lambda: data[:packed], layout["t"])
+
+
+def _older(tree: Any, floats: NDArray[np.float64]) -> tuple[Any, _Reader]:
+    """As `_newer`, of a result that was stored before there were tables and differences."""
+    numbers = floats[:]
+    numbers.flags.writeable = False  # parts share it
+    runs, copies, data = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 3), dtype=np.int64), (0, 0)
+    if isinstance(tree, dict) and "r" in tree:
+        numbers, runs = _split(numbers, tree["r"], 2)
+        tree = tree["v"]
+    size = len(numbers)
+    if isinstance(tree, dict) and "f" in tree:
+        (size, count), tree = tree["f"], tree["v"]
+        numbers, copies = _split(numbers, count, 3)
+    if isinstance(tree, dict) and "z" in tree:
+        data, tree = tuple(tree["z"]), tree["v"]
+    unfolded = repeats.Unfolded(numbers, copies, size, runs)
+    return tree, _Reader(unfolded, lambda: _older_bytes(unfolded, *data), ())
+
+
 def _split(numbers: NDArray[np.float64], count: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """What comes before a table at the end, and the table."""
     rest, table = np.split(numbers, [len(numbers) - columns * count])
-    return rest, table.astype(np.int64).reshape(-1, columns)
+    return rest, _table(table, columns)
+
+
+def _table(numbers: NDArray[np.float64], columns: int) -> NDArray[np.int64]:
+    return numbers.astype(np.int64).reshape(-1, columns)
 
 
 def _mark(key: str) -> float:
@@ -107,62 +137,71 @@ def _mark(key: str) -> float:
 
 class _Packer:
     def __init__(self) -> None:
-        self.parts: list[NDArray[np.float64]] = []
-        self.size = 0
+        self.kinds: dict[Any, int] = {}  # the table of arrays of each kind
+        self.tables: list[list[NDArray[Any]]] = []
+        self.rows: list[int] = []  # of each table
         self.data = bytearray()
 
-    def tree(self, value: Any) -> Any:
+    def tree(self, value: Any, place: Place) -> Any:
+        """What stands for a value in the text; `place`: names that lead to it, where entries have none."""
         if value is None or isinstance(value, (bool, int, float, str)):
             return value
-        if isinstance(value, np.ndarray):
-            dtype = _DTYPES.index(str(value.dtype))
-            if value.ndim == 3:  # what comes before and behind each point is mostly the same: first all of one
-                return {"s": [dtype, *self.put(value.transpose(1, 0, 2).ravel()), *value.shape]}
-            return {"a": [dtype, *self.put(value.ravel()), *value.shape]}
         if isinstance(value, np.generic):
             return value.item()
+        if isinstance(value, np.ndarray):
+            return {"a": self.put(value, place)}
         if isinstance(value, (bytes, bytearray)):
             self.data += value
             return {"y": [len(self.data) - len(value), len(value)]}
         if isinstance(value, (tuple, list)):
-            return {"t": [self.tree(entry) for entry in value]}
+            return {"t": [self.tree(entry, (*place, "")) for entry in value]}
         if isinstance(value, dict):
-            return {"d": [[key, self.tree(entry)] for key, entry in value.items()]}
+            return {"d": [[key, self.tree(entry, (*place, ""))] for key, entry in value.items()]}
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
             kind = type(value)
             names = [field.name for field in dataclasses.fields(value) if field.init]
-            values = {name: self.tree(getattr(value, name)) for name in names}
+            values = {name: self.tree(getattr(value, name), (*place, name)) for name in names}
             return {"c": f"{kind.__module__.removeprefix(_PACKAGE)}:{kind.__qualname__}", "v": values}
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
-    def put_data(self) -> list[int]:
-        """All bytes: the files of a program are much alike, and far apart for zlib."""
-        packed = lzma.compress(self.data, preset=1)
-        return [len(packed), *self.put(_floats_of(packed))]
+    def put(self, value: NDArray[Any], place: Place) -> list[int]:
+        """The table that an array becomes part of, from which row on, and how many rows."""
+        kind = (place, _DTYPES.index(str(value.dtype)), value.shape[1:])
+        number = self.kinds.setdefault(kind, len(self.tables))
+        if number == len(self.tables):
+            self.tables.append([])
+            self.rows.append(0)
+        first = self.rows[number]
+        self.tables[number].append(value)
+        self.rows[number] += len(value)
+        return [number, first, len(value)]
 
-    def put(self, flat: NDArray[Any]) -> tuple[int]:
-        start = self.size
-        self.parts.append(flat.astype(np.float64))
-        self.size += len(flat)
-        return (start,)
+    def columns(self) -> tuple[NDArray[np.float64], list[list[int]]]:
+        """All tables column by column, and of each dtype, rows, and the shape of a row."""
+        parts = [np.zeros(0)]
+        for arrays in self.tables:
+            table = np.concatenate(arrays).astype(np.float64)
+            parts.append(table.reshape(len(table), -1).T.ravel() if table.size else np.zeros(0))
+        told = [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
+        return np.concatenate(parts), told
 
 
 class _Reader:
-    def __init__(self, floats: repeats.Unfolded) -> None:
-        self.floats = floats
-        self.data: tuple[int, ...] = ()  # where the bytes are
+    def __init__(self, numbers: repeats.Unfolded, packed: Callable[[], bytes], tables: Sequence[Sequence[int]]) -> None:
+        self.numbers, self.packed, self.tables = numbers, packed, tables
+        sizes = [int(np.prod(rest)) for _, *rest in tables]
+        self.starts = [0, *np.cumsum(sizes, dtype=np.int64).tolist()]
+        self.whole: dict[int, NDArray[Any]] = {}  # tables that were read
 
-    def value(self, tree: Any) -> Any:
+    def value(self, tree: Any, all_of_it: bool) -> Any:
+        """What a part of the text stands for; tables are read at once where all is."""
         if not isinstance(tree, dict):
             return tree
         if "a" in tree:
-            dtype, start, *shape = tree["a"]
-            size = int(np.prod(shape)) if shape else 1
-            return self.floats.part(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
+            return self.array(*tree["a"], all_of_it) if self.tables else self.older(*tree["a"])
         if "s" in tree:
             dtype, start, rows, sides, columns = tree["s"]
-            numbers = self.floats.part(start, rows * sides * columns).astype(_DTYPES[dtype], copy=False)
-            turned = numbers.reshape(sides, rows, columns)
+            turned = self.older(dtype, start, sides, rows, columns)
             return np.ascontiguousarray(turned.transpose(1, 0, 2))
         if "y" in tree:
             start, length = tree["y"]
@@ -170,21 +209,43 @@ class _Reader:
                 raise ValueError("it is cut short")
             return self.bytes[start : start + length]
         if "b" in tree:  # as older documents have them
-            return zlib.decompress(self.packed(*tree["b"]))
+            return zlib.decompress(_older_bytes(self.numbers, *tree["b"]))
         if "t" in tree:
-            return tuple(self.value(entry) for entry in tree["t"])
+            return tuple(self.value(entry, all_of_it) for entry in tree["t"])
         if "d" in tree:
-            return {key: self.value(entry) for key, entry in tree["d"]}
-        return _class(tree["c"])(**{name: self.value(entry) for name, entry in tree["v"].items()})
+            return {key: self.value(entry, all_of_it) for key, entry in tree["d"]}
+        return _class(tree["c"])(**{name: self.value(entry, all_of_it) for name, entry in tree["v"].items()})
+
+    def array(self, number: int, first: int, rows: int, all_of_it: bool) -> NDArray[Any]:
+        """Rows of a table, which they share where it is read at once."""
+        if first < 0 or rows < 0 or first + rows > self.tables[number][1]:
+            raise ValueError("it is cut short")
+        if not all_of_it:
+            return self.rows(number, first, rows)
+        if number not in self.whole:
+            self.whole[number] = self.rows(number, 0, self.tables[number][1])
+        return self.whole[number][first : first + rows]
+
+    def rows(self, number: int, first: int, rows: int) -> NDArray[Any]:
+        """Rows of a table, and nothing else of it."""
+        dtype, count, *shape = self.tables[number]
+        table = np.empty((rows, *shape), dtype=_DTYPES[dtype])
+        columns = table.reshape(rows, int(np.prod(shape)))
+        for k in range(columns.shape[1]):
+            self.numbers.fill(self.starts[number] + k * count + first, columns[:, k])
+        table.flags.writeable = False
+        return table
+
+    def older(self, dtype: int, start: int, *shape: int) -> NDArray[Any]:
+        """An array that stands row by row."""
+        size = int(np.prod(shape)) if shape else 1
+        return self.numbers.part(start, size).astype(_DTYPES[dtype], copy=False).reshape(shape)
 
     @functools.cached_property
     def bytes(self) -> bytes:
         """All bytes, one value after the other."""
-        return lzma.decompress(self.packed(*self.data)) if self.data else b""
-
-    def packed(self, length: int, start: int) -> bytes:
-        """Bytes that are kept six to a float."""
-        return _bytes_of(self.floats.part(start, -(-length // _BYTES_PER_FLOAT)), length)
+        packed = self.packed()
+        return lzma.decompress(packed) if packed else b""
 
 
 def _class(name: str) -> Any:
@@ -198,12 +259,17 @@ def _class(name: str) -> Any:
 
 
 def _floats_of(data: bytes) -> NDArray[np.float64]:
-    padded = np.frombuffer(data + bytes(-len(data) % _BYTES_PER_FLOAT), dtype=np.uint8).reshape(-1, _BYTES_PER_FLOAT)
-    whole = np.zeros((len(padded), 8), dtype=np.uint8)
-    whole[:, :_BYTES_PER_FLOAT] = padded
-    return whole.view("<u8").ravel().astype(np.float64)
+    whole = np.full((-(-len(data) // _BYTES_PER_FLOAT), 8), _HIGHEST_BYTE, dtype=np.uint8)
+    whole[:, :_BYTES_PER_FLOAT].flat[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+    return whole.view("<f8").ravel().astype(np.float64)
 
 
 def _bytes_of(floats: NDArray[np.float64], length: int) -> bytes:
-    whole = floats.astype("<u8").view(np.uint8).reshape(-1, 8)
+    whole = floats[: -(-length // _BYTES_PER_FLOAT)].astype("<f8", copy=False).view(np.uint8).reshape(-1, 8)
     return whole[:, :_BYTES_PER_FLOAT].tobytes()[:length]
+
+
+def _older_bytes(numbers: repeats.Unfolded, length: int, start: int) -> bytes:
+    """Bytes that stand among the numbers, six to a whole number."""
+    whole = numbers.part(start, -(-length // _OLDER_BYTES)).astype("<u8").view(np.uint8).reshape(-1, 8)
+    return whole[:, :_OLDER_BYTES].tobytes()[:length]

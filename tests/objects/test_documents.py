@@ -2,7 +2,10 @@
 """What documents do to stages: saving, opening, undo, copies, old files."""
 
 import dataclasses
+import hashlib
+import shutil
 import zipfile
+from pathlib import Path
 
 import FreeCAD as App
 import numpy as np
@@ -10,6 +13,41 @@ import pytest
 
 from freecad_am import api
 from freecad_am.objects import stage as stages
+from freecad_am.objects import store
+
+# results stored as they were before: row by row, each number a float; and fingerprints of what was read of them then
+ROWS = Path(__file__).parent / "data" / "rows.FCStd"
+IN_ROWS = {
+    "Cell": "5ec5f3fc543c70aa6a0c709341df9cfec5b9220b75e74a08da1105e262342415",
+    "Feature": "3afe134fba052862ed87a0d7a23f5cb1da2adea05d3ae9704d8168ab633db27a",
+    "Toolpath": "95d2147faa63b9251d8349a5848304ea831fc814247c67905059817bafd0ee43",
+    "JointPath": "66cc8fb7123c35847e5a3021e02e9d578c0ded93ada6d05a2e8a365f51c443b6",
+    "Program": "112b574e451870c0bc54f0d48b88b99bb7533aedd47e25faf14f1fa2da69d313",
+}
+
+
+def fingerprint(value):
+    return hashlib.sha256(b"".join(parts(value))).hexdigest()
+
+
+def parts(value):
+    """All that is in a value, as bytes."""
+    if isinstance(value, np.ndarray):
+        yield str(value.dtype).encode() + str(value.shape).encode() + value.tobytes()
+    elif isinstance(value, bytes):
+        yield value
+    elif isinstance(value, dict):
+        for name, entry in value.items():
+            yield name.encode()
+            yield from parts(entry)
+    elif dataclasses.is_dataclass(value):
+        for field in dataclasses.fields(value):
+            yield from parts(getattr(value, field.name))
+    elif isinstance(value, (tuple, list)):
+        for entry in value:
+            yield from parts(entry)
+    else:
+        yield repr(value).encode()
 
 
 def equal(one, other):
@@ -146,6 +184,26 @@ def test_an_old_document_gets_what_it_lacks(job, tmp_path):
         assert [obj.Status for obj in api.stages_of(again)] == ["up to date"] * 5
     finally:
         App.closeDocument(again.Name)
+
+
+def test_results_of_an_old_document_are_read_to_the_last_bit_and_stored_anew(tmp_path, monkeypatch):
+    path = str(shutil.copy(ROWS, tmp_path))
+    document = App.openDocument(path)
+    try:
+        for name, expected in IN_ROWS.items():
+            obj = document.getObject(name)
+            monkeypatch.setattr(type(obj.Proxy), "prepare", lambda self, obj: pytest.fail("computed"))
+            assert obj.Status == "up to date" and fingerprint(api.result(obj)) == expected
+            obj.ResultData, obj.ResultLayout = store.pack(api.result(obj), obj.Key)
+        size = (tmp_path / "rows.FCStd").stat().st_size
+        document.save()
+        assert (tmp_path / "rows.FCStd").stat().st_size < 0.8 * size
+        App.closeDocument(document.Name)
+        document = App.openDocument(path)
+        for name, expected in IN_ROWS.items():
+            assert fingerprint(api.result(document.getObject(name))) == expected
+    finally:
+        App.closeDocument(document.Name)
 
 
 def test_class_paths_are_those_of_the_file_format(job):

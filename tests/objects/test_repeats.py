@@ -32,13 +32,13 @@ def there_and_back(numbers):
 def test_any_list_comes_back(seed):
     """Random ones with stretches repeated anywhere, also of repetitions, runs, patterns, and numbers that equal no other."""
     random = np.random.default_rng(seed)
-    parts = [random.normal(size=random.integers(0, 400))]
+    parts = [random.normal(size=random.integers(0, 3000))]
     for kind in random.integers(0, 5, 60):
         before = np.concatenate(parts)
         start = random.integers(0, len(before) + 1)
-        run = np.full(random.integers(1, 300), random.choice([0.0, -0.0, np.nan, np.inf, 1.5]))
+        run = np.full(random.integers(1, 900), random.choice([0.0, -0.0, np.nan, np.inf, 1.5]))
         parts.append([
-            before[start : start + random.integers(0, 900)], random.normal(size=random.integers(1, 200)), run,
+            before[start : start + random.integers(0, 3000)], random.normal(size=random.integers(1, 200)), run,
             np.tile(random.normal(size=random.integers(1, 6)), random.integers(1, 200)), np.arange(len(run)).astype(float),
         ][kind])
     there_and_back(np.concatenate(parts))
@@ -46,7 +46,7 @@ def test_any_list_comes_back(seed):
 
 def test_every_long_repetition_is_found_whole():
     random = np.random.default_rng(5)
-    pieces = [random.normal(size=n) for n in random.integers(repeats.SHORTEST + repeats.EVERY, 500, 200)]
+    pieces = [random.normal(size=n) for n in random.integers(repeats.SHORTEST + repeats.EVERY, 1500, 200)]
     between = [random.normal(size=n) for n in random.integers(1, 9, 200)]
     first = np.concatenate(pieces)
     again = [part for pair in zip(pieces, between, strict=True) for part in pair]
@@ -57,7 +57,7 @@ def test_every_long_repetition_is_found_whole():
 
 def test_every_run_is_left_out():
     random = np.random.default_rng(7)
-    sizes, kinds = random.integers(repeats.SHORTEST, 900, 60), np.resize([0.0, -0.0, np.nan, np.inf, 1.5], 60)
+    sizes, kinds = random.integers(repeats.SHORTEST, 1500, 60), np.resize([0.0, -0.0, np.nan, np.inf, 1.5], 60)
     numbers = np.concatenate([part for size, kind in zip(sizes, kinds, strict=True)
                               for part in (np.full(size, kind), random.normal(size=3))])
     once, runs = repeats.without_runs(numbers)
@@ -70,24 +70,35 @@ def test_every_run_is_left_out():
 
 def test_nothing_is_counted_from_both_sides():
     pattern = np.random.default_rng(1).normal(size=40)
-    rest, copies = there_and_back(np.tile(pattern, 64))
-    assert len(rest) <= 80
+    rest, copies = there_and_back(np.tile(pattern, 640))
+    assert len(rest) < 2 * repeats.SHORTEST
     assert (copies[:, 1] + copies[:, 2] <= copies[:, 0]).all()
 
 
-@pytest.mark.parametrize("size", [0, 1, 3, 31, 32, 63, 64, 65, 100])
+def test_stretches_of_stretches_of_stretches():
+    """Each of 3000 copies is of one before it, so that the last is as many steps from the numbers themselves."""
+    count, size = 3000, repeats.SHORTEST
+    numbers = np.random.default_rng(4).normal(size=size)
+    places = size * np.arange(1, count + 1)
+    copies = np.column_stack([places, places - size, np.full(count, size)])
+    whole = repeats.Unfolded(numbers, copies, size * (count + 1), NO_RUNS)
+    assert same(whole.part(size * count, size), numbers)
+    assert same(whole.part(0, size * (count + 1)), np.tile(numbers, count + 1))
+
+
+@pytest.mark.parametrize("size", [0, 1, 3, 31, 63, 64, 65, 127, 128, 129, 300])
 def test_short_lists(size):
     there_and_back(np.zeros(size))
     there_and_back(np.random.default_rng(size).normal(size=size))
 
 
 def test_damaged_ones_are_told():
-    numbers = np.tile(np.random.default_rng(2).normal(size=100), 3)
+    numbers = np.tile(np.random.default_rng(2).normal(size=300), 3)
     rest, copies = repeats.folded(numbers)
     for bad in (
-        (rest[:-1], copies, 300), (np.append(rest, 1.0), copies, 300), (rest, copies + [[0, 0, 1]], 300),
-        (rest, copies + [[0, 150, 0]], 300), (rest, copies + [[0, -300, 0]], 300), (rest, copies * [[1, 1, -1]], 300),
-        (rest, copies, 250),
+        (rest[:-1], copies, 900), (np.append(rest, 1.0), copies, 900), (rest, copies + [[0, 0, 1]], 900),
+        (rest, copies + [[0, 450, 0]], 900), (rest, copies + [[0, -900, 0]], 900), (rest, copies * [[1, 1, -1]], 900),
+        (rest, copies, 800),
     ):
         with pytest.raises(ValueError, match=r"damaged|cut short"):
             repeats.Unfolded(*bad, NO_RUNS)
@@ -95,17 +106,20 @@ def test_damaged_ones_are_told():
 
 def test_results_that_repeat_take_less_room_and_old_ones_are_read():
     random = np.random.default_rng(3)
-    beads = tuple(random.normal(size=(50, 3)) for _ in range(40))
-    tangents = np.repeat(random.normal(size=(500, 1, 3)), 2, axis=1)
-    tangents[100] = 1.0
-    value = (beads, np.concatenate(beads), tangents)
+    beads = tuple(random.normal(size=(300, 3)) for _ in range(40))
+    value = (beads, np.concatenate(beads), np.repeat(random.normal(size=(500, 1, 3)), 2, axis=1))
     floats, text = store.pack(value, "k")
-    assert len(floats) < 1.1 * (40 * 150 + 1500)
+    assert len(floats) < 1.1 * (40 * 900 + 1500)
     for one, other in zip(store.unpack(floats, text, "k", "x")[1:], value[1:], strict=True):
         assert same(one, other)
-    floats, text = store.pack((np.ones((400, 3)), np.zeros(900, dtype=bool), beads), "k")
-    assert len(floats) < 40 * 150 + 100
-    assert same(store.unpack(floats, text, "k", "x")[0], np.ones((400, 3)))
     mark = floats[0]
     old = store.unpack([mark, 1.0, 2.0, 3.0, 4.0], 'k {"t":[{"a":[0,1,2,2]},{"a":[1,2,3]}]}', "k", "x")
     assert same(old[0], np.array([[1.0, 2.0], [3.0, 4.0]])) and same(old[1], np.array([2, 3, 4]))
+
+
+def test_what_is_the_same_everywhere_takes_no_room():
+    value = (np.ones((4000, 3)), np.zeros(9000, dtype=bool), np.tile([0.0, 0.6, 0.8], (5000, 1)), np.full(300, np.nan))
+    floats, text = store.pack(value, "k")
+    assert len(floats) < 60
+    for one, other in zip(store.unpack(floats, text, "k", "x"), value, strict=True):
+        assert same(one, other)

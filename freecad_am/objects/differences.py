@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numbers kept as what they differ by from what those before them foretell, to the last bit.
+
+Along a bead, coordinates, directions and joints are smooth: differences of differences, five to eight times over, leave two
+bytes of the eight. They are taken of the bits of numbers, read as whole numbers in the order of the numbers themselves, so
+that nothing is rounded and sums bring all back. Packed piece by piece: a few numbers are read without the others.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Bits = NDArray[np.int64]
+
+PIECE = 8192  # numbers that have one order of differences, and are packed together
+HIGHEST = 8  # order; another one would double what is left of rounding, and foretell no better
+_BUT_SIGN = np.int64(0x7FFFFFFFFFFFFFFF)
+_ONE = np.uint64(1)
+_MANTISSA, _BIAS = 52, 1022  # of a float64: bits after the exponent, and its exponent of numbers from a half to one
+
+
+def packed(numbers: Array) -> list[bytes]:
+    """Numbers (n,) in pieces of PIECE."""
+    return [_packed(numbers[start : start + PIECE]) for start in range(0, len(numbers), PIECE)]
+
+
+class Unpacked:
+    """The numbers again: as long as they were, and sliced as an array of them, of which only what is asked for is read.
+
+    ValueError or zlib.error for pieces that are damaged, at the latest when they are read.
+    """
+
+    def __init__(self, pieces: Sequence[bytes], size: int) -> None:
+        if len(pieces) != -(-size // PIECE):
+            raise ValueError("it is cut short")
+        self.pieces, self.missing = pieces, [True] * len(pieces)
+        self.numbers = np.empty(size)
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, some: slice) -> Array:
+        start, end, _ = some.indices(len(self.numbers))
+        for k in range(start // PIECE, -(-end // PIECE)):
+            if self.missing[k]:
+                _unpack(self.pieces[k], self.numbers[k * PIECE : (k + 1) * PIECE].view(np.int64))
+                self.missing[k] = False
+        found = self.numbers[start:end]
+        found.flags.writeable = False  # parts may share it
+        return found
+
+
+def _packed(numbers: Array) -> bytes:
+    """The order of differences, then the bytes of what is left: first the lowest of all, the highest last."""
+    order, least, chosen = 0, -1, None
+    differences = _turned(np.ascontiguousarray(numbers).view(np.int64))
+    for k in range(HIGHEST + 1):
+        if k:
+            differences = np.diff(differences, prepend=np.int64(0))
+        folded = (differences << 1) ^ (differences >> 63)  # small ones are near 0, of either sign
+        size = _bits_of(folded) + k * len(numbers)  # to sum once more takes as long as to read a bit
+        if chosen is None or size < least:
+            order, least, chosen = k, size, folded
+    assert chosen is not None
+    planes = chosen.astype("<i8").view(np.uint8).reshape(-1, 8).T
+    return bytes([order]) + zlib.compress(planes.tobytes(), 1)
+
+
+def _unpack(piece: bytes, bits: Bits) -> None:
+    """Fill the bits of the numbers of a piece."""
+    planes = np.frombuffer(zlib.decompress(memoryview(piece)[1:]), dtype=np.uint8)
+    if len(planes) != 8 * len(bits) or piece[0] > HIGHEST:
+        raise ValueError("it is damaged")
+    differences = np.ascontiguousarray(planes.reshape(8, -1).T).view("<u8").ravel().astype(np.uint64, copy=False)
+    sign = -(differences & _ONE).view(np.int64)
+    np.bitwise_xor((differences >> _ONE).view(np.int64), sign, out=bits)
+    for _ in range(piece[0]):
+        np.cumsum(bits, out=bits)
+    bits[:] = _turned(bits)
+
+
+def _turned(bits: Bits) -> Bits:
+    """Bits of numbers as whole numbers in their order, and the other way round."""
+    return bits ^ (bits >> 63 & _BUT_SIGN)
+
+
+def _bits_of(folded: Bits) -> int:
+    """How many bits whole numbers have in all, taken as without sign; near enough to choose by."""
+    exponents = folded.view(np.uint64).astype(np.float64).view(np.int64) >> _MANTISSA
+    return int((exponents - _BIAS).clip(0).sum())
