@@ -16,6 +16,7 @@ from freecad_am.core.issues import AmError, Issue
 from freecad_am.core.kinematics import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.gui.field_names import as_in_panels
 from freecad_am.gui.phrases import Phrases, Template
 from freecad_am.objects import progress
 
@@ -28,6 +29,7 @@ import ts_file  # noqa: E402
 
 UPDATE = "run resources/translations/collect.py, translate what it lists in RoboticAM_fr.ts, and run it with --release"
 NO_BREAK = "\u00a0"
+NAMED = re.compile(r"\b(?:part|cell|strategy|build_direction|process|joints|program|inspection)\.[a-z_.]*[a-z]")
 
 
 @pytest.fixture(scope="module")
@@ -184,6 +186,36 @@ def test_figures_and_names_stay_as_they_are():
     assert phrases.translated("<joint> is no joint", upper) == "<joint> IS NO joint"  # a word of a file
     assert phrases.translated("Box is no cell", upper) == "Box IS NO CELL"
     assert phrases.translated("Box; up to 2.5 mm off", upper) == "Box; UP TO 2.5 MM OFF"
+
+
+def test_a_message_that_begins_with_a_name_is_known():
+    phrases = Phrases(["{0} is a mesh; use {1}", "it has {0} faces", "{0}; use {1}", "cell", "{0} is no wall"], ["cell"])
+    for text in ("tube-on-pipe is a mesh; use a shape", "tube-on-pipe: it has 12 faces", "pipe is no wall; use another"):
+        assert phrases.names_first(text), text
+    for text in ("it has 12 faces", "cell is a mesh; use a shape", "it has 12 faces; use another", "of none of these", ""):
+        assert not phrases.names_first(text), text
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("no bead model sets the speeds (process.bead_model)", "no bead model sets the speeds (“Bead model”)"),
+        ("a wider strategy.band rounds them", "a wider “Band” rounds them"),
+        ("raise process.between_layers.lift", "raise “Between layers, lift”"),
+        ("joints.given is of no effect; use process.seam.", "“Given” is of no effect; use “Seam”."),
+        ("my/process.bead_model.csv and strategy.nothing", "my/process.bead_model.csv and strategy.nothing"),
+        ("cell.machine.json is no file", "cell.machine.json is no file"),
+    ],
+)
+def test_messages_call_parameters_as_the_panels_do(text, told):
+    assert as_in_panels(text, str) == told
+
+
+def test_parameters_in_messages_are_those_of_a_panel(phrases):
+    """Whatever name of a job file a message has, the window knows how its panel calls it, but those of a job file alone."""
+    told = {match[0] for text in [*phrases.plain, *(one.text for one in phrases.templates)]
+            for match in NAMED.finditer(as_in_panels(text, str))}
+    assert told <= {"strategy.wait", "part.faces", "part.scale"}
 
 
 def test_the_template_that_says_more_is_meant():

@@ -313,7 +313,8 @@ def _tell_next(stages: list[Any]) -> None:
     else:
         text = tr("The joint path is ready; there is no post for this machine's controller yet. Simulate… plays it.")
     Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
-    App.Console.PrintMessage(text + "\n")
+    if wrong is None:  # what is wrong is in the report view already
+        App.Console.PrintMessage(text + "\n")
     _show_whole()
 
 

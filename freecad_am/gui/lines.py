@@ -67,6 +67,7 @@ class Points:
         self.node = coin.SoSeparator()
         for child in (unshaded(), style, material, self.coordinates, self.set_node):
             self.node.addChild(child)
+        self.set([])  # Coin has one at the origin by itself
 
     def set(self, points: Any) -> None:
         """points (n, 3)."""

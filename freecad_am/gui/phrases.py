@@ -85,6 +85,17 @@ class Phrases:
         count = 1 + max(inner, default=-1)
         return translate(template.text).format(*(inner.get(at, "") for at in range(count)))
 
+    def names_first(self, text: str) -> bool:
+        """Whether a text begins with a name, of a part or a file, which is written as it is."""
+        found = self.find(text)
+        if found is None:
+            return any(self.find(text[match.end():]) is not None for match in _BREAK.finditer(text) if match[0] == ": ")
+        template, values = found
+        if not template.fields or template.literals[0]:
+            return False
+        first = values[template.fields[0]]
+        return first not in self.words and (self.find(first) is None or self.names_first(first))
+
     def _inner(self, value: str, translate: Callable[[str], str]) -> str:
         """What was put into a text: words of ours, else a name or a number, which stay."""
         return self.translated(value, translate) if " " in value or value in self.words else value

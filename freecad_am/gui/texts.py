@@ -11,6 +11,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from ..core.issues import AmError
+from .field_names import as_in_panels
 from .phrases import Phrases
 
 CONTEXT = "RoboticAM"
@@ -39,11 +40,9 @@ def marked(text: str) -> str:
 
 
 def translated(text: str) -> str:
-    """What the core wrote, which knows no language - a help, a word, a message with figures in it - in that of the window;
-    itself where no translation is there."""
-    if tr("en") == "en":  # each translation says its own code
-        return text
-    return _translated(text, tr("en"))
+    """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
+    the window, with parameters as its panels call them; itself where no translation is there."""
+    return _translated(text, tr("en"))  # each translation says its own code
 
 
 def translated_error(error: BaseException) -> str:
@@ -59,14 +58,16 @@ def error_line(error: AmError) -> str:
 
 
 def sentence(text: str) -> str:
-    """A text that begins small, such as a finding, as a sentence of its own, in the language of the window."""
+    """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
+    with the name of a part or file keeps that as it is."""
     told = translated(text)
-    return told[:1].upper() + told[1:]
+    return told if _phrases().names_first(text) else told[:1].upper() + told[1:]
 
 
 @lru_cache(maxsize=4096)
 def _translated(text: str, language: str) -> str:
-    return _phrases().translated(text, tr)
+    told = text if language == "en" else _phrases().translated(text, tr)
+    return as_in_panels(told, tr if language == "en" else translated, tr("“{}”"))
 
 
 @lru_cache(maxsize=1)

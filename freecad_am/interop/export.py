@@ -19,15 +19,16 @@ STEP, DXF = (".step", ".stp"), (".dxf",)
 def write_wires(obj: Any, path: str, rapids: bool) -> str:
     """Write the lines of a stage as STEP or DXF, whichever the path ends in; the path. The file appears whole or not at all.
 
-    Raises InputError UNSUPPORTED_FILE, NOT_WRITABLE, and what `lines_of` raises.
+    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and what `lines_of` raises.
     """
     ending = os.path.splitext(path)[1].lower()
     if ending not in STEP + DXF:
         raise InputError("UNSUPPORTED_FILE", path, "wires are written as .step or .dxf; end the name with one of them")
-    lines = lines_of(obj, rapids)
     folder = os.path.dirname(os.path.abspath(path))
+    if not os.path.isdir(folder):
+        raise InputError("NO_FOLDER", path, f"there is no folder {folder}; make it, or choose another")
+    lines = lines_of(obj, rapids)
     try:
-        os.makedirs(folder, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as beside:
             unfinished = os.path.join(beside, f"wires{ending}")
             _write(lines, unfinished, ending, obj.Label)

@@ -19,6 +19,14 @@ class JobGroup:
         obj.Proxy = self
         hooks.attach(obj)
 
+    def onChanged(self, obj: Any, name: str) -> None:
+        """FreeCAD pastes into the group that is selected: a copy of the job, or of its part, comes beside the job."""
+        document = obj.Document
+        if name == "Group" and not (document.Transacting or document.Restoring or document.Importing):
+            stages = stages_in(obj)
+            if len(stages) < len(obj.Group):
+                obj.Group = stages
+
     def onDocumentRestored(self, obj: Any) -> None:
         """Show one that was made without a window."""
         hooks.attach(obj)

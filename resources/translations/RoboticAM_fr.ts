@@ -1302,6 +1302,11 @@
         <translation>Avant</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Begins with {}. Lines: {}, files: {}</source>
+        <translation>Commence par {}. Lignes : {}, fichiers : {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Below</source>
         <translation>Au-dessous de</translation>
@@ -1372,6 +1377,11 @@
         <translation>Appel</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Can be carried out.</source>
+        <translation>Réalisable.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/busy.py"/>
         <source>Cancel</source>
         <translation>Annuler</translation>
@@ -1385,6 +1395,11 @@
         <location filename="../../freecad_am/gui/job_panel.py"/>
         <source>Cancelled: the document is as it was.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Cannot be carried out:</source>
+        <translation>Irréalisable :</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
@@ -1497,9 +1512,14 @@
         <translation>Cliquez sur ce qui est à déposer, dans l&apos;arbre ou la vue 3D ; puis avec Ctrl sur ce sur quoi cela croît, s&apos;il y a lieu.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Close</source>
         <translation>Fermer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
+        <source>Close without a machine file? What you entered on the pages is lost.</source>
+        <translation>Fermer sans fichier de machine ? Ce que vous avez saisi dans les pages est perdu.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -1512,7 +1532,7 @@
         <translation>Forme explicite (mm) : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Closes this window</source>
         <translation>Ferme cette fenêtre</translation>
     </message>
@@ -1862,12 +1882,12 @@
         <translation>Exporter la trajectoire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Export program</source>
         <translation>Exporter le programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Export…</source>
         <translation>Exporter…</translation>
     </message>
@@ -1927,7 +1947,7 @@
         <translation>Fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Files written to {}: {}</source>
         <translation>Fichiers écrits dans {} : {}</translation>
     </message>
@@ -2342,7 +2362,7 @@
         <translation>Jerks articulaires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Joint path</source>
         <translation>Trajectoire articulaire</translation>
     </message>
@@ -2405,6 +2425,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Largest error of the local distance of constant-distance layers.</source>
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Largest joint speed: {:.0f} % of what {} can do, in layer {}</source>
+        <translation>Vitesse articulaire la plus grande : {:.0f} % de ce que peut {}, couche {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -2497,9 +2522,19 @@
         <translation>Minimum</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Least condition: {:.3f}, in layer {}</source>
+        <translation>Condition la plus faible : {:.3f}, couche {}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Least deviation.</source>
         <translation>Plus petit écart.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Least joint margin: {:.1f} %, of {} in layer {}</source>
+        <translation>Marge articulaire la plus faible : {:.1f} %, de {}, couche {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -2510,6 +2545,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Least time between the end of a solid&apos;s layer and the start of its next.</source>
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>Left as it was entered; for {} it would be {}.</source>
+        <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -3287,6 +3327,26 @@
         <translation>Largeurs et vitesses prévues</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Preview of all points, without rapid moves.</source>
+        <translation>Aperçu de tous les points, sans les rapides.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Preview of one bead in {}, without rapid moves; OK plans all.</source>
+        <translation>Aperçu d&apos;un cordon sur {}, sans les rapides ; OK planifie tout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Preview of one point in {} of one bead in {}, without rapid moves; OK plans all.</source>
+        <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {}, sans les rapides ; OK planifie tout.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Preview of one point in {}, without rapid moves; OK plans all.</source>
+        <translation>Aperçu d&apos;un point sur {}, sans les rapides ; OK planifie tout.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Probe radius</source>
         <translation>Rayon du palpeur</translation>
@@ -3302,7 +3362,7 @@
         <translation>Procédé des nouvelles trajectoires d&apos;outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
         <source>Program</source>
         <translation>Programme</translation>
     </message>
@@ -3315,6 +3375,11 @@
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Program…</source>
         <translation>Programme…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>Proposed for {}; enter what yours really has.</source>
+        <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
@@ -3577,6 +3642,11 @@
         <translation>Montrer la trajectoire couche par couche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>Show the machine</source>
+        <translation>Montrer la machine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
         <source>Show this job alone</source>
         <translation>Montrer ce travail seul</translation>
@@ -3595,6 +3665,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
         <source>Shows at zero</source>
         <translation>Montre à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path</source>
+        <translation>Montre la machine au repos tant que le panneau est ouvert, la buse droite sur le point le plus haut de la trajectoire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -3777,7 +3852,7 @@
         <translation>État : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Status: {}.</source>
         <translation>État : {}.</translation>
     </message>
@@ -3892,7 +3967,7 @@
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport à celui planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>The document is closed; open it again to export.</source>
         <translation>Le document est fermé ; ouvrez-le de nouveau pour exporter.</translation>
     </message>
@@ -3930,6 +4005,11 @@
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>The first layer that is shown</source>
         <translation>La première couche montrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>The first lines of the program as it would be written</source>
+        <translation>Les premières lignes du programme tel qu&apos;il serait écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -4207,7 +4287,7 @@
         <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>This text is of an earlier plan; do not run it.</source>
         <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
     </message>
@@ -4240,6 +4320,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Time of the whole job with lead times and waits between layers (s).</source>
         <translation>Temps de tout le travail avec avances, retards et attentes entre les couches (s).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Time: {}, {}</source>
+        <translation>Durée : {}, {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
@@ -4612,6 +4697,11 @@
         <translation>Dans la tolérance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>Without a post no file is written.</source>
+        <translation>Sans post-processeur, aucun fichier n&apos;est écrit.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/fields.py"/>
         <source>Words: {}.</source>
         <translation>Mots : {}.</translation>
@@ -4632,7 +4722,7 @@
         <translation>Écrit une trajectoire en fils STEP ou DXF, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Writes all files of the program into a folder</source>
         <translation>Écrit tous les fichiers du programme dans un dossier</translation>
     </message>
@@ -4987,7 +5077,7 @@
         <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>and {} more</source>
         <translation>et {} autres</translation>
     </message>
@@ -5495,6 +5585,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>drift</source>
         <translation>dérive</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>dry run, nothing is deposited</source>
+        <translation>marche à vide, rien n&apos;est déposé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/legend.py"/>
@@ -6542,6 +6637,11 @@
         <translation>masse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <source>mass: {:.1f} g</source>
+        <translation>masse : {:.1f} g</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>mean</source>
         <translation>moyenne</translation>
@@ -6582,7 +6682,7 @@
         <translation>plus de {0} et au plus {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/constant_distance.py"/>
+        <location filename="../../freecad_am/core/slicing/backstop.py"/>
         <source>more than {0} layers of {1} mm: use a larger layer height</source>
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
@@ -7890,6 +7990,11 @@
         <location filename="../../freecad_am/core/planning/program.py"/>
         <source>there is no bead {0} in a layer {1}; the job has layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; le travail a les couches 0 à {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>there is no folder {0}; make it, or choose another</source>
+        <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
@@ -9277,6 +9382,11 @@
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>{} at rest, its turning axes at 0</source>
+        <translation>{} au repos, ses axes rotatifs à 0</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/fit_plot.py"/>
         <source>{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min</source>
         <translation>{} cordons, {:g} à {:g} mm/min, r {:g} à {:g} mm, fil {:g} m/min</translation>
@@ -9300,6 +9410,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>{} counts the other way (sign)</source>
         <translation>{} compte dans l&apos;autre sens (signe)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>{} does not reach the part with the nozzle upright: all its axes are drawn at 0</source>
+        <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>
@@ -9387,6 +9502,11 @@
         <translation>{} n&apos;est pas de révolution, c&apos;est donc une paroi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>{} is out of date; this is of what it was.</source>
+        <translation>{} n&apos;est pas à jour ; ceci est de ce qu&apos;il était.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>{} is written.</source>
         <translation>{} est écrit.</translation>
@@ -9457,6 +9577,16 @@
         <translation>{} a été écrit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>{} with the nozzle upright on the part: {} is {:.0f}° from its limit</source>
+        <translation>{} avec la buse droite sur la pièce : {} est à {:.0f}° de sa limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>{} with the nozzle upright on the part: {} is {:.0f}° past its limit</source>
+        <translation>{} avec la buse droite sur la pièce : {} dépasse sa limite de {:.0f}°</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/stage_panel.py"/>
         <source>{}, {}</source>
         <translation>{}, {}</translation>
@@ -9505,6 +9635,11 @@
         <location filename="../../freecad_am/plots/joints.py"/>
         <source>σmin / σmax</source>
         <translation>σmin / σmax</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/texts.py"/>
+        <source>“{}”</source>
+        <translation>« {} »</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>

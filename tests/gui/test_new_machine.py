@@ -24,6 +24,7 @@ def wizard(person):
     for path in (os.path.join(folder, name) for folder in user_machines.folders() for name in os.listdir(folder)):
         os.remove(path)
     for left in list(module._open):
+        left._to_be_lost = lambda: True
         left.close()
     person.idle()
 
@@ -232,12 +233,14 @@ def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, h
     go_on(person, hand, wizard, "LimitsPage")
     type_row(person, hand, person.field(wizard, "limits"), 0, [10.0, -10.0])
     assert "10 is not below -10" in refused(person, hand, wizard)
-    # Escape closes it, and nothing is left
+    # Escape closes it after a question, and nothing is left
+    asked = person.will_answer("Discard")
     hand.do("key", "Escape")
     hand.do("key", "Escape")
     from freecad_am.gui.machine_wizard import wizard as module
 
     person.until(lambda: not module._open, "the wizard to close")
+    assert len(asked) == 1
     assert not user_machines.folders() or not os.listdir(user_machines.folders()[0])
 
 def test_a_machine_tool_from_its_table(person, hand, wizard):
@@ -283,3 +286,47 @@ def test_what_a_pendant_shows_is_what_the_wizard_reads():
     figures = pendant_poses(count=6)
     poses = pose_figures.flange_poses(pose_figures.FANUC, figures[:, 6:], arm.base, np.eye(4))
     assert pendant.fits(pendant.deviations(arm.chain, shown, figures[:, :6], poses))
+
+
+def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
+    hand.do("key", "Escape")
+    person.until(lambda: not person.window.findChildren(person.widgets.QWizard), "the empty wizard to close")
+    person.click("RoboticAM_NewMachine")
+    wizard = person.panel(NAME)
+    hand.click(person.field(wizard, "source"))
+    hand.do("key", "End", "Return")
+    asked = person.will_answer("Cancel")
+    hand.do("key", "Escape")
+    person.until(lambda: asked, "the question")
+    assert "lost" in asked[0] and wizard.isVisible() and page(wizard) == "SourcePage"
+    go_on(person, hand, wizard, "LimitsPage")
+    asked = person.will_answer("Cancel")
+    hand.click(wizard.button(person.widgets.QWizard.CancelButton))
+    person.until(lambda: asked, "the question")
+    assert wizard.isVisible() and page(wizard) == "LimitsPage"
+    asked = person.will_answer("Discard")
+    hand.click(wizard.button(person.widgets.QWizard.CancelButton))
+    person.until(lambda: not person.window.findChildren(person.widgets.QWizard), "the wizard to close")
+    assert len(asked) == 1
+
+
+def test_a_defective_urdf_is_called_by_its_name_and_quaternions_are_seen_whole(person, hand, wizard, tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text(urdf_text.text(machine.load("abb-irb140")).replace("</joint>", "</jonit>", 1), encoding="utf-8")
+    hand.enter(wizard, "file", str(path))
+    assert person.field(wizard.currentPage(), "error").text().startswith("arm.urdf: line ")
+    path.write_text(urdf_text.text(machine.load("abb-irb140")), encoding="utf-8")
+    hand.enter(wizard, "file", str(path.with_name("none.urdf")))
+    hand.enter(wizard, "file", str(path))
+    for name in ("LimitsPage", "FramesPage", "PosesPage"):
+        go_on(person, hand, wizard, name)
+    convention = person.field(wizard, "convention")
+    convention.setCurrentIndex(convention.findText("quaternion", person.core.Qt.MatchContains))
+    person.idle()
+    poses = person.field(wizard, "poses")
+    type_row(person, hand, poses, 0, [-0.408248] * 4, column=9)
+    person.screenshot("machine_7_quaternions")
+    for column in range(9, 13):
+        item = poses.item(0, column)
+        assert item.text() == "-0.408248"
+        assert poses.visualItemRect(item).width() > poses.fontMetrics().boundingRect(item.text()).width() + 6

@@ -213,14 +213,19 @@ def test_the_nozzle_points_against_the_tool_axis_and_hardly_turns_about_it():
 
 
 @pytest.mark.parametrize(
-    ("path", "code"), [("wires.iges", "UNSUPPORTED_FILE"), ("wires", "UNSUPPORTED_FILE"), ("file/wires.dxf", "NOT_WRITABLE")]
+    ("path", "code"),
+    [("wires.iges", "UNSUPPORTED_FILE"), ("wires", "UNSUPPORTED_FILE"), ("file/wires.dxf", "NO_FOLDER"),
+     ("new/wires.step", "NO_FOLDER"), ("full.dxf", "NOT_WRITABLE")],
 )
 def test_what_cannot_be_written_is_refused_and_leaves_nothing(job, tmp_path, path, code):
     (tmp_path / "file").write_text("in the way")
+    (tmp_path / "full.dxf").mkdir()
     with pytest.raises(InputError) as caught:
         api.export_wires(job, str(tmp_path / path))
     assert caught.value.code == code
-    assert os.listdir(tmp_path) == ["file"]
+    assert sorted(os.listdir(tmp_path)) == ["file", "full.dxf"] and os.listdir(tmp_path / "full.dxf") == []
+    if code == "NO_FOLDER":
+        assert str((tmp_path / path).parent) in caught.value.message
 
 
 def test_only_paths_are_exported(job, tmp_path):

@@ -15,6 +15,7 @@ from ...core.issues import InputError
 from ..texts import tr
 
 Array = NDArray[np.float64]
+BESIDE = 12  # pixels in a cell beside its text
 ROW_HEIGHT = 24
 MOST_SHOWN = 9  # rows that are to be seen at once
 
@@ -45,12 +46,20 @@ class FigureTable:
             self.widget.horizontalHeaderItem(column).setToolTip(text)
         self.widget.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.Stretch)
         self.widget.setTextElideMode(QtCore.Qt.ElideNone)  # '0.7071', not '0.…', where a column is narrow
+        self.widget.setWordWrap(False)  # which would break a figure at its point
         self.fit()
 
     def fit(self) -> None:
         """Be as high as the rows there are."""
         shown = min(self.widget.rowCount(), MOST_SHOWN)
         self.widget.setFixedHeight(ROW_HEIGHT * shown + self.widget.horizontalHeader().sizeHint().height() + 4)
+
+    def widen(self, columns: Sequence[int], widest: str) -> None:
+        """Let columns have room for such a figure; the others share what is left."""
+        header, room = self.widget.horizontalHeader(), self.widget.fontMetrics().boundingRect(widest).width() + BESIDE
+        for column in columns:
+            header.setSectionResizeMode(column, QtGui.QHeaderView.Fixed)
+            header.resizeSection(column, room)
 
     def lock(self, *columns: int) -> None:
         """Let columns be read only: what is shown there is computed."""

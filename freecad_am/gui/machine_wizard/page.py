@@ -9,7 +9,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
 from ..colours import WRONG
-from ..texts import tr, translated, translated_error
+from ..texts import sentence, tr, translated_error
 
 
 class Page(QtGui.QWizardPage):
@@ -71,8 +71,7 @@ class Page(QtGui.QWizardPage):
 
 def told(error: InputError) -> str:
     """An error with its place, where that is a place a user knows."""
-    text = translated(error.message) if error.where in ("geometry", "flange") else translated_error(error)
-    return text[:1].upper() + text[1:]
+    return sentence(error.message) if error.where in ("geometry", "flange", "table") else translated_error(error)
 
 
 def choice(name: str, entries: list[tuple[str, Any]]) -> Any:

@@ -98,6 +98,8 @@ class PosesPage(Page):
     def _head(self, rows: int) -> None:
         columns = [*axis_names(self.owner), "X", "Y", "Z", *self._angles(), "Δ mm", "Δ deg"]
         self.table.set_shape([str(number) for number in range(1, rows + 1)], columns)
+        if len(self._angles()) == 4:  # a quaternion has more decimals than an angle
+            self.table.widen(range(self.axes + 3, self.axes + 7), "-0.000000")
         self.table.lock(len(columns) - 2, len(columns) - 1)
 
     def _add_row(self, *_: Any) -> None:

@@ -44,6 +44,11 @@ class SourcePage(Page):
         self.kind.currentIndexChanged.connect(self._turn)
         self.robot: Urdf | None = None
         self.taken: str | None = None
+        self.first = self._entered()
+
+    def begun(self) -> bool:
+        """Whether anything was entered."""
+        return self._entered() != self.first
 
     def _turn(self, index: int) -> None:
         self.stack.setCurrentIndex(index)

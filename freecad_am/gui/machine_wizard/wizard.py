@@ -54,6 +54,21 @@ class MachineWizard(QtGui.QWizard):
         self.geometry_sources = draft.sources
         self.copied = draft.values is not None
 
+    def reject(self) -> None:
+        """Cancel, Esc and the window's own cross: what was entered is not lost without a question."""
+        if not self._entered() or self._to_be_lost():
+            super().reject()
+
+    def _entered(self) -> bool:
+        """Whether there is something to lose."""
+        return self.draft is not None or self.source_page.begun()
+
+    def _to_be_lost(self) -> bool:
+        box = QtGui.QMessageBox
+        asked = box.question(self, tr("New machine"), tr("Close without a machine file? What you entered on the pages is "
+                             "lost."), box.Discard | box.Cancel, box.Cancel)
+        return bool(asked == box.Discard)
+
     def keyPressEvent(self, event: Any) -> None:
         """Enter in a field ends the field, not the page."""
         if event.key() not in (QtCore.Qt.Key_Return, QtCore.Qt.Key_Enter):

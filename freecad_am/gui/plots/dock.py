@@ -250,7 +250,7 @@ class PlotsDock(Follower):
         for name in ("in", "out", "whole", "rectangle", "save"):
             self.buttons[name].setEnabled(self.picture is not None)
         self._said("")
-        self.canvas.show_picture(self.picture, text[:1].upper() + text[1:], keep)
+        self.canvas.show_picture(self.picture, text, keep)
 
     # ---- what the user does
 

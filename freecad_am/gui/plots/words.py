@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...plots.chart import Chart, Picture, Quantity
 from ...plots.look import Words
-from ..texts import marked, tr, translated
+from ..texts import marked, sentence, tr, translated
 
 # all that stands alone in pictures, which `plots` draws in English for reports
 WORDS = (
@@ -53,4 +53,4 @@ def in_words(picture: Picture) -> Picture:
             upright=tuple((value, translated(name)) for value, name in chart.upright),
         )
 
-    return replace(picture, charts=tuple(map(of_chart, picture.charts)), lacking=translated(picture.lacking))
+    return replace(picture, charts=tuple(map(of_chart, picture.charts)), lacking=sentence(picture.lacking))
