@@ -71,28 +71,78 @@ def cancelled(job) -> dict[str, float]:
     return {"cancel": took, "pause": pauses.longest}
 
 
-def previewed(obj) -> float:
-    """The longest pause, s, while a panel shows what an object would become."""
+def previewed(open_panel, words: str) -> float:
+    """The longest pause, s, while a panel that is opened shows what OK would make, until it tells these words, and again
+    after something else is entered."""
     import FreeCADGui as Gui
     from PySide import QtGui
 
-    obj.ViewObject.doubleClicked()
+    open_panel()
     settle(0.1)  # the panel itself is there
-    state = Gui.getMainWindow().findChild(QtGui.QLabel, "preview")
-    pauses, end = Pauses(), time.perf_counter() + LOOKED
-    while "irst layer" not in state.text() and time.perf_counter() < end:
-        settle(0.05)
-    assert "irst layer" in state.text(), state.text()
+    pauses = Pauses()
+    for entered in (False, True):
+        state = Gui.getMainWindow().findChild(QtGui.QLabel, "preview")
+        if entered:
+            enter_another()
+            settle(1.0)
+        end = time.perf_counter() + LOOKED
+        while words not in state.text() and time.perf_counter() < end:
+            settle(0.05)
+        assert words in state.text(), state.text()
     pauses.timer.stop()
     Gui.Control.closeDialog()
     settle(0.5)
     return pauses.longest
 
 
+def enter_another() -> None:
+    """Change a figure in the panel that is open, whichever of those in it is found first."""
+    import FreeCADGui as Gui
+    from PySide import QtGui
+
+    for name, text in (("LayerHeight", "0.7 mm"), ("PlatformDiameter", "90 mm"), ("MinCondition", "0.03"),
+                       ("ProgramName", "OTHER")):
+        fields = [one for one in Gui.getMainWindow().findChildren(QtGui.QWidget, name) if one.isVisible()]
+        if fields:
+            line = fields[0] if isinstance(fields[0], QtGui.QLineEdit) else fields[0].findChild(QtGui.QLineEdit)
+            line.setText(text)
+            return
+    raise AssertionError("no field is known")
+
+
+def of_panels() -> list[dict[str, object]]:
+    """Of the panels of a cell and of a joint path with 120,000 points, and of a program with 25,000."""
+    import FreeCAD as App
+
+    from freecad_am import api
+    from freecad_am.gui import cell_panel, joint_path_panel, program_panel, stage_panel
+    from tests.gui.long_jobs import joints, sphere
+
+    job = joints(Path(os.environ["FRAMES_OF"]))
+    settle(1.0)
+    found = [
+        {"job": "cell", "preview": previewed(
+            lambda: stage_panel.show(cell_panel.CellPanel(job.inputs["cell"])), "upright on the part")},
+        {"job": "joint path", "preview": previewed(
+            lambda: stage_panel.show(joint_path_panel.JointPathPanel()), "without rapid moves")},
+    ]
+    App.closeDocument(job.document.Name)
+    document = App.newDocument("Program")
+    cell = api.make_cell(document, limits="paper")
+    toolpath = api.make_toolpath(document, api.make_feature(document, sphere(document), layer_height=0.4), cell)
+    api.make_joint_path(document, toolpath, cell)
+    settle(1.0)
+    found.append({"job": "program", "preview": previewed(
+        lambda: stage_panel.show(program_panel.ProgramPanel()), "Begins with")})
+    App.closeDocument(document.Name)
+    return found
+
+
 def all_of_them() -> list[dict[str, object]]:
     """Of every job."""
     import FreeCAD as App
 
+    from freecad_am.gui import stage_panel
     from tests.gui.long_jobs import JOBS, PREVIEWED
 
     found = []
@@ -101,10 +151,10 @@ def all_of_them() -> list[dict[str, object]]:
         settle(1.0)
         one: dict[str, object] = {"job": make.__name__, **(cancelled(job) if make in JOBS else {})}
         if make in PREVIEWED:
-            one["preview"] = previewed(job.inputs["feature"])
+            one["preview"] = previewed(lambda feature=job.inputs["feature"]: stage_panel.edit(feature), "irst layer")
         found.append(one)
         App.closeDocument(job.document.Name)
-    return found
+    return found + of_panels()
 
 
 begin(all_of_them)

@@ -200,6 +200,14 @@ class Bead:
         first = not rows.start
         return dataclasses.replace(self, **columns, closed=False, returns=self.returns and first)
 
+    def thinned(self, index: NDArray[np.intp]) -> Bead:
+        """The bead with some of its points alone, by their numbers, rising, the first and the last among them."""
+        columns = {
+            entry.name: getattr(self, entry.name)[index]
+            for entry in dataclasses.fields(self) if isinstance(getattr(self, entry.name), np.ndarray)
+        }
+        return dataclasses.replace(self, **columns)
+
 
 @dataclass(frozen=True)
 class SpeedLaw:

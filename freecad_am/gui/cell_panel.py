@@ -1,48 +1,86 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a cell: what has no meaning for the machine that is chosen is greyed."""
+"""The panel of a cell: platform, nozzle and machine are seen while it is open, and it follows the machine that is chosen."""
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Callable
 from typing import Any
 
-from ..core.issues import InputError
+import numpy as np
+from PySide import QtGui
+
+from ..core.issues import AmError, InputError
 from ..core.kinematics import machine as machines
 from ..core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
+from ..core.kinematics.machine import Machine
+from ..core.kinematics.proposed_cell import cell_of
+from ..core.parameters.cell import CellParameters
 from ..objects import user_machines
 from ..objects.cell import Cell
-from .later import Later
-from .stage_panel import StagePanel
+from ..objects.stage import Outcome
+from .busy import carry_out
+from .cell_nodes import CellNodes, Rest, Scenery, at_the_end, with_machine
+from .later import Background, Later
+from .preview import Aside, Draft
+from .preview_panel import PreviewPanel
 from .texts import tr, translated
+from .view_cell import toolpath_of
+from .worker import Worker
 
-_OF_ROBOTS = ("cell_setup", "cell_deposition_point", "cell_branch", "cell_nozzle_tool")
+MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
+_OF_ROBOTS = (SETUP, POINT, BRANCH, "cell_nozzle_tool")
 
 
-class CellPanel(StagePanel):
-    """Follows the machine: one with sliding and turning axes carries the part on its table, and has no branches."""
+class CellPanel(PreviewPanel):
+    """Follows the machine: one with sliding and turning axes carries the part on its table, and has no branches; a robot
+    gets a deposition point and a branch that suit it, unless others were entered."""
 
-    stage = Cell
+    stage, draft = Cell, "Cell"
 
     def __init__(self, obj: Any = None) -> None:
-        super().__init__(Cell, tr("Cell") if obj is None else obj.Label, [], obj)
+        self.of_machine: dict[str, CellParameters] = {}  # what is proposed for machines, by what the field holds
+        self.before = ""  # the machine that was followed last
+        self.unknown = ""  # what was wrong with its name
+        self.put: dict[str, Any] = {}  # what the panel itself has entered
+        self.noted: dict[str, Any] = {}  # what fields held when something was told of a proposal
+        self.aside = Aside()
+        super().__init__(tr("Cell") if obj is None else obj.Label, [], obj, CellNodes(ghost=True))
+        self._add_machine_box()
         self.tips = {place: self.places[place][0].widget.toolTip() for place in _OF_ROBOTS}
         self.enabled = {place: self.places[place][0].widget.isEnabled() for place in _OF_ROBOTS}
+        if obj is None:
+            self.put.update((place, self._holds(place)) for place in (POINT, BRANCH))
+        self.proposing = Background(self.form)
         self.later = Later(self.form, self._follow)
-        self._widget("cell_machine").editTextChanged.connect(self.later.ask)
+        self._widget(MACHINE).editTextChanged.connect(self.later.ask)
         self._follow()
+
+    def _add_machine_box(self) -> None:
+        self.machine_box = QtGui.QCheckBox(tr("Show the machine"))
+        self.machine_box.setObjectName("PreviewMachine")
+        help = tr("Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path")
+        self.machine_box.setToolTip(help)
+        self.machine_box.setWhatsThis(help)
+        self.machine_box.setChecked(True)
+        self.column.insertWidget(self.column.indexOf(self.state), self.machine_box)
 
     def _widget(self, place: str) -> Any:
         return self.places[place][0].widget
 
+    # ---- what the machine asks for
+
     def _follow(self) -> None:
         """Fit the fields to the machine; those of an unknown one stay as they are."""
-        note = self.notes["cell_machine"]
+        name = self.places[MACHINE][0].value
         try:
-            machine = machines.load(self.places["cell_machine"][0].value, user_machines.folders())
+            machine = machines.load(name, user_machines.folders())
         except InputError as error:
-            note.setText(translated(error.message))
-            note.show()
+            self.unknown = translated(error.message)
+            self.tell(MACHINE, self.unknown)
             return
-        note.hide()
+        if self.unknown and self.unknown == self.notes[MACHINE].text():
+            self.tell(MACHINE, "")
         self._set_setup(machine.is_table)
         for place in _OF_ROBOTS:
             field, _, fold = self.places[place]
@@ -51,10 +89,11 @@ class CellPanel(StagePanel):
             fixed = tr("No choice for {}: the part lies on its table").format(machine.title)
             widget.setToolTip(fixed if machine.is_table else self.tips[place])
         self._offer_limits(list(machine.limit_sets))
+        self._ask_proposal(name, machine)
 
     def _set_setup(self, is_table: bool) -> None:
-        setup = self._widget("cell_setup")
-        if not self.enabled["cell_setup"] or is_table == (setup.currentData() == ROTARY_TABLE):
+        setup = self._widget(SETUP)
+        if not self.enabled[SETUP] or is_table == (setup.currentData() == ROTARY_TABLE):
             return
         setup.setCurrentIndex(setup.findData(ROTARY_TABLE if is_table else PART_ON_ROBOT))
 
@@ -66,7 +105,138 @@ class CellPanel(StagePanel):
         limits.addItems(names)
         limits.setEditText(text)
 
+    def _ask_proposal(self, name: str, machine: Machine) -> None:
+        """Find out, beside the window, what suits the machine; nothing for one that was not chosen here."""
+        before, self.before = self.before, name
+        if name == before or (not before and self.obj is not None):
+            return
+        self.proposing.cancel()
+        for place in self.noted:
+            self.tell(place, "")
+        self.noted.clear()
+        if machine.is_table or self._widget(SETUP).currentData() != PART_ON_ROBOT:
+            return
+        folders, known = user_machines.folders(), dict(self.of_machine)
+
+        def work() -> dict[str, CellParameters]:
+            for one in filter(None, (before, name)):
+                with contextlib.suppress(InputError):  # the one before is gone
+                    known[one] = known.get(one) or cell_of(one, folders)
+            return known
+
+        self.proposing.start(work, lambda worker: self._propose(worker, before, name, machine.title))
+
+    def _propose(self, worker: Worker, before: str, name: str, title: str) -> None:
+        """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
+        self.of_machine = worker.result()
+        proposal, usual = self.of_machine[name], self.of_machine.get(before, CellParameters())
+        for place, value, was in (
+            (POINT, proposal.deposition_point, usual.deposition_point), (BRANCH, proposal.branch, usual.branch),
+        ):
+            field = self.places[place][0]
+            wanted, holds = field.row.outer(value), self._holds(place)
+            if _alike(holds, wanted):
+                continue
+            if self.enabled[place] and any(_alike(holds, one) for one in (self.put.get(place), field.row.outer(was))):
+                field.show(wanted)
+                self.put[place] = wanted
+                told = tr("Proposed for {}; enter what yours really has.").format(title)
+            else:
+                told = tr("Left as it was entered; for {} it would be {}.").format(title, _told(wanted))
+            self.noted[place] = self._holds(place)
+            self.tell(place, told, wrong=False)
+
+    def _holds(self, place: str) -> Any:
+        """What a field holds, None where that cannot be read."""
+        with contextlib.suppress(InputError):
+            return self.places[place][0].value
+        return None
+
+    def _judge_entries(self) -> None:
+        """What was told of a proposal goes once something else is entered."""
+        super()._judge_entries()
+        for place, held in list(self.noted.items()):
+            if not _alike(self._holds(place), held):
+                del self.noted[place]
+                self.tell(place, "")
+
     def _carry_out(self) -> bool:
         """Make or change the cell, after what was typed last is followed."""
         self.later.at_once()
+        worker = self.proposing.worker
+        if worker is not None:
+            carry_out(worker.ended.wait, self.form.windowTitle())
+            self.proposing.at_once()
         return super()._carry_out()
+
+    def close(self, *_: Any) -> None:
+        """Take away the preview; once or more often."""
+        if self.is_open:
+            self.proposing.cancel()
+        super().close()
+
+    # ---- preview
+
+    def _lacks(self) -> str:
+        return ""
+
+    def _links(self) -> dict[str, Any]:
+        return {}
+
+    def _entered(self) -> Any:
+        return *super()._entered(), self.machine_box.isChecked()
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Scenery]]:
+        draft.check()
+        work, folders = draft.prepare(), user_machines.folders()
+        drawn = with_machine if self.machine_box.isChecked() else at_the_end
+        toolpath = None if self.obj is None else toolpath_of(self.obj)
+        read = None if toolpath is None else toolpath.Proxy.reader(toolpath)
+
+        def both() -> tuple[Outcome, Scenery]:
+            made = work()
+            return made, drawn(made.value, None if read is None else read(), folders)
+
+        return both
+
+    def _draw(self, made: Outcome, drawing: Scenery) -> str:
+        self.nodes.set(drawing)
+        return "" if drawing.rest is None else _stands(drawing.rest)
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        """What is wrong with the file of a machine is told under its name."""
+        return (MACHINE, translated(error.message)) if error.code == "BAD_MACHINE" else super()._placed(error)
+
+    def _draw_without(self) -> None:
+        self.nodes.clear()
+
+    def _show_own(self, visible: bool) -> None:
+        if visible:
+            self.aside.take_back()
+        else:
+            self.aside.put(self.obj)
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Whether two poses, or two texts, are the same to whoever reads them."""
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return bool(np.allclose(one, other, rtol=0.0, atol=1e-6))
+    return isinstance(one, str) and isinstance(other, str) and one.replace(",", " ").split() == other.split()
+
+
+def _told(value: Any) -> str:
+    return value if isinstance(value, str) else " ".join(f"{number:g}" for number in value)
+
+
+def _stands(rest: Rest) -> str:
+    """How the machine stands at rest."""
+    if rest.machine.is_table:
+        return tr("{} at rest, its turning axes at 0").format(rest.machine.title)
+    if not rest.reached:
+        told = tr("{} does not reach the part with the nozzle upright: all its axes are drawn at 0")
+        return told.format(rest.machine.title)
+    margin, label = rest.limits.smallest(rest.joints)
+    left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
+    told = tr("{} with the nozzle upright on the part: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
+        "{} with the nozzle upright on the part: {} is {:.0f}° past its limit")
+    return told.format(rest.machine.title, axis, abs(left))

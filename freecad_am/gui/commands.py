@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
@@ -177,12 +176,6 @@ def _export_path() -> None:
     stage_panel.show(export_panel.ExportPanel())
 
 
-def _open(proxy: Any, title: str) -> None:
-    from . import inputs, stage_panel
-
-    stage_panel.show(stage_panel.StagePanel(proxy, title, inputs.of(proxy)))
-
-
 def _cell() -> None:
     from . import cell_panel, stage_panel
 
@@ -214,9 +207,9 @@ def _toolpath() -> None:
 
 
 def _joint_path() -> None:
-    from ..objects.joint_path import JointPath
+    from . import joint_path_panel, stage_panel
 
-    _open(JointPath, tr("Joint path"))
+    stage_panel.show(joint_path_panel.JointPathPanel())
 
 
 def _spin_map() -> None:
@@ -238,15 +231,9 @@ def _simulate() -> None:
 
 
 def _program() -> None:
-    from ..objects.program import Program
-    from . import inputs, stage_panel, suggestions
+    from . import program_panel, stage_panel
 
-    choices = [*inputs.of(Program), inputs.NameChoice(_part_name())]
-    panel = stage_panel.StagePanel(Program, tr("Program"), choices)
-    post = suggestions.post_for(App.ActiveDocument)
-    if post:
-        panel.places["program_post"][0].widget.setEditText(post)
-    stage_panel.show(panel)
+    stage_panel.show(program_panel.ProgramPanel())
 
 
 def _new_machine() -> None:
@@ -265,13 +252,3 @@ def _plots() -> None:
     from .plots import dock
 
     dock.show()
-
-
-def _part_name() -> str:
-    """A first proposal for the program's name, from the part that is deposited."""
-    from .. import api
-
-    for obj in App.ActiveDocument.Objects:
-        if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
-            return api.proposed_name(obj.Source[0].Label)
-    return api.proposed_name(App.ActiveDocument.Label)

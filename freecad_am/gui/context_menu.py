@@ -146,6 +146,6 @@ def _simulate(obj: Any) -> None:
 
 
 def _export(obj: Any) -> None:
-    from . import program_panel
+    from . import program_window
 
-    program_panel.export(obj)
+    program_window.export(obj)

@@ -24,13 +24,16 @@ _LARGEST = 2_147_483_647
 
 
 class Field:
-    """A widget and how to read it. `value` raises InputError naming the field for what cannot be read; it is a text that
-    starts with `=` for an expression."""
+    """A widget, how to read it, and how to show another outer value in it where a panel does. `value` raises InputError
+    naming the field for what cannot be read; it is a text that starts with `=` for an expression."""
 
-    def __init__(self, row: Row, widget: Any, read: Callable[[], Any]) -> None:
+    def __init__(
+        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None] = lambda value: None
+    ) -> None:
         self.row = row
         self.widget = widget
         self.read = read
+        self.show = show
         self.label = translated(row.label)
         self.shown = read()
         widget.setObjectName(row.name)
@@ -173,7 +176,7 @@ def _suggested(row: Row, shown: str, texts: list[str]) -> Field:
     _shrink(combo)
     combo.setEditText(shown)
     combo.lineEdit().setCursorPosition(0)
-    return Field(row, combo, lambda: combo.currentText().strip())
+    return Field(row, combo, lambda: combo.currentText().strip(), combo.setEditText)
 
 
 def _shrink(combo: Any) -> None:
@@ -187,12 +190,17 @@ def _pose(row: Row, shown: tuple[float, ...]) -> Field:
     grid = QtGui.QGridLayout(widget)
     grid.setContentsMargins(12, 0, 0, 0)
     grid.setColumnStretch(1, 1)
-    reads = []
+    quantities = []
     for index, (number, unit, name) in enumerate(zip(shown, _POSE_UNITS, _POSE_NAMES, strict=True)):
         quantity = QuantityField(number, unit, f"{row.label} {name}")
         quantity.box.setObjectName(f"{row.name}{name}")
         quantity.box.setToolTip(tr("{}: {}").format(name, translated(row.spec.help)))
         grid.addWidget(QtGui.QLabel(name), index, 0)
         grid.addWidget(quantity.box, index, 1)
-        reads.append(quantity.read)
-    return Field(row, widget, lambda: tuple(read() for read in reads))
+        quantities.append(quantity)
+
+    def show(numbers: tuple[float, ...]) -> None:
+        for quantity, number in zip(quantities, numbers, strict=True):
+            quantity.show(number)
+
+    return Field(row, widget, lambda: tuple(quantity.read() for quantity in quantities), show)

@@ -64,9 +64,14 @@ class StageChoice(Input):
             return ""
         return tr("{0} is missing in this document. Make it first: button {0} in the toolbar.").format(self.label)
 
-    def arguments(self) -> dict[str, str]:
+    def value(self) -> Any:
+        """As the link of the stage holds it."""
         name = self.widget.currentData() if self.widget.count() else ""
-        return {self.link.key: recorded.reference(self.document.getObject(name)) if name else "None"}
+        return self.document.getObject(name) if name else None
+
+    def arguments(self) -> dict[str, str]:
+        chosen = self.value()
+        return {self.link.key: "None" if chosen is None else recorded.reference(chosen)}
 
 
 class ShapeChoice(Input):

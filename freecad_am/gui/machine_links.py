@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from pivy import coin
 from ..core.kinematics.link_shape import LinkShape
 from ..core.kinematics.machine import Machine
 from ..core.simulation import robot_links, table_links
+from ..core.simulation.link_rods import Mesh
 from ..core.simulation.solids import BRIGHT, DARK, Solid
 from ..objects import preferences
 from .lines import fill
@@ -38,10 +40,13 @@ class MachineNodes:
     """The links of a machine, in the frame of what they are posed in.
 
     platform: diameter of the platform on a table, torch: length of the nozzle, mm; machines with rotary axes are drawn to
-    fit them. A user's file that cannot be read is told on the report view, once.
+    fit them. meshes: of the files a user gave the links, where they are read already. One that cannot be read is told on the
+    report view, once.
     """
 
-    def __init__(self, machine: Machine, platform: float, torch: float) -> None:
+    def __init__(
+        self, machine: Machine, platform: float, torch: float, meshes: Sequence[Mesh | None] = ()
+    ) -> None:
         self.node = coin.SoSeparator()
         self.transforms: list[Any] = []
         self.materials: list[list[tuple[Any, Look]]] = []
@@ -50,13 +55,14 @@ class MachineNodes:
             solids = table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
         else:
             solids = robot_links.solids(machine.chain)
-        for shape, plain in zip(machine.shapes, solids):
-            self._add(shape, plain)
+        for shape, mesh, plain in zip_longest(machine.shapes, meshes, solids):
+            self._add(shape, mesh, plain)
 
-    def _add(self, shape: LinkShape | None, plain: Sequence[Solid]) -> None:
+    def _add(self, shape: LinkShape | None, mesh: Mesh | None, plain: Sequence[Solid]) -> None:
         link, transform, materials = coin.SoSeparator(), coin.SoMatrixTransform(), []
         link.addChild(transform)
-        own = None if shape is None else _of_file(shape)
+        mesh = mesh if mesh is not None or shape is None else drawn_mesh(shape)
+        own = None if mesh is None else _of_mesh(mesh)
         parts = [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)] if own is not None else [
             (of_solid(solid), TONES.get(solid.tone)) for solid in plain
         ]
@@ -109,11 +115,8 @@ def of_solid(solid: Solid) -> Any:
     return shape
 
 
-def _of_file(shape: LinkShape) -> Any:
-    """The node of a user's file, None when it cannot be drawn, which is told."""
-    mesh = drawn_mesh(shape)
-    if mesh is None:
-        return None
+def _of_mesh(mesh: Mesh) -> Any:
+    """The node of a user's file."""
     group, hints = coin.SoGroup(), coin.SoShapeHints()
     hints.vertexOrdering, hints.shapeType = coin.SoShapeHints.COUNTERCLOCKWISE, coin.SoShapeHints.UNKNOWN_SHAPE_TYPE
     hints.creaseAngle = _CREASE

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import FreeCADGui as Gui
+from pivy import coin
 
 from ..objects import faults
 from ..objects.stage import Stage, Work
@@ -65,3 +66,30 @@ class Preview:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view is closed
                 scene.removeChild(self.node)
         self.scenes = []
+
+
+class Aside:
+    """What objects themselves draw, switched off while a preview stands for it; their properties stay as they are."""
+
+    def __init__(self) -> None:
+        self.drawn: dict[str, tuple[Any, int]] = {}
+
+    def put(self, *objects: Any) -> None:
+        """Switch off what these draw, in place of those before."""
+        wanted = {obj.Name: obj for obj in objects if obj is not None}
+        self.take_back(*(name for name in self.drawn if name not in wanted))
+        for name, obj in wanted.items():
+            switch = obj.ViewObject.SwitchNode
+            which = int(switch.whichChild.getValue())
+            if which != coin.SO_SWITCH_NONE:
+                self.drawn[name] = obj, which
+                switch.whichChild = coin.SO_SWITCH_NONE
+
+    def take_back(self, *names: str) -> None:
+        """Switch on again what these draw, all where none are named; not what has been hidden meanwhile, or is gone."""
+        for name in names or tuple(self.drawn):
+            obj, which = self.drawn.pop(name)
+            with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):
+                switch = obj.ViewObject.SwitchNode
+                if obj.ViewObject.Visibility and switch.whichChild.getValue() == coin.SO_SWITCH_NONE:
+                    switch.whichChild = which

@@ -9,7 +9,7 @@ from typing import Any
 
 from PySide import QtCore
 
-from ..core.issues import AmError, InputError
+from ..core.issues import AmError, InputError, has_errors
 from ..objects import expressions
 from ..objects.stage import Outcome, Stage
 from .colours import WRONG
@@ -25,7 +25,8 @@ TOLD_AFTER = 400  # ms; when a preview takes longer, that is said
 
 
 class PreviewPanel(StagePanel):
-    """Makes a stage or changes one, and draws it before. The document is left alone before OK."""
+    """Makes a stage or changes one, and shows it before, in the 3D view by its nodes, where it has any. The document is
+    left alone before OK."""
 
     stage: type[Stage]
     is_open = True
@@ -41,8 +42,8 @@ class PreviewPanel(StagePanel):
         self.state = self._note("preview", "palette(text)")
         self.state.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
         self.column.removeWidget(self.state)
-        self.column.insertWidget(2, self.state)
-        self.preview = Preview(self.document, nodes.switch)
+        self.column.insertWidget(1 if self.heading is None else 2, self.state)
+        self.preview = None if nodes is None else Preview(self.document, nodes.switch)
         self._show_own(False)
         self.timer = QtCore.QTimer(self.form)
         self.timer.setInterval(LOOK_EVERY)
@@ -137,7 +138,7 @@ class PreviewPanel(StagePanel):
         """Show what was computed, or what is wrong."""
         try:
             made, drawing = worker.result()
-            self._say(self._draw(made, drawing), False, True)
+            self._say(self._draw(made, drawing), has_errors(made.issues), True)
         except AmError as error:
             self._refuse(error)
         except ReferenceError:
@@ -216,7 +217,8 @@ class PreviewPanel(StagePanel):
             return
         self.is_open = False
         self.background.cancel()
-        self.preview.remove()
+        if self.preview is not None:
+            self.preview.remove()
         with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
             self.timer.stop()
         with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # the object is gone

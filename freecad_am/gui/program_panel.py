@@ -1,152 +1,138 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The text of a program in a window of its own, to be read and exported."""
+"""The panel of a program: how it begins, and what it is in all, is seen as it is entered."""
 
 from __future__ import annotations
 
-import os
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import FreeCAD as App
-import FreeCADGui as Gui
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
 from .. import api
 from ..core.issues import AmError
-from ..objects import preferences
-from ..objects.staleness import UP_TO_DATE
-from . import icons
-from .colours import WRONG
+from ..core.simulation.timeline import timeline
+from ..core.simulation.totals import Totals, totals
+from ..objects.program import Job, Program, Written, posted
+from ..objects.stage import Outcome
+from ..objects.staleness import STALE
+from ..posts import catalogue
+from . import inputs, suggestions
+from .preview import Draft
+from .preview_panel import PreviewPanel
 from .simulation import told
-from .simulation.run import run_of
-from .texts import error_line, tr, translated, translated_error
+from .texts import tr, translated
+
+FIRST = 40  # lines that are shown: controllers want a head of twenty
+HIGH = 14  # lines that are seen at once, about
+SMALLER, LEAST = 0.85, 6.0  # than the text of the panel, which is narrow, and points at least
+POST, START, START_LAYER = "program_post", "program.start_at", "program_start_at_layer"
 
 
-class ProgramWindow:
-    """The files of a program, one at a time, read-only, with a button to export them all."""
+@dataclass(frozen=True)
+class Beginning:
+    """How a program begins. name: of its main file; text: the first lines. lines, files: in all."""
 
-    def __init__(self, obj: Any) -> None:
-        self.obj = obj
-        self.files: dict[str, bytes] = {}
-        self.window = QtGui.QDialog(Gui.getMainWindow())
-        self.window.setObjectName("RoboticAM_ProgramText")
-        self.window.setWindowTitle(obj.Label)
-        self.window.setWindowIcon(QtGui.QIcon(icons.path("program")))
-        self.window.setAttribute(QtCore.Qt.WA_DeleteOnClose)
-        self.window.resize(760, 620)
-        self.state = QtGui.QLabel()
-        self.state.setObjectName("state")
-        self.state.setWordWrap(True)
-        self.sums = QtGui.QLabel()
-        self.sums.setObjectName("sums")
-        self.sums.setWordWrap(True)
-        self.choice = QtGui.QComboBox()
-        self.choice.setObjectName("file")
+    name: str
+    text: str
+    lines: int
+    files: int
+    sums: Totals
+    dry: bool
+
+
+class ProgramPanel(PreviewPanel):
+    """Makes a program, or changes one. Its preview is written as the program will be, but not read back."""
+
+    stage, draft = Program, "Program"
+
+    def __init__(self, obj: Any = None) -> None:
+        self.name = inputs.NameChoice(_part_name() if obj is None else obj.ProgramName)
+        super().__init__(
+            tr("Program") if obj is None else obj.Label, [*inputs.of(Program, obj), self.name], obj, None
+        )
+        post = suggestions.post_for(App.ActiveDocument) if obj is None else ""
+        if post:
+            self.places[POST][0].show(post)
+        self._add_text()
+
+    def _add_text(self) -> None:
         self.text = QtGui.QPlainTextEdit()
-        self.text.setObjectName("text")
+        self.text.setObjectName("FirstLines")
         self.text.setReadOnly(True)
         self.text.setLineWrapMode(QtGui.QPlainTextEdit.NoWrap)
         font = QtGui.QFont("monospace")
         font.setStyleHint(QtGui.QFont.TypeWriter)
+        font.setPointSizeF(max(LEAST, SMALLER * self.form.font().pointSizeF()))
         self.text.setFont(font)
-        self.export_button = _button(
-            tr("Export…"), "export", tr("Writes all files of the program into a folder"), self._export
-        )
-        self._lay_out()
-        self.load()
-        self.choice.currentIndexChanged.connect(self._show)
-        self.window.finished.connect(lambda *_: _shown.remove(self))
-        _shown.append(self)
+        self.text.setFixedHeight(HIGH * self.text.fontMetrics().lineSpacing())
+        help = tr("The first lines of the program as it would be written")
+        self.text.setToolTip(help)
+        self.text.setWhatsThis(help)
+        self.text.hide()
+        self.column.insertWidget(self.column.indexOf(self.state) + 1, self.text)
 
-    def load(self) -> None:
-        """Show what the object holds now."""
-        try:
-            self.files = api.result(self.obj).files if self.obj.Key else {}
-        except AmError:  # within undo the parts of a result come back one by one
-            return
-        names, chosen = sorted(self.files), self.choice.currentText()
-        self.choice.blockSignals(True)
-        self.choice.clear()
-        self.choice.addItems(names)
-        self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
-        self.choice.blockSignals(False)
-        self.export_button.setEnabled(bool(names))
-        fits = self.obj.Status == UP_TO_DATE
-        warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
-        status = tr("Status: {}.").format(translated(self.obj.Status))
-        self.state.setText(" ".join(filter(None, (warning, status, translated(self.obj.Message)))))
-        try:
-            sums = told.totals(run_of(self.obj))
-            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in sums))
-        except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
-            self.sums.setText("")
-        self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
-        self.text.setStyleSheet("" if fits else "QPlainTextEdit { color: gray; }")
-        self._show()
+    def _lacks(self) -> str:
+        return next((choice.missing for choice in self.choices if choice.missing), "")
 
-    def _lay_out(self) -> None:
-        column, row = QtGui.QVBoxLayout(self.window), QtGui.QHBoxLayout()
-        row.addWidget(self.choice, 1)
-        row.addWidget(self.export_button)
-        row.addWidget(_button(tr("Close"), "close", tr("Closes this window"), lambda *_: self.window.close()))
-        column.addLayout(row)
-        column.addWidget(self.text, 1)
-        column.addWidget(self.sums)
-        column.addWidget(self.state)
+    def _links(self) -> dict[str, Any]:
+        path = next(choice for choice in self.choices if choice is not self.name)
+        return {path.link.name: path.value(), "ProgramName": self.name.widget.text().strip()}
 
-    def _show(self, *_: Any) -> None:
-        text = self.files.get(self.choice.currentText(), b"").decode("latin-1").replace("\r\n", "\n")
-        if text != self.text.toPlainText():
-            self.text.setPlainText(text)
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Beginning | None]]:
+        job = draft.stage.job(draft.obj)
 
-    def _export(self, *_: Any) -> None:
-        try:
-            self.state.setText(export(self.obj, self.window))
-        except ReferenceError:
-            self.state.setText(tr("The document is closed; open it again to export."))
+        def work() -> tuple[Outcome, Beginning | None]:
+            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job)
+
+        return work
+
+    def _draw(self, made: Outcome, drawing: Beginning | None) -> str:
+        self.text.setVisible(drawing is not None)
+        if drawing is None:
+            return tr("Without a post no file is written.")
+        if self.text.toPlainText() != drawing.text:
+            self.text.setPlainText(drawing.text)
+        path = self._links()["JointPath"]
+        stale = [tr("{} is out of date; this is of what it was.").format(path.Label)] if path.Status == STALE else []
+        return "\n".join([*_told(drawing), *stale])
+
+    def _draw_without(self) -> None:
+        self.text.hide()
+
+    def _show_own(self, visible: bool) -> None:
+        """A program draws nothing."""
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        """Where a program starts is told under the first of its two fields."""
+        return (START_LAYER, translated(error.message)) if error.where == START else super()._placed(error)
 
 
-def _button(text: str, name: str, help: str, act: Any) -> Any:
-    button = QtGui.QPushButton(text)
-    button.setObjectName(name)
-    button.setToolTip(help)
-    button.setAutoDefault(False)
-    button.clicked.connect(act)
-    return button
+def _begun(job: Job) -> Beginning:
+    """The program of a joint path. Raises what writing it raises."""
+    made = posted(job)
+    main = catalogue.main_file(made.files)
+    lines = made.files[main].decode("latin-1").splitlines()[:FIRST]
+    times = timeline(made.motion, job.process, [layer.wait for layer in made.toolpath.layers])
+    return Beginning(
+        main, "\n".join(lines), sum(content.count(b"\n") for content in made.files.values()), len(made.files),
+        totals(made.motion, times, job.process, made.toolpath.layer_height), job.parameters.dry_run,
+    )
 
 
-_shown: list[ProgramWindow] = []  # Python must keep them as long as they are open
+def _told(beginning: Beginning) -> list[str]:
+    sums = beginning.sums
+    deposits = tr("dry run, nothing is deposited") if beginning.dry else tr("mass: {:.1f} g").format(sums.mass)
+    return [
+        tr("Begins with {}. Lines: {}, files: {}").format(beginning.name, beginning.lines, beginning.files),
+        tr("Time: {}, {}").format(told.clock(sums.time), deposits),
+    ]
 
 
-def show(obj: Any) -> None:
-    """Open the text of a program in a window that does not block the others; the one that is open, if it is."""
-    shown = _of(obj) or ProgramWindow(obj)
-    shown.window.show()
-    shown.window.raise_()
-
-
-def renew(obj: Any) -> None:
-    """The program has changed: show it in its window, if that is open."""
-    shown = _of(obj)
-    if shown is not None:
-        shown.load()
-
-
-def _of(obj: Any) -> ProgramWindow | None:
-    return next((shown for shown in _shown if shown.obj is obj), None)
-
-
-def export(obj: Any, window: Any = None) -> str:
-    """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it."""
-    first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
-    folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), tr("Export program"), first)
-    if not folder:
-        return tr("Status: {}.").format(translated(obj.Status))
-    try:
-        paths = api.export(obj, folder)
-    except AmError as error:
-        App.Console.PrintError(error_line(error))
-        return translated_error(error)
-    preferences.keep("ExportFolder", folder)
-    text = tr("Files written to {}: {}").format(folder, len(paths))
-    Gui.getMainWindow().statusBar().showMessage(text, 5000)
-    return text
+def _part_name() -> str:
+    """A first proposal for the program's name, from the part that is deposited."""
+    for obj in App.ActiveDocument.Objects:
+        if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
+            return api.proposed_name(obj.Source[0].Label)
+    return api.proposed_name(App.ActiveDocument.Label)

@@ -34,32 +34,36 @@ class QuantityField:
 
     def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
         """shown: the number in the unit; expression: what it follows, '' where it follows nothing."""
-        self.shown: float | str = shown
         self.unit, self.name = unit, name
+        self.dimension = App.Units.Quantity(f"1 {unit}").Unit
         self.box = Gui.UiLoader().createWidget("Gui::QuantitySpinBox")
         self.box.setProperty("unit", unit)
-        quantity = App.Units.Quantity(f"{shown!r} {unit}")
-        self.dimension = quantity.Unit
-        # the display would be cut to the decimals of the preferences, and the value with it
-        quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
-        self.box.setProperty("value", quantity)
         self.box.setMinimumWidth(_LEAST_WIDTH)
         self.line = self.box.findChild(QtGui.QLineEdit)
         self.line.setValidator(None)  # it refuses keys, unseen; `read` tells what is wrong
-        self.line.setCursorPosition(0)
-        self.typed: str | None = None
-        self.plain = self.line.text()  # what the field goes back to by itself
+        self.show(shown)
         if expression:
             self.shown = self.typed = expression
             self.line.setText(expression)
             self.line.setCursorPosition(0)
-        self.first_text = self.line.text()
+            self.first_text = self.line.text()
         self._add_mark()
         connect(self.line, "textEdited(QString)", self._keep)
         connect(self.line, "textChanged(QString)", self._forget)
         connect(self.line, "cursorPositionChanged(int,int)", self._begin_in_sight)
         connect(self.box, "editingFinished()", self._restore)
         connect(self.box, "editingFinished()", self._begin_in_sight)
+
+    def show(self, number: float) -> None:
+        """Show another number, in the field's unit, in place of what is there."""
+        self.shown: float | str = number
+        self.typed: str | None = None
+        quantity = App.Units.Quantity(f"{number!r} {self.unit}")
+        # the display would be cut to the decimals of the preferences, and the value with it
+        quantity.Format = {"NumberFormat": "g", "Precision": _DIGITS, "Denominator": 8}
+        self.box.setProperty("value", quantity)
+        self.line.setCursorPosition(0)
+        self.first_text = self.plain = self.line.text()  # plain: what the field goes back to by itself
 
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)

@@ -357,23 +357,16 @@ def show(panel: Any) -> None:
 
 def edit(obj: Any) -> None:
     """Open the panel of an existing stage."""
-    own = _own_panel(type(obj.Proxy))
-    if own is not None:
-        show(own(obj))
-        return
-    choices = inputs.of(type(obj.Proxy), obj)
-    if obj.Proxy.kind == "program":
-        choices.append(inputs.NameChoice(obj.ProgramName))
-    show(StagePanel(type(obj.Proxy), obj.Label, choices, obj))
+    show(_panel_of(type(obj.Proxy))(obj))
 
 
-def _own_panel(proxy: type[Stage]) -> Any:
-    """The panel of a stage that has one of its own, else None."""
-    from . import cell_panel, feature_panel, hub_panel, toolpath_panel, wall_panel
+def _panel_of(proxy: type[Stage]) -> Any:
+    """The panel of a kind of stage."""
+    from . import cell_panel, feature_panel, hub_panel, joint_path_panel, program_panel, toolpath_panel, wall_panel
     from .inspection.panel import InspectionPanel
 
-    own = (
-        feature_panel.FeaturePanel, hub_panel.HubPanel, wall_panel.WallPanel, cell_panel.CellPanel,
-        toolpath_panel.ToolpathPanel, InspectionPanel,
+    panels = (
+        cell_panel.CellPanel, feature_panel.FeaturePanel, wall_panel.WallPanel, hub_panel.HubPanel,
+        toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
     )
-    return next((panel for panel in own if panel.stage is proxy), None)
+    return next(panel for panel in panels if panel.stage is proxy)

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..core.issues import ERROR, InputError
 from ..core.kinematics import machine as machines
-from ..core.kinematics.limits import margins
 from ..core.parameters.strategy import RevolutionParameters
 from ..core.simulation.margins import from_next, speed_ratios
 from ..objects import user_machines
@@ -141,9 +140,7 @@ def _of_machine(obj: Any, planned: Any, kind: str) -> Array:
     if motion.joints.shape[1] != limits.axes:
         raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
     if kind == MARGIN:
-        coupled = margins(motion.joints @ limits.coefficients.T, limits.coupled_lower, limits.coupled_upper)
-        share = margins(motion.joints, limits.lower, limits.upper).min(axis=1)
-        share = np.minimum(share, coupled.min(axis=1, initial=np.inf))
+        share = limits.shares(motion.joints).min(axis=1)
     else:
         ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
         share = from_next(motion.deposit, motion.point, ratio)

@@ -16,7 +16,7 @@ class ProgramView(StageView):
     icon = "program"
 
     def edit(self, obj: Any) -> None:
-        from .program_panel import show
+        from .program_window import show
 
         show(obj)
 
@@ -27,7 +27,7 @@ class ProgramView(StageView):
         """A property of the object has changed."""
         super().updateData(obj, name)
         if name in _SHOWN and not obj.Document.Restoring:
-            from .program_panel import renew
+            from .program_window import renew
 
             renew(obj)
 

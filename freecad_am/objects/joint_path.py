@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +37,17 @@ class Planned:
 
     joint_path: JointsOfBeads
     motion: Motion
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a joint path is planned of, away from the document. toolpath: reads it."""
+
+    toolpath: Callable[[], Toolpath]
+    settings: CellParameters
+    folders: tuple[str, ...]
+    process: ProcessParameters
+    parameters: JointParameters
 
 
 def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters]:
@@ -85,19 +97,24 @@ class JointPath(Stage):
             for program in programs:
                 program.Proxy.refuse_early(program, resolved, process)
 
+    def job(self, obj: Any) -> Job:
+        """Read the inputs. Raises InputError and InfeasibleError where there is nothing to plan of."""
+        linked = self.linked(obj)
+        toolpath, cell = linked["Toolpath"], linked["Cell"]
+        return Job(
+            toolpath.Proxy.reader(toolpath), cell.Proxy.value(cell), tuple(user_machines.folders()),
+            toolpath.Proxy.parameters(toolpath, ProcessParameters), self.parameters(obj, JointParameters),
+        )
+
     def prepare(self, obj: Any) -> Work:
         self.look_ahead(obj)
-        linked = self.linked(obj)
-        toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
-        toolpath = toolpath_object.Proxy.value(toolpath_object)
-        settings, folders = cell_object.Proxy.value(cell_object), user_machines.folders()
-        process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
-        parameters = self.parameters(obj, JointParameters)
+        job = self.job(obj)
 
         def work() -> Outcome:
-            cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
+            toolpath, process = job.toolpath(), job.process
+            cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
             joint_path = plan_joints(
-                toolpath, cell, parameters, lambda fraction, text: progress.report(JOINTS * fraction, text)
+                toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text)
             )
             progress.report(JOINTS, "joining the beads by rapid moves")
             motion, rapid_issues = assemble(joint_path, cell, process, toolpath.surroundings)

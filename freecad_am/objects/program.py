@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -11,10 +12,12 @@ from ..core.issues import InfeasibleError, InputError, has_errors
 from ..core.kinematics import cell as cells
 from ..core.kinematics.cell import PART_ON_ROBOT
 from ..core.motion import Motion
+from ..core.parameters.cell import CellParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
+from ..core.program import Program as Text
 from ..core.toolpath import Toolpath
 from ..posts import catalogue, refusals
 from . import progress, user_machines
@@ -30,6 +33,30 @@ class Written:
     verification: verification.Verification | None
 
 
+@dataclass(frozen=True)
+class Job:
+    """What a program is written of, away from the document. planned, toolpath: read them."""
+
+    planned: Callable[[], Planned]
+    toolpath: Callable[[], Toolpath]
+    settings: CellParameters
+    folders: tuple[str, ...]
+    process: ProcessParameters
+    parameters: ProgramParameters
+    name: str
+
+
+@dataclass(frozen=True)
+class Posted:
+    """A program that is written. motion: the rows that it runs."""
+
+    cell: cells.Cell
+    toolpath: Toolpath
+    motion: Motion
+    program: Text
+    files: dict[str, bytes]
+
+
 class Program(Stage):
     """Result: `Written`. Its cell, toolpath and process are those of the joint path."""
 
@@ -43,26 +70,24 @@ class Program(Stage):
             obj.addProperty("App::PropertyString", "ProgramName", "Program", "Name of the program and of its files.")
         super().complete(obj)
 
-    def prepare(self, obj: Any) -> Work:
+    def job(self, obj: Any) -> Job:
+        """Read the inputs. Raises InputError and InfeasibleError where there is nothing to write."""
         if not obj.ProgramName:
             raise InputError("NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; give one")
-        joint_object = self.linked(obj)["JointPath"]
-        linked = joint_object.Proxy.linked(joint_object)
-        toolpath_object, cell_object = linked["Toolpath"], linked["Cell"]
-        parameters = self.parameters(obj, ProgramParameters)
-        if parameters.post == "none":
+        path = self.linked(obj)["JointPath"]
+        linked = path.Proxy.linked(path)
+        toolpath, cell = linked["Toolpath"], linked["Cell"]
+        return Job(
+            path.Proxy.reader(path), toolpath.Proxy.reader(toolpath), cell.Proxy.value(cell),
+            tuple(user_machines.folders()), toolpath.Proxy.parameters(toolpath, ProcessParameters),
+            self.parameters(obj, ProgramParameters), obj.ProgramName,
+        )
+
+    def prepare(self, obj: Any) -> Work:
+        job, label = self.job(obj), obj.Label
+        if job.parameters.post == "none":
             return lambda: Outcome(Written({}, None), figures=(("Files", []),))
-        toolpath = toolpath_object.Proxy.value(toolpath_object)
-        settings, folders = cell_object.Proxy.value(cell_object), user_machines.folders()
-        process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
-        cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
-        refuse(cell, process, parameters)
-        planned, name, label = joint_object.Proxy.value(joint_object), obj.ProgramName, obj.Label
-
-        def work() -> Outcome:
-            return _written(planned, toolpath, cell, process, parameters, name, label)
-
-        return work
+        return lambda: _written(job, label)
 
     def further_inputs(self, obj: Any) -> list[str]:
         return [obj.ProgramName]
@@ -91,29 +116,37 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
         raise refusals.wire_refused(post.NO_WIRE)
 
 
-def _written(
-    planned: Planned, toolpath: Toolpath, cell: cells.Cell, process: ProcessParameters, parameters: ProgramParameters,
-    name: str, label: str,
-) -> Outcome:
-    """The files of a joint path, written and read back. InputError; InfeasibleError NOT_VERIFIED naming `label`."""
-    motion = planned.motion
-    post = catalogue.load(parameters.post)
+def posted(job: Job) -> Posted:
+    """The files of a joint path, not read back. InputError for what cannot be written."""
+    post, parameters = catalogue.load(job.parameters.post), job.parameters
+    post.program_name(job.name, "name")  # before anything takes long
+    toolpath, planned = job.toolpath(), job.planned()
+    cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
+    refuse(cell, job.process, parameters)
     progress.report(0.1, "building moves and events")
+    motion = planned.motion
     if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
     waits = [layer.wait for layer in toolpath.layers]
     returns = programs.returning(toolpath, planned.joint_path.beads)
-    program = programs.build(motion, cell, process, parameters, name, waits, returns)
+    program = programs.build(motion, cell, job.process, parameters, job.name, waits, returns)
     progress.report(0.3, "writing")
-    files = post.write(program)
+    return Posted(cell, toolpath, _run(motion, parameters), program, post.write(program))
+
+
+def _written(job: Job, label: str) -> Outcome:
+    """The files of a joint path, written and read back. InputError; InfeasibleError NOT_VERIFIED naming `label`."""
+    made = posted(job)
     progress.report(0.5, "reading back and checking")
-    checked = verification.verify(cell, _run(motion, parameters), program, files, post, toolpath.chord_error)
+    checked = verification.verify(
+        made.cell, made.motion, made.program, made.files, catalogue.load(job.parameters.post), made.toolpath.chord_error
+    )
     if has_errors(checked.issues):
         raise InfeasibleError(
             "NOT_VERIFIED", label, "reading the program back does not give the planned path", tuple(checked.issues),
         )
-    return Outcome(Written(files, checked), tuple(checked.issues), (("Files", sorted(files)),))
+    return Outcome(Written(made.files, checked), tuple(checked.issues), (("Files", sorted(made.files)),))
 
 
 def _run(motion: Motion, parameters: ProgramParameters) -> Motion:

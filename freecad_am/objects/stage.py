@@ -215,6 +215,22 @@ class Stage:
             self._kept = (obj.Key, store.unpack(store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label))
         return self._kept[1]
 
+    def reader(self, obj: Any) -> Callable[[], Any]:
+        """What gives the stored result without the document, of which all is read now: for other threads. Errors as
+        `value`."""
+        _check_made(obj)
+        kept = self._kept
+        if kept is not None and kept[0] == obj.Key:
+            return lambda: kept[1]
+        numbers, layout, key, label = store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label
+
+        def read() -> Any:
+            value = store.unpack(numbers, layout, key, label)
+            self._kept = key, value
+            return value
+
+        return read
+
     def picked(self, obj: Any, *places: store.Place) -> tuple[Any, ...]:
         """Values within the stored result, by the field names and indices that lead to them, when not all of it is needed.
         Errors as `value`."""

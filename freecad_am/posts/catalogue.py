@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from types import ModuleType
 from typing import Protocol
 
@@ -40,3 +41,9 @@ def load(name: str) -> Post:
         known = ", ".join(NAMES)
         raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {known}, or none")
     return _POSTS[name]
+
+
+def main_file(files: Iterable[str]) -> str:
+    """The file that begins a program, of the names of all its files: the start of a VAL 3 application, else the one with the
+    shortest name, which has no number of a part."""
+    return min(files, key=lambda name: (not name.endswith("/start.pgx"), len(name), name))

@@ -15,7 +15,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.core.simulation.placing import at_rest
-from freecad_am.gui.view_cell import resting_point
+from freecad_am.gui.cell_nodes import resting_point
 from freecad_am.kdl.chain import KdlArm
 
 
@@ -46,7 +46,7 @@ def test_machines_are_drawn_where_pykdl_puts_them(person, hemisphere, name):
     feature = api.make_feature(doc, hemisphere, layer_height=5)
     toolpath = api.make_toolpath(doc, feature, cell)
     view = cell.ViewObject.Proxy
-    assert view.links.getNumChildren() == 0 and view.machine is None
+    assert view.nodes.links.getNumChildren() == 0 and view.nodes.machine is None
     actions, _menu = shown_menu(person, cell.ViewObject)
     assert actions["RoboticAM_ShowMachine"].text() == "Show machine"
     actions["RoboticAM_ShowMachine"].trigger()
@@ -56,7 +56,7 @@ def test_machines_are_drawn_where_pykdl_puts_them(person, hemisphere, name):
     resolved = cells.resolve(value, planned.frame)
     q = at_rest(resolved, resting_point(planned, planned.frame))
     flange = KdlArm(resolved.machine).forward([q])[0]
-    base, last = matrix(view.machine.transforms[0]), matrix(view.machine.transforms[-1])
+    base, last = matrix(view.nodes.machine.transforms[0]), matrix(view.nodes.machine.transforms[-1])
     drawn = frames.inverse(base) @ last @ resolved.machine.chain.flange
     assert np.abs(drawn - flange).max() < 2e-3  # Coin keeps floats of 24 bits
     if resolved.setup != "tool-on-robot":  # the part hangs on the flange: it has not moved
@@ -65,14 +65,14 @@ def test_machines_are_drawn_where_pykdl_puts_them(person, hemisphere, name):
     actions, _menu = shown_menu(person, cell.ViewObject)
     assert actions["RoboticAM_ShowMachine"].text() == "Hide machine"
     actions["RoboticAM_ShowMachine"].trigger()
-    assert view.machine is None and view.links.getNumChildren() == 0
+    assert view.nodes.machine is None and view.nodes.links.getNumChildren() == 0
 
 
 def test_a_machine_that_is_shown_is_there_when_the_document_is_opened_again(person, hemisphere):
     doc = hemisphere.Document
     cell = api.make_cell(doc)
     cell.ViewObject.ShowMachine = True
-    poses = [matrix(transform) for transform in cell.ViewObject.Proxy.machine.transforms]
+    poses = [matrix(transform) for transform in cell.ViewObject.Proxy.nodes.machine.transforms]
     path = str(person.folder / "cell.FCStd")
     doc.saveAs(path)
     name = cell.Name
@@ -81,7 +81,7 @@ def test_a_machine_that_is_shown_is_there_when_the_document_is_opened_again(pers
     again = App.openDocument(path).getObject(name)
     person.idle(0.5)
     assert again.ViewObject.ShowMachine
-    drawn = [matrix(transform) for transform in again.ViewObject.Proxy.machine.transforms]
+    drawn = [matrix(transform) for transform in again.ViewObject.Proxy.nodes.machine.transforms]
     assert np.abs(np.array(drawn) - np.array(poses)).max() < 1e-3
     assert again.Status == "up to date"
 
@@ -110,7 +110,7 @@ def test_a_users_files_are_drawn_and_a_missing_one_is_told(person, own_machine):
     person.screenshot("machine_own_files")
     told = [line for line in person.console().splitlines() if "NO_FILE" in line]
     assert any("shapes.joint_3.file" in line and "plain solid" in line for line in told)
-    materials = cell.ViewObject.Proxy.machine.materials
+    materials = cell.ViewObject.Proxy.nodes.machine.materials
     assert [len(parts) > 1 for parts in materials[:4]] == [False, True, False, True]
     assert np.allclose(materials[0][0][1], (0.1, 0.2, 0.9))
     view = person.gui.activeDocument().activeView()

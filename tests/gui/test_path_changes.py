@@ -24,7 +24,7 @@ def marked(joint_path):
 
 def tip(cell):
     """Where the nozzle's tip is drawn (3,)."""
-    return np.array(cell.ViewObject.Proxy.nozzle.getChild(0).matrix.getValue().getValue())[3, :3]
+    return np.array(cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue())[3, :3]
 
 
 def test_marks_of_what_is_wrong_go_and_come_back_with_undo_and_redo(person, toolpath):

@@ -207,7 +207,7 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
     wanted = np.rint(255.0 * ramp(share)).astype(int)
     told = np.stack([view.path.colours >> shift & 255 for shift in (24, 16, 8)], axis=1)
     assert (told == wanted).all() and (view.path.colours != colours).mean() > 0.9
-    for links in (simulation.scene.machine, cell.ViewObject.Proxy.machine):
+    for links in (simulation.scene.machine, cell.ViewObject.Proxy.nodes.machine):
         plain = [material for link in links.materials for material, colour in link if colour is None]
         assert plain and all(np.allclose(one.diffuseColor[0].getValue(), (0.2, 0.4, 0.8), atol=1e-6) for one in plain)
     person.screenshot("preferences_at_once")

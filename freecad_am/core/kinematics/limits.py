@@ -63,6 +63,12 @@ class Limits:
         np.minimum(coupled - self.coupled_lower, self.coupled_upper - coupled, out=result[..., self.axes :])
         return result
 
+    def shares(self, q: Array) -> Array:
+        """`margins` (..., axes + m) of joint vectors `q` (..., axes), of each axis and then of each coupled limit."""
+        return np.concatenate([
+            margins(q, self.lower, self.upper), margins(q @ self.coefficients.T, self.coupled_lower, self.coupled_upper),
+        ], axis=-1)
+
     def smallest(self, q: ArrayLike) -> Smallest:
         """The smallest margin (...) of each joint vector (..., axes) and which limit it is to; NaN where q is."""
         margins = self.margin(q)

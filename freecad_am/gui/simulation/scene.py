@@ -21,11 +21,11 @@ from ...core.kinematics.arm_contact import NONE
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
+from ..cell_nodes import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
 from ..lines import Array, Lines
 from ..machine_links import MachineNodes, move
 from ..path.pieces import PathNodes
 from ..path.rows import Rows
-from ..view_cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
 from .run import Run
 
 METAL, SLOW, WRONG = (0.62, 0.66, 0.72), (0.96, 0.55, 0.05), (0.86, 0.1, 0.12)

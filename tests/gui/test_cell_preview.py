@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a cell shows machine, platform and nozzle as they are entered, and proposes what suits a machine."""
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.geometry import frames
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics.proposed_cell import cell_of
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.simulation.placing import at_rest
+from freecad_am.gui.cell_nodes import resting_point
+from freecad_am.gui.preview import NAME
+from freecad_am.kdl.chain import KdlArm
+
+PANEL = "RoboticAM_Cell"
+POINT = "DepositionPoint"
+
+
+def previewed(person):
+    """The poses (n, 4, 4) of what previews draw: platform, nozzle, then the links of the machine, base first; None without
+    a preview."""
+    from pivy import coin
+
+    search = coin.SoSearchAction()
+    search.setName(NAME)
+    search.setSearchingAll(True)
+    search.apply(person.gui.activeDocument().activeView().getSceneGraph())
+    if search.getPath() is None:
+        return None
+    inside = coin.SoSearchAction()
+    inside.setType(coin.SoMatrixTransform.getClassTypeId())
+    inside.setInterest(coin.SoSearchAction.ALL)
+    inside.setSearchingAll(True)
+    inside.apply(search.getPath().getTail())
+    paths = inside.getPaths()
+    poses = [paths[k].getTail().matrix.getValue().getValue() for k in range(paths.getLength())]
+    return np.array(poses).reshape(-1, 4, 4).transpose(0, 2, 1)
+
+
+def told(person, panel, words, seconds=10):
+    state = person.field(panel, "preview")
+    person.until(lambda: state.isVisible() and words in state.text(), f"{words}, not {state.text()!r}", seconds)
+
+
+def entered_point(person, panel):
+    return [person.field(panel, f"{POINT}{axis}").property("rawValue") for axis in "XYZ"]
+
+
+def stands_as(person, parameters, toolpath):
+    """Whether the previewed machine stands as PyKDL puts it, the part where it is in the document."""
+    drawn = previewed(person)
+    cell = cells.resolve(parameters, np.eye(4) if toolpath is None else toolpath.frame)
+    joints = at_rest(cell, resting_point(toolpath, cell.mount))
+    flange = KdlArm(cell.machine).forward([joints])[0]
+    if drawn is None or len(drawn) != 9:
+        return False
+    part = drawn[2] @ flange @ cell.carried @ frames.inverse(cell.mount)
+    return np.abs(part - np.eye(4)).max() < 2e-3 and np.abs(drawn[0] - cell.mount).max() < 1e-5
+
+
+@pytest.fixture
+def planned(person, hemisphere):
+    """A cell with the toolpath that is cut for it."""
+    document = hemisphere.Document
+    cell = api.make_cell(document)
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)
+    person.idle()
+    return cell, toolpath
+
+
+def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_picture_back(person, hand, planned):
+    cell, toolpath = planned
+    document, steps, path = cell.Document, cell.Document.UndoCount, api.result(toolpath)
+    switch = cell.ViewObject.SwitchNode
+    which, before = switch.whichChild.getValue(), cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue()
+    person.look()
+    person.double_click(cell)
+    panel = person.panel(PANEL)
+    told(person, panel, "with the nozzle upright on the part: q")
+    assert switch.whichChild.getValue() == -1
+    assert stands_as(person, CellParameters(), path)
+    person.look()
+    person.screenshot("cell_preview")
+    point = (1100.0, *CellParameters().deposition_point[1:])
+    hand.enter(panel, f"{POINT}X", "1.1 m")
+    moved = replace(CellParameters(), deposition_point=point, platform=30.0)
+    hand.enter(panel, "Platform", "30 mm")
+    person.until(lambda: stands_as(person, moved, path), "the machine to stand elsewhere", 10)
+    hand.enter(panel, f"{POINT}X", "5 m")
+    told(person, panel, "does not reach the part")
+    hand.enter(panel, "PlatformDiameter", "1 km")
+    told(person, panel, "see the field marked")
+    assert "out of range" in person.field(panel, "PlatformDiameterNote").text() and len(previewed(person)) == 0
+    person.press("Cancel")
+    person.panel_closed()
+    assert previewed(person) is None and switch.whichChild.getValue() == which
+    assert cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue() == before
+    assert (document.UndoCount, cell.Status, api.result(cell)) == (steps, "up to date", CellParameters())
+
+
+def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, planned):
+    cell, toolpath = planned
+    last = api.result(toolpath).layers[-1].beads[-1]
+    person.double_click(cell)
+    panel = person.panel(PANEL)
+    told(person, panel, "nozzle upright on")
+    hand.click(person.field(panel, "PreviewMachine"))
+    person.until(lambda: len(previewed(person)) == 2, "the machine to go", 5)
+    np.testing.assert_allclose(previewed(person)[1, :3, 3], last.points[-1], atol=1e-4)
+    hand.enter(panel, "PlatformDiameter", "100 mm")
+    person.press("Apply")
+    assert cell.PlatformDiameter.Value == 100.0 and cell.ViewObject.SwitchNode.whichChild.getValue() == -1
+    person.press("Ok")
+    person.panel_closed()
+    assert cell.ViewObject.SwitchNode.whichChild.getValue() != -1 and previewed(person) is None
+
+
+def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, hemisphere):
+    document, steps = hemisphere.Document, hemisphere.Document.UndoCount
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    note = person.field(panel, f"{POINT}Note")
+    told(person, panel, "FANUC")
+    assert stands_as(person, CellParameters(), None) and not note.isVisible()
+    hand.enter(panel, "Machine", "kuka-kr16-2")
+    wanted = cell_of("kuka-kr16-2")
+    person.until(lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]), "what is proposed", 10)
+    assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
+    assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
+    told(person, panel, "KUKA KR 16-2 with the nozzle upright on")
+    person.until(lambda: stands_as(person, wanted, None), "the robot at its point", 10)
+    person.look()
+    person.screenshot("cell_proposed")
+    hand.enter(panel, f"{POINT}Z", "1.5 m")
+    person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
+    hand.enter(panel, "Machine", "motoman-ar1440")
+    other = cell_of("motoman-ar1440")
+    person.until(lambda: note.isVisible() and note.text().startswith("Left as it was entered"), "what is kept", 10)
+    assert f"{other.deposition_point[0]:g} 0 {other.deposition_point[2]:g}" in note.text()
+    assert entered_point(person, panel) == [wanted.deposition_point[0], 0.0, 1500.0]
+    assert person.field(panel, "Branch").currentText() == " ".join(other.branch)  # nobody has typed another one
+    person.press("Ok")
+    person.panel_closed()
+    made = api.result(document.Cell)
+    assert made.deposition_point == (wanted.deposition_point[0], 0.0, 1500.0, 0.0, 0.0, 0.0)
+    assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
+
+
+def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(person, planned):
+    cell = planned[0]
+    api.change(cell, deposition_point=(1000, 0, 700, 0, 0, 0))
+    person.double_click(cell)
+    panel = person.panel(PANEL)
+    person.type(panel, "Machine", "kuka-kr16-2")
+    person.press("Ok")  # before anything has followed by itself
+    person.panel_closed()
+    proposed, made = cell_of("kuka-kr16-2"), api.result(cell)
+    assert made == replace(proposed, deposition_point=(1000.0, 0.0, 700.0, 0.0, 0.0, 0.0))
+    person.double_click(cell)
+    panel = person.panel(PANEL)
+    told(person, panel, "KUKA")
+    assert not person.field(panel, f"{POINT}Note").isVisible()  # no other machine was chosen
+    person.press("Cancel")
+    person.panel_closed()
+    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a joint path tells what will come of what is entered, and draws it, before anything is planned for good."""
+
+import re
+import threading
+
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.planning.judgement import judged
+from freecad_am.gui import joint_path_panel
+from freecad_am.gui.preview import NAME
+
+PANEL = "RoboticAM_JointPath"
+
+
+@pytest.fixture
+def stages(person, hemisphere):
+    """A toolpath and the cell it is for."""
+    document = hemisphere.Document
+    cell = api.make_cell(document)
+    feature = api.make_feature(document, hemisphere, layer_height=10)
+    made = api.make_toolpath(document, feature, cell), cell
+    cell.ViewObject.Visibility = feature.ViewObject.Visibility = False
+    person.idle()
+    return made
+
+
+def drawn(person):
+    """Points (n, 3) of the lines that previews draw; None without a preview."""
+    from pivy import coin
+
+    search = coin.SoSearchAction()
+    search.setName(NAME)
+    search.setSearchingAll(True)
+    search.apply(person.gui.activeDocument().activeView().getSceneGraph())
+    if search.getPath() is None:
+        return None
+    inside = coin.SoSearchAction()
+    inside.setType(coin.SoCoordinate3.getClassTypeId())
+    inside.setSearchingAll(True)
+    inside.apply(search.getPath().getTail())
+    return np.array([tuple(point) for point in inside.getPath().getTail().point.getValues()])
+
+
+def told(person, panel, words, seconds=60):
+    state = person.field(panel, "preview")
+    person.until(lambda: state.isVisible() and words in state.text(), words, seconds)
+    return state.text()
+
+
+def threads_end(person):
+    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+
+
+def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, monkeypatch):
+    toolpath, cell = stages
+    monkeypatch.setattr(joint_path_panel, "MOST", 100_000)
+    document, steps = toolpath.Document, toolpath.Document.UndoCount
+    person.select(toolpath)
+    person.click("RoboticAM_JointPath")
+    panel = person.panel(PANEL)
+    text = told(person, panel, "Preview of all points")
+    assert text.startswith("Can be carried out.\nLeast joint margin: ")
+    figures = [float(number) for number in re.findall(r": (-?[\d.]+)", text)]
+    assert len(drawn(person)) >= api.result(toolpath).point_count
+    assert toolpath.ViewObject.SwitchNode.whichChild.getValue() == -1  # the preview lies where it does
+    person.look()
+    person.screenshot("joint_path_preview")
+    assert document.UndoCount == steps and document.getObject("JointPath") is None
+    person.press("Ok")
+    person.panel_closed()
+    assert drawn(person) is None and document.UndoCount == steps + 1
+    planned = api.result(document.JointPath).joint_path
+    machine = machines.load(cell.Machine)
+    found = judged(planned.beads, machine.limits("maker"), machine.max_speed)
+    shown = [round(100.0 * found.worst_margin.value, 1), round(found.worst_condition.value, 3),
+             round(100.0 * found.worst_ratio.value)]
+    assert figures == shown
+    assert found.worst_condition.value == pytest.approx(document.JointPath.SmallestCondition)
+
+
+def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(person, hand, stages, monkeypatch):
+    toolpath, cell = stages
+    monkeypatch.setattr(joint_path_panel, "MOST", 300)
+    document = toolpath.Document
+    made = api.make_joint_path(document, toolpath, cell)
+    person.idle()
+    which, key = made.ViewObject.SwitchNode.whichChild.getValue(), made.Key
+    person.double_click(made)
+    panel = person.panel(PANEL)
+    assert made.ViewObject.SwitchNode.whichChild.getValue() == -1
+    first = told(person, panel, "Can be carried out.")
+    assert re.search(r"Preview of one point in \d+(?: of one bead in \d+)?, without rapid moves; OK plans all\.", first)
+    assert 100 < len(drawn(person)) < api.result(toolpath).point_count
+    person.choose(panel, "Method", "constant")
+    worse = told(person, panel, "Cannot be carried out:")
+    assert re.search(r"layer \d+: ", worse) and "bead" not in worse.partition("Preview")[0]
+    person.look()
+    person.screenshot("joint_path_infeasible")
+    person.choose(panel, "Method", "layer-by-layer")
+    hand.enter(panel, "MinCondition", "2")
+    told(person, panel, "see the field marked")
+    assert "out of range" in person.field(panel, "MinConditionNote").text()
+    assert len(drawn(person)) == 0
+    hand.enter(panel, "MinCondition", "auto")
+    told(person, panel, "Can be carried out.")
+    person.press("Cancel")
+    person.panel_closed()
+    assert drawn(person) is None and made.ViewObject.SwitchNode.whichChild.getValue() == which
+    assert (made.Key, made.Status, made.Method) == (key, "up to date", "layer-by-layer")
+
+
+def test_a_panel_that_is_closed_while_it_computes_leaves_nothing(person, stages, monkeypatch):
+    begun, ended = threading.Event(), threading.Event()
+    tried = joint_path_panel._tried
+
+    def endless(job):
+        begun.set()
+        try:
+            while True:
+                tried(job)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(joint_path_panel, "_tried", endless)
+    person.select(stages[0])
+    person.click("RoboticAM_JointPath")
+    panel = person.panel(PANEL)
+    person.until(begun.is_set, "the preview to begin", 10)
+    told(person, panel, "being computed")
+    person.press("Cancel")
+    person.panel_closed()
+    person.until(ended.is_set, "its end", 20)
+    threads_end(person)
+    assert drawn(person) is None and stages[0].ViewObject.SwitchNode.whichChild.getValue() != -1
+    assert len(api.stages_of(stages[0].Document)) == 3
+
+
+def test_what_is_missing_is_told_and_a_stale_toolpath_too(person, stages):
+    toolpath = stages[0]
+    toolpath.TravelSpeed = "7 mm/s"
+    assert toolpath.Status == "stale"
+    person.select(toolpath)
+    person.click("RoboticAM_JointPath")
+    panel = person.panel(PANEL)
+    assert "Toolpath is out of date; this is of what it was." in told(person, panel, "Can be carried out.")
+    toolpath.Document.removeObject(toolpath.Name)
+    person.press("Cancel")
+    person.panel_closed()
+    threads_end(person)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a program shows how it begins and what it is in all, and what the controller refuses as it is typed."""
+
+import threading
+
+import pytest
+
+from freecad_am import api
+from freecad_am.gui import stage_panel
+from freecad_am.gui.program_panel import FIRST
+
+PANEL = "RoboticAM_Program"
+
+
+@pytest.fixture
+def joint_path(person, hemisphere):
+    """A joint path that can be carried out."""
+    document = hemisphere.Document
+    cell = api.make_cell(document)
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=10), cell)
+    made = api.make_joint_path(document, toolpath, cell)
+    person.idle()
+    return made
+
+
+def told(person, panel, words, seconds=20):
+    state = person.field(panel, "preview")
+    person.until(lambda: state.isVisible() and words in state.text(), words, seconds)
+    return state.text()
+
+
+def lines(person, panel):
+    return person.field(panel, "FirstLines").toPlainText().splitlines()
+
+
+def test_the_first_lines_are_those_that_are_written(person, hand, joint_path):
+    document, steps = joint_path.Document, joint_path.Document.UndoCount
+    person.select(joint_path)
+    person.click("RoboticAM_Program")
+    panel = person.panel(PANEL)
+    hand.enter(panel, "ProgramName", "cup")
+    text = told(person, panel, "Begins with CUP.LS.")
+    first = lines(person, panel)
+    assert person.field(panel, "FirstLines").isVisible()
+    person.screenshot("program_preview")
+    hand.enter(panel, "MaxPoints", "300")
+    person.until(lambda: any("CALL CUP01" in line for line in lines(person, panel)), "calls of parts", 20)
+    parts = told(person, panel, "Begins with CUP.LS.")
+    assert document.UndoCount == steps and document.getObject("Program") is None
+    begins = lines(person, panel)
+    person.press("Ok")
+    person.panel_closed()
+    files = api.result(document.Program).files
+    assert len(files) > 2 and document.UndoCount == steps + 1
+    assert begins == files["CUP.LS"].decode().splitlines()[:FIRST]
+    count = sum(len(content.splitlines()) for content in files.values())
+    assert f"Lines: {count}, files: {len(files)}" in parts
+    api.change(document.Program, max_points=2000)
+    written = api.result(document.Program).files["CUP.LS"].decode().splitlines()
+    assert len(first) == FIRST and first == written[:FIRST]
+    minutes, seconds = divmod(document.JointPath.TotalTime, 60.0)
+    assert f"Lines: {len(written)}, files: 1" in text
+    assert f"Time: {int(minutes)}:{int(seconds * 10) / 10:04.1f}" in text or f"Time: {int(minutes)}:{seconds:04.1f}" in text
+    assert f"mass: {document.JointPath.DepositMass:.1f} g" in text
+
+
+def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(person, hand, joint_path):
+    document = joint_path.Document
+    program = api.make_program(document, joint_path, name="CUP", post="fanuc")
+    key = program.Key
+    person.gui.runCommand("Std_Refresh")
+    stage_panel.edit(program)
+    panel = person.panel(PANEL)
+    told(person, panel, "Begins with CUP.LS.")
+    for fold in ("FoldInputs", "FoldStartat"):
+        hand.click(person.field(panel, fold))
+    for name, text, words in (
+        ("ProgramName", "1CUP", "it must start with a letter"), ("Post", "siemens", "does not read siemens"),
+        ("StartAtLayer", "99", "there is no bead 0 in a layer 99"),
+    ):
+        before = person.field(panel, name)
+        was = before.currentText() if hasattr(before, "currentText") else before.text()
+        hand.enter(panel, name, text)
+        note = person.field(panel, f"{name}Note")
+        person.until(lambda note=note, words=words: note.isVisible() and words in note.text(), words, 10)
+        told(person, panel, "see the field marked")
+        assert not person.field(panel, "FirstLines").isVisible()
+        if name == "ProgramName":
+            person.screenshot("program_name_refused")
+        hand.enter(panel, name, was)
+        told(person, panel, "Begins with CUP.LS.")
+        assert not note.isVisible()
+    hand.enter(panel, "Post", "none")
+    told(person, panel, "Without a post no file is written.")
+    person.press("Cancel")
+    person.panel_closed()
+    assert (program.Key, program.Status, program.ProgramName, program.Post) == (key, "up to date", "CUP", "fanuc")
+    person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+
+
+def test_a_dry_run_deposits_nothing_and_a_later_start_is_shorter(person, joint_path):
+    person.select(joint_path)
+    person.click("RoboticAM_Program")
+    panel = person.panel(PANEL)
+    whole = told(person, panel, "mass: ")
+    person.type(panel, "StartAtLayer", "5")
+    person.until(lambda: told(person, panel, "mass: ") != whole, "less", 10)
+    person.field(panel, "DryRun").setChecked(True)
+    told(person, panel, "dry run, nothing is deposited")
+    person.press("Cancel")
+    person.panel_closed()
