@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from tests.batch import wall_checks
 from tests.batch.wall_examples import EXAMPLES, Plans
@@ -41,6 +42,17 @@ def exact(example, plans):
 @pytest.fixture(scope="module")
 def wall(example, plans):
     return wall_checks.read_wall(plans.folder / example.wall, example.depth)
+
+
+@pytest.mark.parametrize("job", [one.job for one in EXAMPLES if one.has_cell])
+def test_a_platform_of_an_example_is_under_what_it_carries(job, plans):
+    """The plate is about the frame that sits on it; a part held beside that frame hangs in a clamp, and has none."""
+    settings = yaml.safe_load(plans.text(job))
+    cell, path = settings["cell"], (plans.folder / job).parent / settings["substrate"]["file"]
+    box = wall_checks.bounds(path)
+    beside = np.hypot(*np.maximum(np.abs((box[0] + box[1])[:2] / 2.0) - (box[1] - box[0])[:2] / 2.0, 0.0))
+    diameter = float(str(cell.get("platform_diameter", "113 mm")).split()[0])
+    assert diameter == 0.0 or (2.0 * beside < diameter and abs(box[0, 2]) < 1.0)
 
 
 def test_jobs_with_a_cell_end_in_a_verified_program(example, planned):

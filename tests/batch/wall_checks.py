@@ -222,6 +222,14 @@ class Wall:
         return np.concatenate(found) if found else np.empty((0, 3))
 
 
+def bounds(path: Path) -> np.ndarray:
+    """(2, 3) mm, the least and the largest coordinates of the shape of a STEP file."""
+    shape = Part.Shape()
+    shape.read(str(path))
+    box = shape.BoundBox
+    return np.array([[box.XMin, box.YMin, box.ZMin], [box.XMax, box.YMax, box.ZMax]])
+
+
 def read_wall(path: Path, depth: Callable[[np.ndarray], np.ndarray]) -> Wall:
     """The wall of a STEP file."""
     shape = Part.Shape()
