@@ -89,9 +89,10 @@ class ProgramPanel(PreviewPanel):
         return work
 
     def _draw(self, made: Outcome, drawing: Beginning | None) -> str:
-        self.text.setVisible(drawing is not None)
         if drawing is None:
+            self._draw_without()
             return tr("Without a post no file is written.")
+        self.text.show()
         if self.text.toPlainText() != drawing.text:
             self.text.setPlainText(drawing.text)
         path = self._links()["JointPath"]
@@ -99,7 +100,7 @@ class ProgramPanel(PreviewPanel):
         return "\n".join([*_told(drawing), *stale])
 
     def _draw_without(self) -> None:
-        self.text.hide()
+        self.text.clear()  # once seen it keeps its room: a field that is typed into stays in place
 
     def _show_own(self, visible: bool) -> None:
         """A program draws nothing."""

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which of a program's files a controller is told to run."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from freecad_am.posts import catalogue
+
+GOLDEN = Path(__file__).resolve().parent.parent / "golden"
+
+
+@pytest.mark.parametrize(("files", "main"), [
+    (["CUP01.LS", "CUP.LS", "CUP02.LS"], "CUP.LS"), (["A1.MPF", "A101.SPF", "A102.SPF"], "A1.MPF"),
+    (["cup01.ngc", "cup.ngc"], "cup.ngc"),
+    (["CUP/CUP.pjx", "CUP/start.pgx", "CUP/stop.pgx", "CUP/CUP01/start.pgx", "CUP/CUP01/CUP01.dtx"], "CUP/start.pgx"),
+])
+def test_it_is_the_one_that_calls_the_others(files, main):
+    assert catalogue.main_file(files) == catalogue.main_file(reversed(files)) == main
+
+
+@pytest.mark.parametrize("folder", ["val3/gauge", "siemens/tip", "linuxcnc/tip"])
+def test_of_programs_that_are_written_it_names_all_parts(folder):
+    files = [path.relative_to(GOLDEN / folder).as_posix() for path in (GOLDEN / folder).rglob("*") if path.is_file()]
+    main = catalogue.main_file(files)
+    parts = {match.group() for name in files if (match := re.search(r"(?i)(gauge|tip)\d\d", name))}
+    text = (GOLDEN / folder / main).read_text(encoding="latin-1")
+    assert len(parts) == 2 and all(part in text for part in parts)
