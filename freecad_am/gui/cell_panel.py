@@ -129,7 +129,9 @@ class CellPanel(PreviewPanel):
     def _propose(self, worker: Worker, before: str, name: str, title: str) -> None:
         """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
         self.of_machine = worker.result()
-        proposal, usual = self.of_machine[name], self.of_machine.get(before, CellParameters())
+        proposal, usual = self.of_machine.get(name), self.of_machine.get(before, CellParameters())
+        if proposal is None:  # no cell can have it, which the preview tells
+            return
         for place, value, was in (
             (POINT, proposal.deposition_point, usual.deposition_point), (BRANCH, proposal.branch, usual.branch),
         ):

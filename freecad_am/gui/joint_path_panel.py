@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from ..core.issues import ERROR, Issue
 from ..core.kinematics import cell as cells
 from ..core.planning.joint_path import JointPath as JointsOfBeads
@@ -64,19 +66,21 @@ class JointPathPanel(PreviewPanel):
         return work
 
     def _draw(self, made: Outcome, drawing: Trial) -> str:
-        kind, judgement = self._colouring(), drawing.judgement
+        judgement = drawing.judgement
+        kind = self._colouring(judgement)
         values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[kind]
-        self.nodes.set(drawing.planned.beads, values, kind)
+        self.nodes.set(drawing.planned.beads, values, kind, np.isnan(judgement.margin))
         self.aside.put(self.obj, self._links()["Toolpath"])
         stale = [linked.Label for linked in self._links().values() if linked.Status == STALE]
         return "\n".join([*_found(drawing), *_figures(judgement), *(
             tr("{} is out of date; this is of what it was.").format(label) for label in stale
         ), _looked_at(drawing.sample)])
 
-    def _colouring(self) -> str:
-        """What the object's own view tells by its colours, if that is of the machine."""
+    def _colouring(self, judgement: Judgement) -> str:
+        """What the object's own view tells by its colours, if that is of the machine and known."""
         kind = MARGIN if self.obj is None else self.obj.ViewObject.Colouring
-        return kind if kind in (MARGIN, CONDITION, RATIO) else MARGIN
+        known = (MARGIN, RATIO) if judgement.worst_condition is None else (MARGIN, CONDITION, RATIO)
+        return kind if kind in known else MARGIN
 
     def _draw_without(self) -> None:
         self.nodes.clear()
@@ -117,14 +121,14 @@ def _told(issue: Issue, whole: bool) -> str:
 
 
 def _figures(judgement: Judgement) -> list[str]:
-    margin, condition, ratio = judgement.worst_margin, judgement.worst_condition, judgement.worst_ratio
-    if margin is None or condition is None or ratio is None:
-        return []
+    """What is least and most; machines with rotary axes have no condition, and what is out of reach nothing."""
+    found = (
+        (tr("Least joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
+        (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
+        (tr("Largest joint speed: {:.0f} % of what {} can do, in layer {}"), judgement.worst_ratio, 100.0),
+    )
     return [
-        tr("Least joint margin: {:.1f} %, of {} in layer {}").format(100.0 * margin.value, margin.label, margin.layer),
-        tr("Least condition: {:.3f}, in layer {}").format(condition.value, condition.layer),
-        tr("Largest joint speed: {:.0f} % of what {} can do, in layer {}").format(
-            100.0 * ratio.value, ratio.label, ratio.layer),
+        text.format(factor * worst.value, worst.label, worst.layer) for text, worst, factor in found if worst is not None
     ]
 
 

@@ -2523,8 +2523,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
-        <source>Least condition: {:.3f}, in layer {}</source>
-        <translation>Condition la plus faible : {:.3f}, couche {}</translation>
+        <source>Least condition: {0:.3f}, in layer {2}</source>
+        <translation>Condition la plus faible : {0:.3f}, couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>

@@ -28,8 +28,8 @@ def stages(person, hemisphere):
     return made
 
 
-def drawn(person):
-    """Points (n, 3) of the lines that previews draw; None without a preview."""
+def first_of(person, kind):
+    """The first node of a kind, of Coin, that previews draw; None without a preview."""
     from pivy import coin
 
     search = coin.SoSearchAction()
@@ -39,10 +39,21 @@ def drawn(person):
     if search.getPath() is None:
         return None
     inside = coin.SoSearchAction()
-    inside.setType(coin.SoCoordinate3.getClassTypeId())
+    inside.setType(getattr(coin, kind).getClassTypeId())
     inside.setSearchingAll(True)
     inside.apply(search.getPath().getTail())
-    return np.array([tuple(point) for point in inside.getPath().getTail().point.getValues()])
+    return inside.getPath().getTail()
+
+
+def drawn(person):
+    """Points (n, 3) of the lines that previews draw; None without a preview."""
+    node = first_of(person, "SoCoordinate3")
+    return None if node is None else np.array([tuple(point) for point in node.point.getValues()])
+
+
+def previewed_colours(person):
+    """Colours (n, 3) of these points."""
+    return np.array([tuple(colour) for colour in first_of(person, "SoMaterial").diffuseColor.getValues()])
 
 
 def told(person, panel, words, seconds=60):
@@ -151,3 +162,20 @@ def test_what_is_missing_is_told_and_a_stale_toolpath_too(person, stages):
     person.press("Cancel")
     person.panel_closed()
     threads_end(person)
+
+
+def test_a_table_has_no_condition_and_is_told_of_all_the_same(person, stages):
+    toolpath, _ = stages
+    table = api.make_cell(toolpath.Document, machine="table-xyzac", setup="rotary-table")
+    api.change(toolpath, cell=table)
+    made = api.make_joint_path(toolpath.Document, toolpath, table)
+    made.ViewObject.Colouring = "condition"
+    person.idle()
+    person.double_click(made)
+    panel = person.panel(PANEL)
+    text = told(person, panel, "Preview of all points")
+    assert "Least joint margin: " in text and "Largest joint speed: " in text and "condition" not in text
+    colours = previewed_colours(person)
+    assert len(np.unique(colours, axis=0)) == 8  # by margin, which is that of the layer: there is no other
+    person.press("Cancel")
+    person.panel_closed()
