@@ -22,7 +22,7 @@ from ..core.simulation.solids import capsule
 from ..core.toolpath import Toolpath
 from .lines import Array, placed, turned
 from .link_meshes import meshes_of
-from .machine_links import MachineNodes, of_solid
+from .machine_links import Links, MachineNodes, of_solid, plain_links
 from .wall_nodes import unpickable
 
 _LEAST_THICKNESS = 1.0
@@ -34,11 +34,12 @@ PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 
 @dataclass(frozen=True)
 class Rest:
-    """A machine at rest, in part coordinates: links (axes + 1, 4, 4); meshes of the files a user gave them. reached: whether
-    it gets there; else all axes are at 0. limits, joints (axes,): as it stands."""
+    """A machine at rest, in part coordinates: links (axes + 1, 4, 4), what they look like, and the meshes of files a user
+    gave them. reached: whether it gets there; else all axes are at 0. limits, joints (axes,): as it stands."""
 
     machine: Machine
     links: Array
+    solids: Links
     meshes: tuple[Mesh | None, ...]
     reached: bool
     limits: Limits
@@ -76,16 +77,17 @@ def with_machine(parameters: CellParameters, toolpath: Toolpath | None, folders:
     cell = cells.resolve(parameters, frame, family, folders)
     point = resting_point(toolpath, cell.mount)
     joints = at_rest(cell, point)
-    return Scenery(parameters, cell.mount, *_standing(cell, joints, point))
+    solids = plain_links(cell.machine, parameters.platform_diameter, parameters.nozzle.length)
+    return Scenery(parameters, cell.mount, *_standing(cell, joints, point, solids))
 
 
-def _standing(cell: Cell, joints: Array, point: Array) -> tuple[Array, Rest]:
+def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[Array, Rest]:
     place = placing(cell, joints)
     to_part = frames.inverse(place.part)
     nozzle = to_part @ place.nozzle
     reached = bool(np.linalg.norm(nozzle[:3, 3] - point) < _REACHED)
     machine = cell.machine
-    return nozzle, Rest(machine, to_part @ place.links, meshes_of(machine), reached, cell.limits, joints)
+    return nozzle, Rest(machine, to_part @ place.links, solids, meshes_of(machine), reached, cell.limits, joints)
 
 
 def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
@@ -143,16 +145,18 @@ class CellNodes:
         if rest is None:
             return
         if self.machine is None:
-            self.machine = MachineNodes(rest.machine, value.platform_diameter, value.nozzle.length, rest.meshes)
+            self.machine = MachineNodes(rest.machine, rest.solids, rest.meshes)
             self.links.addChild(self.machine.node)
         self.machine.pose(rest.links)
 
 
 def _looks(value: CellParameters, rest: Rest) -> tuple[Any, ...]:
-    """What the nodes of a machine are made of: its links as they are at zero, sizes, and the files a user gave them."""
+    """What the nodes of a machine are made of: its links as they are at zero, of machines with rotary axes the sizes that
+    they are drawn to fit, and the files a user gave the links."""
     chain = rest.machine.chain
     return (
-        rest.machine.id, chain.links(np.zeros(chain.axes)).tobytes(), value.platform_diameter, value.nozzle.length,
+        rest.machine.id, chain.links(np.zeros(chain.axes)).tobytes(),
+        (value.platform_diameter, value.nozzle.length) if rest.machine.is_table else (),
         *(None if mesh is None else hash(mesh[0].tobytes()) for mesh in rest.meshes),
     )
 

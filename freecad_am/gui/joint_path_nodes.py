@@ -35,8 +35,8 @@ class JointPathNodes:
         self.legend.hide()
 
     def set(self, paths: Sequence[BeadPath], values: Array, kind: str, lost: Array) -> None:
-        """The beads of paths in colours of the values (n,) of their points, of one of the kinds that `by_machine` knows; dots
-        where they are lost (n,)."""
+        """The beads of paths in colours of the values (n,) of their points, of one of the kinds that `by_machine` knows;
+        dots where they are lost (n,)."""
         points = np.concatenate([path.bead.points for path in paths])
         colours, scale = by_machine(values, kind)
         self.lines.set(points, [len(path.bead) for path in paths])

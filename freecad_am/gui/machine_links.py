@@ -30,31 +30,33 @@ _SMALLEST = 1.05  # a table is a little wider than the platform on it
 
 
 Look = Sequence[float] | None  # a colour, None for the one that is preferred
+Links = Sequence[Sequence[Solid]]  # solids of each link
 
 
 def _rgb(colour: Look) -> Sequence[float]:
     return preferences.machine_colour() if colour is None else colour
 
 
+def plain_links(machine: Machine, platform: float, torch: float) -> Links:
+    """The solids of each link (axes + 1), base first. platform: diameter of the platform on a table, torch: length of the
+    nozzle, mm; machines with rotary axes are drawn to fit them."""
+    if machine.is_table:
+        return table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
+    return robot_links.solids(machine.chain)
+
+
 class MachineNodes:
     """The links of a machine, in the frame of what they are posed in.
 
-    platform: diameter of the platform on a table, torch: length of the nozzle, mm; machines with rotary axes are drawn to
-    fit them. meshes: of the files a user gave the links, where they are read already. One that cannot be read is told on the
-    report view, once.
+    solids: as of `plain_links`. meshes: of the files a user gave the links, where they are read already. One that cannot be
+    read is told on the report view, once.
     """
 
-    def __init__(
-        self, machine: Machine, platform: float, torch: float, meshes: Sequence[Mesh | None] = ()
-    ) -> None:
+    def __init__(self, machine: Machine, solids: Links, meshes: Sequence[Mesh | None] = ()) -> None:
         self.node = coin.SoSeparator()
         self.transforms: list[Any] = []
         self.materials: list[list[tuple[Any, Look]]] = []
         self.bad = np.zeros(machine.chain.axes + 1, dtype=bool)
-        if machine.is_table:
-            solids = table_links.solids(machine.chain, max(table_links.RADIUS, 0.5 * _SMALLEST * platform), torch)
-        else:
-            solids = robot_links.solids(machine.chain)
         for shape, mesh, plain in zip_longest(machine.shapes, meshes, solids):
             self._add(shape, mesh, plain)
 

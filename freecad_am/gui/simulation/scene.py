@@ -23,7 +23,7 @@ from ...core.toolpath import Bead
 from ...objects.stage import stage_of
 from ..cell_nodes import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
 from ..lines import Array, Lines
-from ..machine_links import MachineNodes, move
+from ..machine_links import MachineNodes, move, plain_links
 from ..path.pieces import PathNodes
 from ..path.rows import Rows
 from .run import Run
@@ -41,7 +41,9 @@ class Scene:
         cell, mount = run.cell, run.cell.mount
         rest = placing(cell, at_rest(cell, resting_point(run.toolpath, mount)))
         self.to_view = frames.inverse(rest.part)
-        self.machine = MachineNodes(cell.machine, run.looks.platform_diameter, run.looks.nozzle.length)
+        looks = run.looks
+        self.machine = MachineNodes(
+            cell.machine, plain_links(cell.machine, looks.platform_diameter, looks.nozzle.length))
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
         self.deposit, self.to_come = PathNodes(), Lines(1.0, TO_COME)
         self.deposit.as_tubes = True
