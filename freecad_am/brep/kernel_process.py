@@ -15,6 +15,7 @@ import contextlib
 import os
 import pickle
 import queue
+import signal
 import subprocess
 import sys
 import tempfile
@@ -119,9 +120,11 @@ class _Process:
 
     def ask(self, question: Any) -> None:
         """Send a question. Raises _Left where nobody is there."""
+        data = memoryview(pickle.dumps(question, protocol=pickle.HIGHEST_PROTOCOL))
         try:
-            pickle.dump(question, self.popen.stdin, protocol=pickle.HIGHEST_PROTOCOL)
-            self.popen.stdin.flush()
+            with _without_signal():
+                while data:  # past Python's buffer, which would be written at the end too, to whoever is gone by then
+                    data = data[os.write(self.popen.stdin.fileno(), data):]
         except OSError:
             raise _Left from None
 
@@ -151,6 +154,26 @@ class _Process:
         for stream in (self.popen.stdin, self.popen.stdout):
             with contextlib.suppress(OSError, ValueError):
                 stream.close()
+
+
+@contextlib.contextmanager
+def _without_signal() -> Iterator[None]:
+    """While this lasts, to write to a process that has gone is an OSError and nothing else, in this thread.
+
+    Python ignores the signal that comes with it. FreeCAD 1.0 and later start Python without its handlers: there it ends
+    FreeCAD, with all documents. It comes to the thread that writes, so it is held back in that one and taken away.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows knows no such signal
+        yield
+        return
+    held = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
+    try:
+        yield
+    finally:
+        if signal.SIGPIPE not in held:
+            if signal.SIGPIPE in signal.sigpending():
+                signal.sigwait({signal.SIGPIPE})
+            signal.pthread_sigmask(signal.SIG_SETMASK, held)
 
 
 def _kill(popen: Any) -> None:

@@ -164,6 +164,35 @@ def test_a_process_that_has_left_is_replaced(slow_part):
     assert in_thread(kernel_process.beside, pid_of, slow_part) not in (first, os.getpid())
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="a signal of POSIX")
+def test_a_process_that_has_left_does_not_take_freecad_along():
+    """As in FreeCAD 1.0, whose Python does not ignore the signal of a broken pipe; the one who asks and the one who ends."""
+    script = "\n".join((
+        "import signal",
+        "import FreeCAD, Part",
+        "from freecad_am.brep import kernel_process",
+        "from tests.brep.test_kernel_process import in_thread, pid_of",
+        "kernel_process.FEW = 0",
+        "signal.signal(signal.SIGPIPE, signal.SIG_DFL)",
+        "box = Part.makeBox(1, 2, 3)",
+        "first = in_thread(kernel_process.beside, pid_of, box)",
+        "(process,) = kernel_process._idle",
+        "process.popen.terminate()",
+        "process.popen.wait(20)",
+        "second = in_thread(kernel_process.beside, pid_of, box)",
+        "(process,) = kernel_process._idle",
+        "process.popen.terminate()",
+        "process.popen.wait(20)",
+        "process.end()",
+        "print('still here', first != second, signal.SIGPIPE in signal.sigpending())",
+    ))
+    done = subprocess.run(
+        [sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, capture_output=True,
+        text=True, timeout=120, check=False,
+    )
+    assert (done.returncode, done.stdout.splitlines()[-1:]) == (0, ["still here True False"]), done.stderr
+
+
 def test_errors_come_back(slow_part):
     with pytest.raises(ValueError, match="no good"):
         in_thread(kernel_process.beside, fail, slow_part, "value")

@@ -139,6 +139,33 @@ def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
     assert [process.popen.poll() for process in kernel_process._idle] == [None]
 
 
+def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
+    """It leaves after some minutes without work; the next preview has another one, and FreeCAD goes on."""
+    monkeypatch.setattr(kernel_process, "FEW", 0)
+    doc = App.newDocument("Later")
+    pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
+    tube = api.open_part(doc, str(EXAMPLES / "tube-on-pipe.step"))
+
+    def previewed():
+        person.gui.Selection.clearSelection()
+        person.gui.Selection.addSelection(doc.Name, tube.Name, "Face1")
+        person.gui.Selection.addSelection(doc.Name, pipe.Name)
+        person.click("RoboticAM_WallOnPart")
+        panel = person.panel("RoboticAM_SurfaceFeature")
+        note = person.field(panel, "preview")
+        person.until(lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60)
+        person.press("Cancel")
+        person.panel_closed()
+        return person.until(lambda: [process.popen for process in kernel_process._idle], "the kernel to be free", 20)
+
+    before = previewed()
+    for popen in before:
+        popen.terminate()
+        popen.wait(20)
+    after = previewed()
+    assert not set(before) & set(after) and [popen.poll() for popen in after] == [None] * len(after)
+
+
 def test_a_job_copied_by_keys_into_another_document(person, hand, job):
     """FreeCAD asks what to copy along, as for everything that has inputs; Return takes all of it."""
     other = App.newDocument("Copy")
