@@ -47,8 +47,12 @@ class StageView:
     def scene(self, root: Any) -> None:
         """Add the nodes to the root, once."""
 
+    def read(self, obj: Any) -> Any:
+        """What `draw` is given: the stored result, or what of it is drawn. InputError as `Stage.value`."""
+        return obj.Proxy.value(obj)
+
     def draw(self, obj: Any, value: Any) -> None:
-        """Fill the nodes from the stored result."""
+        """Fill the nodes from what was read."""
 
     def style(self, vobj: Any) -> None:
         """Apply the view properties."""
@@ -77,7 +81,7 @@ class StageView:
         if obj is None or self.root is None or not getattr(obj, "Key", ""):
             return
         try:
-            self.draw(obj, obj.Proxy.value(obj))
+            self.draw(obj, self.read(obj))
             self.drawn = obj.Key
         except InputError as error:
             if not obj.Document.Transacting:  # within undo the parts of a result come back one by one

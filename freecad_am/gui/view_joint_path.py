@@ -4,9 +4,12 @@ and points that something is wrong with."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.issues import ERROR, InputError
 from ..core.kinematics import machine as machines
@@ -14,11 +17,37 @@ from ..core.parameters.strategy import RevolutionParameters
 from ..core.simulation.margins import from_next, speed_ratios
 from ..objects import user_machines
 from ..objects.findings import issues_of
+from ..objects.joint_path import Planned
 from .lines import DASHED, Array, Lines, Points
 from .path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
 from .path.path_view import OPTIONS, TUBES, PathView
 from .path.rows import Rows
 from .view_toolpath import band_of, width_of
+
+
+@dataclass(frozen=True)
+class Course:
+    """Those columns of a motion of n rows that are drawn: to open a document they alone are read."""
+
+    deposit: NDArray[np.bool_]
+    layer: NDArray[np.int64]
+    bead: NDArray[np.int64]
+    point: NDArray[np.int64]
+    position: Array
+    width: Array
+    joints: Array
+
+    def __len__(self) -> int:
+        return len(self.deposit)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A joint path as a view sees it. limits: their name. whole: reads the result, from when the rest was read."""
+
+    course: Course
+    limits: str
+    whole: Callable[[], Planned]
 
 
 class JointPathView(PathView):
@@ -43,15 +72,27 @@ class JointPathView(PathView):
         root.addChild(self.rapids.node)
         root.addChild(self.wrong.node)
 
-    def rows_of(self, obj: Any, value: Any) -> Rows:
-        paths = value.joint_path.beads
-        height = _layer_height(obj) if obj.ViewObject.Look == TUBES else None  # lines do without the toolpath
-        return Rows.of([path.bead for path in paths], [path.layer for path in paths], width_of(_linked(obj)),
-                       lambda: _known_layer_height(obj) if height is None else height)
+    def read(self, obj: Any) -> Seen:
+        """What of the result is drawn."""
+        columns = [("motion", column.name) for column in fields(Course)]
+        (limits, *found), whole = obj.Proxy.partly(obj, ("joint_path", "limits"), *columns)
+        return Seen(Course(*found), limits, whole)
 
-    def draw(self, obj: Any, value: Any) -> None:
-        motion = value.motion
+    def rows_of(self, obj: Any, value: Seen) -> Rows:
+        course, width = value.course, width_of(_linked(obj))
+        height = _layer_height(obj) if obj.ViewObject.Look == TUBES else None  # lines do without the toolpath
+        starts = np.flatnonzero(course.point[self.at] == 0)
+        known = course.width[self.at]
+        return Rows(
+            course.position[self.at], np.append(starts, len(self.at)), course.layer[self.at[starts]],
+            np.where(np.isfinite(known), known, width), lambda: [path.bead for path in value.whole().joint_path.beads],
+            lambda: _known_layer_height(obj) if height is None else height,
+        )
+
+    def draw(self, obj: Any, value: Seen) -> None:
+        self.seen, motion = value, value.course
         self.motion, self.at = motion, np.flatnonzero(motion.deposit)  # the row of the motion of each point
+        self.reachable = np.isfinite(motion.joints).all(axis=1)
         self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
         self.find_wrong(obj)
         super().draw(obj, value)
@@ -62,7 +103,7 @@ class JointPathView(PathView):
     def find_wrong(self, obj: Any) -> None:
         """The rows of the motion that the machine does not reach, or that a finding forbids a program for."""
         motion = self.motion
-        wrong = motion.deposit & ~motion.reachable
+        wrong = motion.deposit & ~self.reachable
         for issue in issues_of(obj):
             if issue.level == ERROR and issue.layer is not None:
                 here = motion.deposit & (motion.layer == issue.layer)
@@ -91,16 +132,16 @@ class JointPathView(PathView):
         self.rapids.show(vobj.ShowRapids)
 
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
-        value = obj.Proxy.value(obj)
         if kind == CONDITION:
-            condition = np.concatenate([path.condition for path in value.joint_path.beads])
-            return by_machine(np.where(value.motion.reachable[value.motion.deposit], condition, np.nan), kind)
+            condition = np.concatenate([path.condition for path in self.seen.whole().joint_path.beads])
+            return by_machine(np.where(self.reachable[self.at], condition, np.nan), kind)
         if kind in (MARGIN, RATIO):
             try:
-                return by_machine(_of_machine(obj, value, kind), kind)
+                return by_machine(_of_machine(obj, self.seen, kind)[self.at], kind)
             except InputError as error:
                 return unknown(len(self.at), kind, error.message)
-        return coloured(value.joint_path.toolpath(_toolpath_of(obj)), kind, band_of(obj.Toolpath))
+        planned = self.seen.whole().joint_path
+        return coloured(planned.toolpath(_toolpath_of(obj)), kind, band_of(obj.Toolpath))
 
     def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
         return () if obj.Toolpath is None else (band_of(obj.Toolpath),)
@@ -131,17 +172,16 @@ def _known_layer_height(obj: Any) -> float:
         return RevolutionParameters().layer_height
 
 
-def _of_machine(obj: Any, planned: Any, kind: str) -> Array:
-    """(n,) the smallest share left to a limit, or the largest share used of a joint speed. InputError of the machine."""
+def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
+    """(n,) the smallest share left to a limit, or the largest share used of a joint speed, of all rows. InputError of the
+    machine."""
     if obj.Cell is None:
         raise InputError("NO_INPUT", obj.Label, "its cell is gone")
     machine = machines.load(obj.Cell.Machine, tuple(user_machines.folders()))
-    motion, limits = planned.motion, machine.limits(planned.joint_path.limits)
-    if motion.joints.shape[1] != limits.axes:
+    joints, limits = seen.course.joints, machine.limits(seen.limits)
+    if joints.shape[1] != limits.axes:
         raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
     if kind == MARGIN:
-        share = limits.shares(motion.joints).min(axis=1)
-    else:
-        ratio = speed_ratios(motion.joints, motion.duration, machine.max_speed).max(axis=1)
-        share = from_next(motion.deposit, motion.point, ratio)
-    return share[motion.deposit]
+        return limits.smallest_share(joints)
+    motion = seen.whole().motion
+    return from_next(motion.deposit, motion.point, speed_ratios(joints, motion.duration, machine.max_speed).max(axis=1))

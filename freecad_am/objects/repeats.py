@@ -9,7 +9,7 @@ they are asked for only: a view needs a third of them, and new memory is what ta
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Iterator
 from typing import Any
 
@@ -86,9 +86,7 @@ class Unfolded:
         self.added = [0, *before.tolist()]
         self.size = size + self.added[-1]
         self.copies, self.copies_end = copies.tolist(), (place + length).tolist()
-        self.places = place.tolist()
         self.left_out = [0, *np.cumsum(length).tolist()]
-        self.copied: dict[int, Array] = {}
 
     def part(self, start: int, size: int) -> Array:
         """The numbers (size,) from `start` on, not copied where they stand in one piece. ValueError beyond the end."""
@@ -124,31 +122,20 @@ class Unfolded:
             start = stop
 
     def _stretches(self, start: int, end: int) -> Iterator[tuple[Array, int]]:
-        """Stretches, with how long they are, of the numbers with one of each run."""
-        k = bisect_right(self.copies_end, start)
-        while start < end:
-            place, _, length = self.copies[k] if k < len(self.copies) else (end, 0, 0)
+        """Stretches, with how long they are, of numbers with one of each run. A copy may be of others before it, and these
+        again: what is asked for is followed to where it stands, and nothing else of them."""
+        waiting = [(start, end)]
+        while waiting:
+            start, end = waiting.pop()
+            k = bisect_right(self.copies_end, start)
+            place, source, length = self.copies[k] if k < len(self.copies) else (end, 0, 0)
+            stop = min(end, place + length if start >= place else place)
+            if stop < end:
+                waiting.append((stop, end))
             if start < place:
-                stop = min(end, place)
                 yield self.rest[start - self.left_out[k] : stop - self.left_out[k]], stop - start
             else:
-                stop = min(end, place + length)
-                yield self._copy(k)[start - place : stop - place], stop - start
-                k += 1
-            start = stop
-
-    def _copy(self, k: int) -> Array:
-        """The stretch that a copy stands for, which may hold copies before it, and these others."""
-        waiting = [] if k in self.copied else [k]
-        while waiting:
-            _, start, length = self.copies[waiting[-1]]
-            first, end = bisect_right(self.copies_end, start), bisect_left(self.places, start + length)
-            within = [j for j in range(first, end) if j not in self.copied]
-            if within:
-                waiting += within
-            else:
-                self.copied[waiting.pop()] = _joined(list(self._stretches(start, start + length)), length)
-        return self.copied[k]
+                waiting.append((source + start - place, source + stop - place))
 
 
 def _joined(pieces: list[tuple[Array, int]], size: int) -> Array:

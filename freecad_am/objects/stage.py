@@ -218,26 +218,29 @@ class Stage:
     def reader(self, obj: Any) -> Callable[[], Any]:
         """What gives the stored result without the document, of which all is read now: for other threads. Errors as
         `value`."""
-        _check_made(obj)
-        kept = self._kept
-        if kept is not None and kept[0] == obj.Key:
-            return lambda: kept[1]
-        numbers, layout, key, label = store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label
-
-        def read() -> Any:
-            value = store.unpack(numbers, layout, key, label)
-            self._kept = key, value
-            return value
-
-        return read
+        return self.partly(obj)[1]
 
     def picked(self, obj: Any, *places: store.Place) -> tuple[Any, ...]:
         """Values within the stored result, by the field names and indices that lead to them, when not all of it is needed.
         Errors as `value`."""
+        return self.partly(obj, *places)[0]
+
+    def partly(self, obj: Any, *places: store.Place) -> tuple[tuple[Any, ...], Callable[[], Any]]:
+        """`picked`, and a `reader` of the same result for when more of it is needed."""
         _check_made(obj)
-        if self._kept is not None and self._kept[0] == obj.Key:
-            return tuple(functools.reduce(_step, place, self._kept[1]) for place in places)
-        return store.picked(store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label, *places)
+        kept, key = self._kept, obj.Key
+        if kept is not None and kept[0] == key:
+            whole = kept[1]
+            return tuple(functools.reduce(_step, place, whole) for place in places), lambda: whole
+        stored = store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
+
+        def read() -> Any:
+            kept = self._kept
+            if kept is None or kept[0] != key:
+                self._kept = kept = key, store.unpack(*stored)
+            return kept[1]
+
+        return store.picked(*stored, *places), read
 
     def key(self, obj: Any) -> str:
         """Fingerprint of all inputs. Raises InputError for a missing or failed one."""

@@ -7,6 +7,8 @@ import FreeCAD as App
 import numpy as np
 
 from freecad_am import api
+from freecad_am.gui.path.rows import Rows
+from freecad_am.objects import store
 
 HEADLESS = """
 import sys
@@ -57,6 +59,33 @@ def test_saved_closed_and_opened_again(person, hemisphere, tmp_path):
     assert files_again == files
     for one, other in zip(arrays, arrays_again, strict=True):
         assert np.array_equal(one, other, equal_nan=True)
+
+
+def test_opening_reads_what_is_drawn_alone(person, hemisphere, tmp_path, monkeypatch):
+    document = hemisphere.Document
+    api.make_all(document, hemisphere)
+    path = str(tmp_path / "part.FCStd")
+    person.idle(0.2)
+    document.saveAs(path)
+    App.closeDocument(document.Name)
+    read, unpack = [], store.unpack
+    monkeypatch.setattr(store, "unpack", lambda *given: read.append(given[3]) or unpack(*given))
+    again = App.openDocument(path)
+    person.idle(0.4)
+    assert_shown(person, again)
+    assert not {again.Toolpath.Label, again.JointPath.Label, again.Program.Label} & set(read)
+    view = again.JointPath.ViewObject.Proxy
+    rows, margin = view.rows, view.scale.values
+    again.JointPath.ViewObject.Look = "tubes"
+    assert read.count(again.JointPath.Label) == 1
+    planned = api.result(again.JointPath)
+    assert read.count(again.JointPath.Label) == 1
+    paths = planned.joint_path.beads
+    whole = Rows.of([one.bead for one in paths], [one.layer for one in paths], 8.0, lambda: 1.0)
+    for name in ("points", "starts", "layers", "width"):
+        assert np.array_equal(getattr(rows, name), getattr(whole, name)), name
+    assert len(rows.beads) == len(paths) and all(one is path.bead for one, path in zip(rows.beads, paths, strict=True))
+    assert margin.shape == (len(rows),) and 0.0 < margin.min() < margin.max() <= 100.0
 
 
 def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path):

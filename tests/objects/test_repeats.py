@@ -76,8 +76,8 @@ def test_nothing_is_counted_from_both_sides():
 
 
 def test_stretches_of_stretches_of_stretches():
-    """Each of 3000 copies is of one before it, so that the last is as many steps from the numbers themselves."""
-    count, size = 3000, repeats.SHORTEST
+    """Each of 600 copies is of one before it, so that the last is as many steps from the numbers themselves."""
+    count, size = 600, repeats.SHORTEST
     numbers = np.random.default_rng(4).normal(size=size)
     places = size * np.arange(1, count + 1)
     copies = np.column_stack([places, places - size, np.full(count, size)])

@@ -51,6 +51,8 @@ def test_parts_alone_are_those_of_the_whole(seed):
     places = (("layers", -1, "beads", -1, "points"), ("layer_height",), (), ("layers", 0, "beads"), ("frame",))
     parts = store.picked(*store.pack(path, "k"), "k", "x", *places)
     assert equal(parts, (path.layers[-1].beads[-1].points, 1.0, path, path.layers[0].beads, path.frame))
+    alone = store.picked(*store.pack(path, "k"), "k", "x", *places[:2], *places[3:])  # where nothing asks for the whole
+    assert equal(alone, (*parts[:2], *parts[3:]))
     for wrong in (("height",), ("layers", 9), ("layer_height", 0)):
         with pytest.raises(InputError, match="cannot be read"):
             store.picked(*store.pack(path, "k"), "k", "x", wrong)

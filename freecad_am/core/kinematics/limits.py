@@ -69,6 +69,18 @@ class Limits:
             margins(q, self.lower, self.upper), margins(q @ self.coefficients.T, self.coupled_lower, self.coupled_upper),
         ], axis=-1)
 
+    def smallest_share(self, q: Array) -> Array:
+        """(n,) the smallest of the `shares` of each joint vector (n, axes). Limit by limit, without an array as large as all
+        shares: new memory is what takes long."""
+        least = np.full(len(q), np.inf)
+        for axis, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
+            np.minimum(least, _share(q[:, axis], low, high), out=least)
+        for row, low, high in zip(self.coefficients, self.coupled_lower, self.coupled_upper, strict=True):
+            some = np.flatnonzero(row)
+            coupled = sum((row[axis] * q[:, axis] for axis in some), np.zeros(len(q)))
+            np.minimum(least, _share(coupled, low, high), out=least)
+        return least
+
     def smallest(self, q: ArrayLike) -> Smallest:
         """The smallest margin (...) of each joint vector (..., axes) and which limit it is to; NaN where q is."""
         margins = self.margin(q)
@@ -89,9 +101,13 @@ def margins(joints: Array, lower: Array, upper: Array) -> Array:
     """
     share = np.empty_like(joints)
     for axis, (low, high) in enumerate(zip(lower, upper, strict=True)):  # what is as large as the joints takes long to get
-        column, half = joints[..., axis], 0.5 * (high - low)
-        if np.isfinite(half):
-            share[..., axis] = np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0)
-        else:
-            share[..., axis] = np.where(np.isfinite(column), 1.0, np.minimum(column, -column))
+        share[..., axis] = _share(joints[..., axis], low, high)
     return share
+
+
+def _share(column: Array, low: float, high: float) -> Array:
+    """`margins` of one joint."""
+    half = 0.5 * (high - low)
+    if np.isfinite(half):
+        return np.asarray(np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0))
+    return np.where(np.isfinite(column), 1.0, np.minimum(column, -column))

@@ -61,9 +61,7 @@ class Look:
         self.forget(cuts)
         self.make, self.joined = make, joined
         for _ in range(len(cuts) - 1):
-            switch = coin.SoSwitch()
-            switch.whichChild = coin.SO_SWITCH_NONE
-            self.pieces.addChild(switch)
+            self.pieces.addChild(coin.SoSwitch())  # which shows none of its children
 
     def hide(self) -> None:
         """Draw nothing."""
@@ -90,13 +88,14 @@ class Look:
         """Switch a piece on, drawn up to a row; the row, and from which row on the rest is to be drawn apart."""
         if self.drawn.get(index, (None,))[0] == row:
             return self.drawn[index]
-        switch = self.pieces.getChild(index)
-        if index not in self.made:
+        switch, end = self.pieces.getChild(index), self.joined(int(self.cuts[index + 1]))
+        new = index not in self.made
+        if new:
             assert self.make is not None
-            self.made[index] = self.make(int(self.cuts[index]), self.joined(int(self.cuts[index + 1])))
+            self.made[index] = self.make(int(self.cuts[index]), end)
             switch.addChild(self.made[index].node)
         switch.whichChild = coin.SO_SWITCH_ALL
-        return row, self.made[index].cut(row)
+        return row, row if new and row == end else self.made[index].cut(row)  # a new one draws all of it
 
     def _stretch(self, first: int, end: int) -> Any:
         assert self.make is not None

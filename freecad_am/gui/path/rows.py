@@ -23,32 +23,33 @@ PIECE = 4096  # rows of a piece, about
 
 @dataclass(frozen=True)
 class Rows:
-    """n points of m beads in order. layers: (m,) of each bead, rising. width: (n,) mm. layer_height: mm of beads that know
-    no height of their own, asked for when tubes are drawn."""
+    """n points (n, 3) mm of m beads in order. starts: (m + 1,) first row of each bead, and n. layers: (m,) of each bead,
+    rising. width: (n,) mm. read: gives the beads, asked for when more than lines is drawn or told. layer_height: mm of beads
+    that know no height of their own, asked for when tubes are drawn."""
 
-    beads: tuple[Bead, ...]
+    points: Array
+    starts: Index
     layers: Index
     width: Array
+    read: Callable[[], Sequence[Bead]]
     layer_height: Callable[[], float]
 
     @classmethod
     def of(cls, beads: Sequence[Bead], layers: Sequence[int], width: float, layer_height: Callable[[], float]) -> Rows:
         """`width` (mm) is that of beads that know none."""
+        points = np.concatenate([*(bead.points for bead in beads), np.zeros((0, 3))])
+        starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads], dtype=np.intp)])
         columns = [np.full(len(bead), width) if bead.width is None else bead.width for bead in beads]
-        return cls(tuple(beads), np.array(layers, dtype=np.intp), np.concatenate([*columns, np.zeros(0)]), layer_height)
+        return cls(points, starts, np.array(layers, dtype=np.intp), np.concatenate([*columns, np.zeros(0)]), lambda: beads,
+                   layer_height)
 
     def __len__(self) -> int:
         return len(self.width)
 
     @cached_property
-    def starts(self) -> Index:
-        """(m + 1,) first row of each bead, and n."""
-        return np.concatenate([[0], np.cumsum([len(bead) for bead in self.beads], dtype=np.intp)])
-
-    @cached_property
-    def points(self) -> Array:
-        """(n, 3) mm."""
-        return np.concatenate([*(bead.points for bead in self.beads), np.zeros((0, 3))])
+    def beads(self) -> tuple[Bead, ...]:
+        """The m beads."""
+        return tuple(self.read())
 
     @cached_property
     def build(self) -> Array:
@@ -67,7 +68,7 @@ class Rows:
 
     def bead_of(self, row: int) -> int:
         """The bead that a row belongs to."""
-        return min(int(np.searchsorted(self.starts, row, side="right")) - 1, len(self.beads) - 1)
+        return min(int(np.searchsorted(self.starts, row, side="right")) - 1, len(self.layers) - 1)
 
     def counts(self, first: int, end: int) -> Index:
         """How many rows of each bead lie from `first` to before `end`."""

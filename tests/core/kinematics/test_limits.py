@@ -49,6 +49,16 @@ def test_arrays_and_unreachable_points(arm):
     assert not limits.exceeded(q)[1, 2].any()
 
 
+@pytest.mark.parametrize("name", ["maker", "paper"])
+def test_the_smallest_share_is_that_of_all(arm, name):
+    limits = arm.limits(name)
+    q = np.random.default_rng(2).uniform(-4, 4, (500, 6))
+    q[7], q[8, 3] = np.nan, np.nan
+    shares = limits.shares(q)
+    assert shares.shape == (500, len(limits.labels)) and (name == "paper" or (shares.argmin(axis=1) == 6).any())
+    assert np.allclose(limits.smallest_share(q), shares.min(axis=1), rtol=0.0, atol=1e-14, equal_nan=True)
+
+
 def test_endless_axis(arm):
     paper = arm.limits("paper")
     assert paper.endless.tolist() == [False] * 5 + [True]
