@@ -17,6 +17,7 @@ from ..objects.stage import stage_of
 from . import icons, recorded
 from .colours import WRONG
 from .quantity import QuantityField
+from .selection import meant
 from .signals import connect
 from .stage_panel import CLOSED
 from .texts import tr, translated, translated_error
@@ -135,9 +136,9 @@ class ExportPanel:
 
     def _first(self) -> int:
         """The path that is selected, else the last joint path."""
-        for chosen in Gui.Selection.getSelection(self.document.Name):
-            if chosen in self.paths:
-                return self.paths.index(chosen)
+        for obj in meant(self.document.Name):
+            if obj in self.paths:
+                return self.paths.index(obj)
         joint_paths = [k for k, obj in enumerate(self.paths) if stage_of(obj).kind == "joint path"]
         return joint_paths[-1] if joint_paths else len(self.paths) - 1
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +19,7 @@ from .quantity import PlainQuantity, QuantityField
 from .texts import tr, translated
 
 _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
+_NUMBERS = (*_QUANTITIES, f.TURN_RATE, f.NUMBER, f.RATIO)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
 _LARGEST = 2_147_483_647
@@ -139,16 +141,33 @@ def _text(row: Row, value: Any, expression: str = "") -> Field:
     if row.form == TEXT_LIST:
         edit.setText(" ".join(value))
         return Field(row, edit, lambda: tuple(edit.text().replace(",", " ").split()))
-    edit.setText(row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}")
+    numeric = row.spec.kind in _NUMBERS
+    text = row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}"
+    edit.setText(_with_point(text, ".", _point(edit)) if numeric else text)
     wanted = ([tr("a quantity in {}").format(row.unit)] if row.unit else []) + list(row.spec.words)
     if wanted or row.spec.optional:
         words = tr(" or ").join(wanted)
         edit.setPlaceholderText(tr("{} (empty: none)").format(words).strip() if row.spec.optional else words)
     if expression:
         edit.setText(expression)
+
+    def entered() -> str:
+        entry = str(edit.text()).strip()
+        return _with_point(entry, _point(edit), ".") if numeric else entry
+
     if row.form == f.NUMBER:
-        return Field(row, edit, lambda: _number(edit.text(), row.label))
-    return Field(row, edit, lambda: edit.text().strip())
+        return Field(row, edit, lambda: _number(entered(), row.label))
+    return Field(row, edit, entered)
+
+
+def _point(edit: Any) -> str:
+    """What decimals begin with in the language of the window."""
+    return str(edit.locale().decimalPoint())
+
+
+def _with_point(text: str, old: str, new: str) -> str:
+    """A text that is one number, with its unit or without, with another decimal point; any other text as it is."""
+    return re.sub(rf"^([-+]?\d*){re.escape(old)}(\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s.,].*)?)$", rf"\g<1>{new}\2", text)
 
 
 def _number(text: str, name: str) -> float | str:

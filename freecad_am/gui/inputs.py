@@ -11,6 +11,7 @@ from PySide import QtGui
 
 from ..objects.stage import Link, Stage, stage_of
 from . import picking, recorded
+from .selection import meant
 from .texts import tr, translated
 
 
@@ -54,7 +55,7 @@ class StageChoice(Input):
                 self.widget.addItem(obj.Label, obj.Name)
         if not link.required:
             self.widget.addItem(tr("none"), "")
-        selected = [obj.Name for obj in Gui.Selection.getSelection() if obj.Name in names]
+        selected = [obj.Name for obj in meant() if obj.Name in names]
         wanted = present.Name if present is not None else (selected or names[-1:] or [""])[0]
         self.widget.setCurrentIndex(max(0, self.widget.findData(wanted)))
 

@@ -306,15 +306,14 @@ def _tell_next(stages: list[Any]) -> None:
     """Show the whole result, and tell what came of it and what can be done next."""
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
-        text = tr("{} is {}: {}. Double-click a stage in the tree to change it.").format(
-            wrong.Label, translated(wrong.Status), translated(wrong.Message.rstrip(".")))
+        # why is in the report view already
+        text = tr("{} is {}. Double-click a stage in the tree to change it.").format(wrong.Label, translated(wrong.Status))
     elif stages[-1].Proxy.kind == "program":
         text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
     else:
         text = tr("The joint path is ready; there is no post for this machine's controller yet. Simulate… plays it.")
     Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
-    if wrong is None:  # what is wrong is in the report view already
-        App.Console.PrintMessage(text + "\n")
+    App.Console.PrintMessage(text + "\n")
     _show_whole()
 
 

@@ -9512,14 +9512,14 @@
         <translation>{} est écrit.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>{} is {}. Double-click a stage in the tree to change it.</source>
+        <translation>{} est {}. Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/recorded.py"/>
         <source>{} is {}: {}</source>
         <translation>{} est {} : {}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
-        <source>{} is {}: {}. Double-click a stage in the tree to change it.</source>
-        <translation>{} est {} : {}. Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking.py"/>

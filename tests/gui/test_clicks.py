@@ -301,6 +301,23 @@ def test_the_open_window_of_a_program_follows_it(person, hemisphere):
     person.field(window, "close").click()
 
 
+def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere):
+    ring = hemisphere.Document.addObject("Part::Cylinder", "Ring")
+    ring.Radius, ring.Height = 6000.0, 2.0
+    hemisphere.Document.recompute()
+    person.select(ring)
+    person.click("RoboticAM_NewJob")
+    person.panel("RoboticAM_NewJob")
+    said = len(person.console())
+    person.press("Ok")
+    person.panel_closed()
+    joint_path = hemisphere.Document.JointPath
+    assert joint_path.Status == "infeasible"
+    lines = [line for line in person.console()[said:].splitlines() if joint_path.Message.rstrip(".") in line]
+    assert len(lines) == 1 and lines[0].endswith(f"Joint path is infeasible: {joint_path.Message}")
+    assert person.console().rstrip().endswith("Joint path is infeasible. Double-click a stage in the tree to change it.")
+
+
 def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)

@@ -51,6 +51,11 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
     assert person.field(panel, "Path").currentText() == job.Label
     path = str(folder / "mes fils é.step")
     person.type(panel, "File", path)
+    refused(person)
+    note = person.field(panel, "FileNote")
+    assert note.isVisible() and note.text() == f"there is no folder {folder}; make it, or choose another"
+    assert not folder.exists()
+    folder.mkdir()
     person.screenshot("export_path")
     taken(person)
     assert len(Part.read(path).Edges) == api.result(job).bead_count
@@ -68,7 +73,7 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
     person.type(panel, "File", str(tmp_path / "file" / "a.step"))
     refused(person)
     note = person.field(panel, "FileNote")
-    assert note.isVisible() and "choose a file you can write" in note.text()
+    assert note.isVisible() and "there is no folder" in note.text()
     assert not person.field(panel, "error").isVisible()
     person.type(panel, "File", str(tmp_path / "a.txt"))
     assert not note.isVisible()  # what it was about is no more

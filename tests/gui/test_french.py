@@ -14,6 +14,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.gui import fields
 from tests import run
 
 NO_BREAK = "\u00a0"
@@ -81,6 +82,49 @@ def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
     made = api.stages_of(App.ActiveDocument, "feature")[0]
     assert made.Spacing == "iso-height" and made.LayerHeight.Value == 2.0  # documents know no language
     assert made.Status in ("up to date", "stale")
+
+
+@pytest.fixture
+def commas(french):
+    """As in a FreeCAD that writes numbers as French does."""
+    before = french.core.QLocale()
+    of_language = french.core.QLocale("fr_FR")
+    french.core.QLocale.setDefault(of_language)
+    french.window.setLocale(of_language)
+    yield
+    french.core.QLocale.setDefault(before)
+    french.window.setLocale(before)
+
+
+def test_plain_numbers_have_the_comma_that_the_language_has(french, commas, hand, hemisphere):
+    doc = hemisphere.Document
+    toolpath = api.make_toolpath(doc, api.make_feature(doc, hemisphere, layer_height=15), temperature=150.5)
+    french.open_workbench()
+    french.double_click(toolpath)
+    panel = french.panel("RoboticAM_Toolpath")
+    density, temperature = french.field(panel, "Density"), french.field(panel, "Temperature")
+    assert (density.text(), temperature.text()) == ("7,85", "150,5")
+    hand.enter(panel, "Density", "2,7")
+    hand.enter(panel, "Temperature", "120.25")
+    french.press("Apply")
+    french.until(lambda: toolpath.Density == 2.7, "the density", 5)
+    assert toolpath.Temperature == "120.25"
+    hand.enter(panel, "Density", "2,7,1")
+    french.press("Ok")
+    french.until(lambda: "2,7,1" in french.panel_error(panel), "the error", 5)
+    hand.enter(panel, "Density", "=1.5 * 2")
+    french.press("Ok")
+    french.panel_closed()
+    assert toolpath.Density == 3.0
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [("7,85", "7.85"), (",5", ".5"), ("-1,5e-3 deg/mm", "-1.5e-3 deg/mm"), ("auto", "auto"), ("1,2,3", "1,2,3"),
+     ("1,2 3,4 5", "1,2 3,4 5"), ("=a,1", "=a,1"), ("12", "12"), ("1,5mm", "1.5mm"), ("", "")],
+)
+def test_one_number_alone_has_its_point_changed(text, told):
+    assert fields._with_point(text, ",", ".") == told
 
 
 def test_findings_and_docks_are_french(french, hemisphere):

@@ -16,6 +16,7 @@ from ...objects.inspection import KINDS
 from ...objects.stage import Link, stage_of
 from .. import inputs, recorded
 from ..picking import usable
+from ..selection import meant
 from ..texts import tr, translated
 
 
@@ -34,9 +35,9 @@ class PlannedChoice(inputs.Input):
         found = offered(self.document)
         for obj in found:
             self.widget.addItem(obj.Label, obj.Name)
-        chosen = [obj for obj in Gui.Selection.getSelection(self.document.Name) if obj in found]
+        selected = [obj for obj in meant(self.document.Name) if obj in found]
         features = [obj for obj in found if stage_of(obj) is not None and stage_of(obj).kind == "feature"]
-        wanted = next(iter([*([present] if present is not None else chosen), *features[-1:], *found]), None)
+        wanted = next(iter([*([present] if present is not None else selected), *features[-1:], *found]), None)
         if wanted is not None:
             self.widget.setCurrentIndex(max(0, self.widget.findData(wanted.Name)))
 

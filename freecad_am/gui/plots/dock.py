@@ -18,6 +18,7 @@ from ...plots.source import Source
 from .. import docks, preference_watch
 from ..follower import Follower
 from ..later import Background, Later
+from ..selection import meant
 from ..texts import tr, translated_error
 from ..worker import Worker
 from . import saving, units, words
@@ -297,5 +298,4 @@ def show(obj: Any = None) -> None:
     global _dock
     if _dock is None:
         _dock = PlotsDock()
-    chosen = [one for one in Gui.Selection.getSelection() if plottable(one)]
-    _dock.open(obj or (chosen[0] if chosen else None))
+    _dock.open(obj or next(filter(plottable, meant()), None))

@@ -12,6 +12,7 @@ from ...core.issues import AmError
 from ...objects import hooks
 from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
+from ..selection import meant
 from ..texts import error_line, tr, translated_error
 from . import dock
 from .run import prepared
@@ -21,10 +22,10 @@ KINDS = ("program", "joint path")
 
 def simulate() -> None:
     """Simulate the selected joint path or program, else the last one of the document that has a result."""
-    chosen = [obj for obj in Gui.Selection.getSelection() if _kind(obj) in KINDS]
+    selected = [obj for obj in meant() if _kind(obj) in KINDS]
     made = [obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key]
-    if chosen or made:
-        show(chosen[0] if chosen else made[-1])
+    if selected or made:
+        show(selected[0] if selected else made[-1])
     else:
         _say(tr("There is no joint path to simulate; make one first."))
 

@@ -10,19 +10,20 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
+from ..selection import meant
 from ..texts import error_line, tr, translated_error
 from . import dock
 
 
 def spin_map() -> None:
     """Open the map of the selected joint path, or that of a selected program, else of the last one with a result."""
-    chosen = [found for found in map(_joint_path, Gui.Selection.getSelection()) if found is not None]
+    selected = [found for found in map(_joint_path, meant()) if found is not None]
     made = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
-    if not chosen and not made:
+    if not selected and not made:
         _say(tr("There is no joint path to map; make one first."))
         return
     try:
-        dock.show(chosen[0] if chosen else made[-1])
+        dock.show(selected[0] if selected else made[-1])
     except AmError as error:
         App.Console.PrintWarning(error_line(error))
         Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)
