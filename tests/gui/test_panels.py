@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Panels: Apply keeps them open, expressions are typed, every field has help, previews go on beside the window."""
 
+import gc
 import threading
 import time
 
@@ -152,3 +153,49 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(p
     person.panel_closed()
     person.until(lambda: ended[-1] == 2.0, "its end", 10)
     person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+
+
+@pytest.mark.parametrize(("command", "entries"), [
+    ("Cell", (("Machine", "kuka-kr16-2"), ("Machine", "nothing"), ("Machine", "table-xyzac"), ("Limits", "paper"))),
+    ("JointPath", (("MinCondition", "2"), ("MinCondition", "0.1"))),
+    ("Program", (("ProgramName", "1CUP"), ("ProgramName", "MUG"), ("Post", "none"))),
+])
+def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(person, joint_path, command, entries):
+    """Neither widgets, which would be taken for later ones, nor threads, nor steps of undo."""
+    document, steps = joint_path.Document, joint_path.Document.UndoCount
+
+    def shown(kind):
+        """Not by what the main window finds, which it keeps."""
+        return [one for one in person.widgets.QApplication.allWidgets() if isinstance(one, kind) and one.isVisible()]
+
+    def dead():
+        wrappers = [one for one in gc.get_objects() if isinstance(one, person.core.QObject)]
+        return [one for one in wrappers if not person.qt.isValid(one)]
+
+    def enter(name, text):
+        line = next(one for kind in (person.widgets.QComboBox, person.widgets.QLineEdit) for one in shown(kind)
+                    if one.objectName() == name)
+        (line.setEditText if hasattr(line, "setEditText") else line.setText)(text)
+
+    def cancel():
+        wanted = person.widgets.QDialogButtonBox.Cancel
+        next(box.button(wanted) for box in shown(person.widgets.QDialogButtonBox) if box.button(wanted) is not None).click()
+
+    person.idle(0.5)
+    gc.collect()
+    gc.disable()
+    try:
+        before = len(dead())
+        person.select(joint_path)
+        person.click(f"RoboticAM_{command}")
+        for name, text in entries:
+            person.idle(1.0)  # it is followed and previewed
+            enter(name, text)
+        person.idle(0.4)  # the last one is at work
+        cancel()
+        person.panel_closed()
+        person.until(lambda: len(dead()) <= before, "widgets to go with their panel", 10)
+        person.until(lambda: "Robotic AM" not in [one.name for one in threading.enumerate()], "the threads to end", 10)
+    finally:
+        gc.enable()
+    assert document.UndoCount == steps and len(api.stages_of(document)) == 4
