@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from statistics import median
@@ -160,9 +161,9 @@ def _opened(path: str, drawn: bool) -> float:
 
 
 def both() -> dict[str, object]:
-    """Frames, then opening."""
-    job = os.environ["FRAMES_JOB"]
-    return {"frames": frames(job), **opening(job)}
+    """Frames, then openings."""
+    jobs = json.loads(os.environ["FRAMES_JOBS"])
+    return {"frames": frames(jobs["cylinder"]), "openings": {name: opening(saved) for name, saved in jobs.items()}}
 
 
 begin(both)

@@ -4,10 +4,12 @@
 In FreeCAD's window under Xvfb, drawn by the processor (llvmpipe). Peer of the frames: a plain Coin SoLineSet of the same
 points and colours in the same window, in turns; a frame is the camera turned, or the slider moved, until it is drawn. Of
 opening: what our results add to opening the same document without them until its path is drawn, against what is allowed.
+A cylinder, whose layers are alike, and a dome, which repeats nothing.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -31,12 +33,16 @@ import FreeCAD as App, Part
 from freecad_am import api
 document = App.newDocument("Job")
 part = document.addObject("Part::Feature", "Part")
-part.Shape = Part.makeCylinder(45, 70)
+part.Shape = {shape}
 cell = api.make_cell(document)
 toolpath = api.make_toolpath(document, api.make_feature(document, part, min_points=1420), cell)
-api.make_program(document, api.make_joint_path(document, toolpath, cell, method="constant"))
+joint_path = api.make_joint_path(document, toolpath, cell, method="constant")
+if joint_path.Status == "up to date":
+    api.make_program(document, joint_path)
 document.saveAs({saved!r})
 """
+# the dome is past a limit at some points, and has a joint path all the same
+SHAPES = {"cylinder": "Part.makeCylinder(45, 70)", "dome": "Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)"}
 
 
 def run() -> list[Row]:
@@ -45,17 +51,19 @@ def run() -> list[Row]:
     if freecad is None:
         return []
     with tempfile.TemporaryDirectory() as folder:
-        saved = str(Path(folder) / "job.FCStd")
         plain = {key: value for key, value in os.environ.items() if key not in ("BENCH_INSIDE", "VIRTUAL_ENV")}
-        subprocess.run([sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved)], check=True, env=plain,
-                       stdin=subprocess.DEVNULL)
-        found = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST, FRAMES_JOB=saved)
+        jobs = {name: str(Path(folder) / f"{name}.FCStd") for name in SHAPES}
+        for name, saved in jobs.items():
+            subprocess.run([sys.executable, "-c", JOB.format(root=str(ROOT), saved=saved, shape=SHAPES[name])], check=True,
+                           env=plain, stdin=subprocess.DEVNULL)
+        found = in_window.measured(freecad, SCRIPT, Path(folder), LONGEST, FRAMES_JOBS=json.dumps(jobs))
     rows = [
         Row(f"frame of {one['points']:,} points, {one['what']}; one SoLineSet", one["ours"], one["peer"], "ms",
             REQUIRED[one["what"]])
         for one in found["frames"]
     ]
-    added = max(found["with"] - found["without"], 1e-3)
-    return [*rows, Row(
-        f"opening a job of {found['points']:,} points, {found['with']:.2f} s; what results add, and what is allowed", added,
-        ALLOWED, "s", 1.0)]
+    for name, took in found["openings"].items():
+        added = max(took["with"] - took["without"], 1e-3)
+        what = f"opening a {name} of {took['points']:,} points, {took['with']:.2f} s; what results add, and what is allowed"
+        rows.append(Row(what, added, ALLOWED, "s", 1.0))
+    return rows
