@@ -8,37 +8,12 @@ import os
 import time
 from statistics import median
 
-from in_window import begin, settle
+from in_window import Drawn, begin, settle
 
 FRAMES = 6
 OPENINGS = 3
 SIZES = (10_000, 100_000, 300_000)
 OF_LAYER = 1000
-
-
-class Drawn:
-    """Tells when a view has drawn its scene, and counts it where what it is to show is there."""
-
-    def __init__(self, view, there=lambda: True) -> None:
-        from pivy import coin
-
-        self.there, self.count = there, 0
-        self.node, self.drawing = coin.SoCallback(), coin.SoGLRenderAction.getClassTypeId()
-        self.node.setCallback(self._seen)
-        view.getSceneGraph().addChild(self.node)
-
-    def _seen(self, _: object, action) -> None:
-        self.count += action.isOfType(self.drawing) and self.there()  # FreeCAD's own is derived from it
-
-    def after(self, act) -> float:
-        """ms from before the act until it is drawn."""
-        import FreeCADGui as Gui
-
-        start, count = time.perf_counter(), self.count
-        act()
-        while self.count == count and time.perf_counter() < start + 5.0:
-            Gui.updateGui()
-        return 1e3 * (time.perf_counter() - start)
 
 
 def vase(like, count: int):

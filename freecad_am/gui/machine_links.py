@@ -55,6 +55,7 @@ class MachineNodes:
     def __init__(self, machine: Machine, solids: Links, meshes: Sequence[Mesh | None] = ()) -> None:
         self.node = coin.SoSeparator()
         self.transforms: list[Any] = []
+        self.matrices: list[Any] = []  # of the transforms; to ask a node for its field takes longer than to set it
         self.materials: list[list[tuple[Any, Look]]] = []
         self.bad = np.zeros(machine.chain.axes + 1, dtype=bool)
         for shape, mesh, plain in zip_longest(machine.shapes, meshes, solids):
@@ -79,13 +80,14 @@ class MachineNodes:
             materials.append((material, colour))
         self.node.addChild(link)
         self.transforms.append(transform)
+        self.matrices.append(transform.matrix)
         self.materials.append(materials)
 
     def pose(self, links: Array) -> None:
         """Move the links to their poses (axes + 1, 4, 4); NaN leaves them where they are."""
         if np.isfinite(links).all():
-            for transform, pose in zip(self.transforms, links):
-                move(transform, pose)
+            for matrix, pose in zip(self.matrices, links):
+                move(matrix, pose)
 
     def paint(self, bad: NDArray[np.bool_]) -> None:
         """Links (axes + 1,) to be red; the others get their own colours back."""
@@ -101,9 +103,9 @@ class MachineNodes:
                 material.diffuseColor.setValue(*(BAD if bad else _rgb(colour)))
 
 
-def move(transform: Any, pose: Array) -> None:
-    """Give a SoMatrixTransform a pose (4, 4)."""
-    transform.matrix = coin.SbMatrix(*pose.T.ravel().tolist())
+def move(matrix: Any, pose: Array) -> None:
+    """Give the matrix field of a SoMatrixTransform a pose (4, 4)."""
+    matrix.setValue(coin.SbMatrix(*pose.T.ravel().tolist()))
 
 
 def of_solid(solid: Solid) -> Any:

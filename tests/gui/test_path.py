@@ -13,6 +13,7 @@ from freecad_am import api
 from freecad_am.core.toolpath import Layer
 from freecad_am.gui.path import clicks, colouring, dock
 from freecad_am.gui.path.facts import facts
+from freecad_am.gui.path.pieces import BLOCK
 from freecad_am.gui.path.rows import PIECE, Rows
 
 
@@ -182,22 +183,22 @@ def test_a_stretch_of_a_large_path_changes_little(person, joint_path):
     cuts = view.rows.cuts
     assert len(cuts) > 6 and np.diff(cuts).max() < 2 * PIECE and (cuts[0], cuts[-1]) == (0, len(view.rows))
     pieces = [view.path.lines.pieces.getChild(k).getChild(0) for k in range(len(cuts) - 1)]
-    for look, first in ((view.path.lines, 1), (view.path.tubes, 0)):
+    for look, first, block in ((view.path.lines, 1, 0), (view.path.tubes, 0, BLOCK)):
         view.path.look(look is view.path.tubes)
         made = []
         make = look.make
         look.make = lambda first, end, made=made, make=make: made.append((first, end)) or make(first, end)
         for last in range(view.rows.layer_count - 1, 0, -3):
             view.show((first, last, 5))
-        # but for what lies before the first piece, no more than the last segment is made anew
+        # but for what lies before the first piece, no more than the last segment, of tubes the last block, is made anew
         before = view.rows.of_layers(first, first)[0]
         assert max(end - start for start, end in made) < 2 * PIECE
-        assert max((end - start for start, end in made if start not in (before, *cuts)), default=0) < 9
+        assert max((end - start for start, end in made if start not in (before, *cuts)), default=0) < 9 + block
         view.show(None)
         made.clear()
         for end in range(len(view.rows) - 300, len(view.rows)):  # as a simulation grows
             view.path.show(0, end)
-        assert len(made) < 302 and sum(end - start for start, end in made) < 4 * 302
+        assert len(made) < 302 and sum(end - start for start, end in made) < (4 + block) * 302
         look.make = make
     view.path.look(False)
     assert [view.path.lines.pieces.getChild(k).getChild(0) for k in range(len(cuts) - 1)] == pieces

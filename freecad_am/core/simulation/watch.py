@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -57,14 +58,14 @@ class Watch:
     touching: NDArray[np.int64]
     arm_known: bool
 
-    @property
+    @cached_property
     def past(self) -> NDArray[np.bool_]:
         """(n,) rows past a limit."""
         with np.errstate(invalid="ignore"):
             past: NDArray[np.bool_] = self.margin < -_ROUNDING
         return past
 
-    @property
+    @cached_property
     def singular(self) -> NDArray[np.bool_]:
         """(n,) rows nearer to a singularity than is allowed."""
         with np.errstate(invalid="ignore"):

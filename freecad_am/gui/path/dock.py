@@ -8,10 +8,11 @@ from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
-from .. import docks, preference_watch
+from .. import docks, preference_watch, redraw
 from ..follower import Follower
+from ..steady import SteadyText
 from ..texts import tr, translated
 from . import path_view
 from .colouring import LAYER
@@ -20,7 +21,7 @@ from .path_view import PathView
 from .slider_row import Row
 
 NAME = "RoboticAM_PathDock"
-LINES = 3
+LINES = 3  # of what is told of a point, at most
 LABEL = 14  # letters of a choice that are to be seen, at least
 _LAYER_PAGE, _POINT_PAGE = 10, 100
 
@@ -62,12 +63,7 @@ class PathDock(Follower):
             Row("to", tr("To layer"), tr("The last layer that is shown"), _LAYER_PAGE),
             Row("point", tr("Point"), tr("The last point that is shown, counted from 0 in the last layer"), _POINT_PAGE),
         )
-        self.facts = QtGui.QLabel()
-        self.facts.setObjectName("facts")
-        self.facts.setWordWrap(True)
-        self.facts.setAlignment(QtCore.Qt.AlignTop)
-        # room for as many lines as they have at most, or the 3D view would change its size with them
-        self.facts.setMinimumHeight(LINES * self.facts.fontMetrics().lineSpacing())
+        self.facts = SteadyText("facts", LINES)
         column.addLayout(self._choices())
         column.addWidget(self.controls)
         grid = QtGui.QGridLayout(self.controls)
@@ -190,8 +186,8 @@ class PathDock(Follower):
         paths = _paths()
         _offer(self.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
         if not there:
-            self.facts.setText(tr("There is no path to look at yet: make a toolpath or a joint path.") if obj is None else
-                               tr("{} is hidden, or has no result.").format(obj.Label))
+            self.facts.tell(tr("There is no path to look at yet: make a toolpath or a joint path.") if obj is None else
+                            tr("{} is hidden, or has no result.").format(obj.Label))
             return
         vobj = obj.ViewObject
         for combo, name in ((self.colouring, "Colouring"), (self.look, "Look")):
@@ -205,7 +201,7 @@ class PathDock(Follower):
         row = max(low, (high if count is None else low + count) - 1)
         self.point.set(0, max(high - low - 1, 0), row - low)
         told = "" if view.scale is None or view.scale.title == LAYER else view.scale.told(row)
-        self.facts.setText(" · ".join(filter(None, (told, facts(rows, row)))))
+        self.facts.tell(" · ".join(filter(None, (told, facts(rows, row)))))
 
     def _moved(self, row: Row) -> None:
         view = self.view()
@@ -218,15 +214,19 @@ class PathDock(Follower):
             first, last = (first, first) if row is self.from_ else (last, last)
         count = self.point.value() + 1 if row is self.point and self.point.value() < self.point.most() else None
         whole = (first, last, count) == (0, view.rows.layer_count - 1, None)
-        view.show(None if whole else (first, last, count))
+        self._show(view, None if whole else (first, last, count))
+
+    def _show(self, view: PathView, shown: tuple[int, int, int | None] | None) -> None:
+        """Show a stretch of a path, and in the fields what it is."""
+        view.show(shown)
         self.fill()
+        redraw.views_with_fields(view.obj.Document.Name)
 
     def _show_all(self, *_: Any) -> None:
         view = self.view()
         if view is not None:
             self.single.setChecked(False)
-            view.show(None)
-            self.fill()
+            self._show(view, None)
 
     def _picked(self, view: PathView, row: int) -> None:
         """A point of a path was clicked in the 3D view: all up to it is shown."""
@@ -237,8 +237,7 @@ class PathDock(Follower):
         layer = int(rows.layers[rows.bead_of(row)])
         begin = 0 if view.shown is None else min(view.shown[0], layer)
         first = layer if self.single.isChecked() else begin
-        view.show((first, layer, row + 1 - rows.of_layers(layer, layer)[0]))
-        self.fill()
+        self._show(view, (first, layer, row + 1 - rows.of_layers(layer, layer)[0]))
 
     def _set(self, name: str, value: Any) -> None:
         view = self.view()

@@ -18,6 +18,7 @@ from pivy import coin
 from ..lines import Array, fill, unshaded
 from .rows import Index, Rows
 
+BLOCK = 128  # sections by which a piece of tubes grows: Coin reads all of it anew then
 _SHININESS = 0.2
 
 
@@ -43,6 +44,7 @@ class Look:
             group.addChild(child)
         self.node.addChild(group)
         self.node.whichChild = coin.SO_SWITCH_NONE
+        self.seen = False
         self.make: Make | None = None
         self.joined: Callable[[int], int] = lambda row: row
         self.forget(np.zeros(1, dtype=np.intp))
@@ -65,11 +67,16 @@ class Look:
 
     def hide(self) -> None:
         """Draw nothing."""
-        self.node.whichChild = coin.SO_SWITCH_NONE
+        self._switch(False)
+
+    def _switch(self, on: bool) -> None:
+        if on != self.seen:  # a node that is given what it has takes it for a change
+            self.seen = on
+            self.node.whichChild = coin.SO_SWITCH_ALL if on else coin.SO_SWITCH_NONE
 
     def show(self, first: int, end: int) -> None:
         """Draw the rows from `first` to before `end`."""
-        self.node.whichChild = coin.SO_SWITCH_ALL
+        self._switch(True)
         chosen = np.flatnonzero((self.cuts[:-1] >= first) & (self.cuts[:-1] < end))
         wanted = {int(index): min(self.joined(int(self.cuts[index + 1])), end) for index in chosen}
         for index in self.drawn.keys() - wanted.keys():
@@ -202,14 +209,19 @@ class PathNodes:
         values.materialBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
         shape.vertexProperty = values
 
+        filled = 0
+
         def cut(row: int) -> int:
-            sections = int(np.searchsorted(rows, row))
-            fill(shape.coordIndex, corners[: count[sections]].ravel())
+            nonlocal filled
+            sections = len(rows) if row >= end else BLOCK * (int(np.searchsorted(rows, row)) // BLOCK)
+            if sections != filled:
+                fill(shape.coordIndex, corners[: count[sections]].ravel())
+                filled = sections
             if row >= end:
                 return row
-            # what is left to the row, or the last segment, has the face at the end
+            # what is left to the row, but at least the last segment, which has the face at the end
             start = int(self.rows.starts[self.rows.bead_of(row - 1)])
-            return max(start, first, min(int(rows[max(sections - 1, 0)]), row - 2))
+            return min(int(rows[max(sections - 1, 0)]), max(start, first, row - 2))
 
         cut(end)
         return Piece(_apart(shape), cut)

@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
+from ..steady import hold
 from ..texts import tr
 
 
@@ -50,6 +51,7 @@ class Row:
             widget.setRange(least, most)
             widget.setValue(value)
             widget.blockSignals(blocked)
+        hold(self.spin)  # as wide as its widest number so far
 
     def value(self) -> int:
         """What is entered."""

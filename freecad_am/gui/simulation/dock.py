@@ -12,8 +12,9 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
 
-from .. import docks, preference_watch
+from .. import docks, preference_watch, redraw
 from ..colours import WRONG
+from ..steady import SteadyLabel
 from ..texts import tr
 from . import told
 from .bars import JointBars
@@ -82,14 +83,15 @@ class Simulation:
         self.slider.setPageStep(STEPS // 20)
         self.slider.setToolTip(tr("The time of the job"))
         self.slider.valueChanged.connect(self._slid)
-        self.clock, self.place, self.finding = (self._label(name) for name in ("clock", "place", "finding"))
+        self.told = {name: SteadyLabel(name) for name in ("clock", "place", "doing", "speed", "condition")}
+        self.finding = self._label("finding")
         self.finding.setWordWrap(True)
         self.finding.setMinimumHeight(2 * self.finding.fontMetrics().height() + 4)
         self.finding.setAlignment(QtCore.Qt.AlignTop)
         line = QtGui.QHBoxLayout()
-        line.addWidget(self.clock)
+        line.addWidget(self.told["clock"])
         line.addStretch(1)
-        line.addWidget(self.place)
+        line.addWidget(self.told["place"])
         if self.run.stale:
             stale = self._label("stale", tr("This is an earlier plan; recompute the document for the present one."))
             stale.setWordWrap(True)
@@ -104,9 +106,15 @@ class Simulation:
         column.addWidget(self._totals())
         column.addStretch(1)
         self.scroll.setWidget(form)  # what was there goes
-        bar = self.scroll.verticalScrollBar().sizeHint().width()
-        self.scroll.setMinimumWidth(max(WIDE, form.minimumSizeHint().width() + bar))
+        self._make_room()
         self._tell_finding(None)
+
+    def _make_room(self) -> None:
+        """As wide as what is told becomes, in the language and the units of now."""
+        for name, texts in told.widest(self.run).items():
+            self.told[name].make_room(texts)
+        bar = self.scroll.verticalScrollBar().sizeHint().width()
+        self.scroll.setMinimumWidth(max(WIDE, self.scroll.widget().minimumSizeHint().width() + bar))
 
     def _label(self, name: str, text: str = "") -> Any:
         label = QtGui.QLabel(text)
@@ -152,12 +160,10 @@ class Simulation:
     def _facts(self) -> Any:
         grid = QtGui.QGridLayout()
         grid.setVerticalSpacing(2)
-        self.facts = {}
         names = (("doing", tr("Machine")), ("speed", tr("Speed")), ("condition", tr("Condition")))
         for row, (name, text) in enumerate(names):
-            self.facts[name] = self._label(name)
             grid.addWidget(QtGui.QLabel(text), row, 0)
-            grid.addWidget(self.facts[name], row, 1)
+            grid.addWidget(self.told[name], row, 1)
         grid.setColumnStretch(1, 1)
         return grid
 
@@ -233,6 +239,7 @@ class Simulation:
         state = moment.state
         try:
             self.scene.show(moment.row, state.joints, state.position, not bool(state.standing), moment.links)
+            redraw.with_fields(self.scene.view)
         except (RuntimeError, ReferenceError):  # the view was closed
             self.end(tr("its view was closed"))
             return
@@ -242,16 +249,16 @@ class Simulation:
         self.filling = True
         self.slider.setValue(round(self.player.time / max(self.run.times.total, 1e-9) * STEPS))
         self.filling = False
-        self.clock.setText(f"{told.clock(self.player.time)} / {told.clock(self.run.times.total)}")
-        self.place.setText(told.place(self.run, moment))
+        self.told["clock"].tell(told.times(self.run, self.player.time))
+        self.told["place"].tell(told.place(self.run, moment))
         self.bars.set(moment.values, moment.margins, moment.ratios, moment.bad)
         speed, kept = told.speed(moment)
         for name, text, good in (
             ("doing", told.doing(self.run, moment), bool(np.isfinite(moment.state.joints).all())), ("speed", speed, kept),
             ("condition", told.condition(moment), not moment.singular),
         ):
-            label = self.facts[name]
-            label.setText(text)
+            label = self.told[name]
+            label.tell(text)
             sheet = "" if good else f"QLabel {{ color: {WRONG}; }}"
             if label.styleSheet() != sheet:
                 label.setStyleSheet(sheet)
@@ -272,6 +279,7 @@ class Simulation:
         if self.scene is not None:
             self.scene.machine.renew_colours()
             self.show()
+            self._make_room()
             findings = self.run.watch.findings
             self._tell_finding(None if self.player.finding is None else findings[self.player.finding])
 

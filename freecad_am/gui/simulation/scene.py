@@ -22,7 +22,7 @@ from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
 from ..cell_nodes import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
-from ..lines import Array, Lines
+from ..lines import Array, Lines, fill
 from ..machine_links import MachineNodes, move, plain_links
 from ..path.pieces import PathNodes
 from ..path.rows import Rows
@@ -45,9 +45,13 @@ class Scene:
         self.machine = MachineNodes(
             cell.machine, plain_links(cell.machine, looks.platform_diameter, looks.nozzle.length))
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
-        self.deposit, self.to_come = PathNodes(), Lines(1.0, TO_COME)
-        self.deposit.as_tubes = True
-        self.last = Lines(3.0, METAL)
+        self.part_matrix, self.nozzle_matrix = self.part.matrix, self.nozzle.matrix
+        self.deposit, self.to_come = PathNodes(), PathNodes()
+        self.deposit.as_tubes, self.to_come.style.lineWidth = True, 1.0
+        self.last, self.growing = Lines(3.0, METAL), False  # the segment that is under way, and whether one is
+        self.last.set(np.zeros((2, 3)), [2])
+        self.last.show(False)
+        self.last_points = self.last.coordinates.point
         self.root = coin.SoSeparator()
         nozzle, part = coin.SoSeparator(), coin.SoSeparator()
         nozzle.addChild(self.nozzle)
@@ -83,7 +87,7 @@ class Scene:
         self.deposit.set(rows)
         self.deposit.paint(colours)
         self.deposit.show(0, 0)
-        self.to_come.set(motion.position[deposit], np.diff(rows.starts))
+        self.to_come.set(rows)
         plain = np.tile(TO_COME, (len(rows), 1))
         plain[slowed], plain[wrong] = SLOW, WRONG
         self.to_come.paint(plain)
@@ -98,16 +102,21 @@ class Scene:
         done = int(self.rows_before[row if running else row + 1])
         if done != self.deposit.end:
             self.deposit.show(0, done)
+            rows = self.deposit.rows
+            # from the last point, unless there the bead has ended
+            self.to_come.show(max(done - 1, int(rows.starts[rows.bead_of(done)])), len(rows))
         motion = self.run.motion
         growing = running and row > 0 and bool(motion.deposit[row] and motion.deposit[row - 1])
-        self.last.show(growing)
+        if growing != self.growing:
+            self.growing = growing
+            self.last.show(growing)
         if growing:
-            self.last.set(np.stack([motion.position[row - 1], position]), [2])
+            fill(self.last_points, np.stack([motion.position[row - 1], position]))
 
     def _place(self, place: Placing) -> None:
         self.machine.pose(self.to_view @ place.links)
-        move(self.part, self.to_view @ place.part)
-        move(self.nozzle, self.to_view @ place.nozzle)
+        move(self.part_matrix, self.to_view @ place.part)
+        move(self.nozzle_matrix, self.to_view @ place.nozzle)
 
     # ---- the end
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 
@@ -11,10 +12,13 @@ from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...objects import preferences
+from ..lines import Array
 from ..texts import tr, translated
 from ..touching import link_touches
 from .player import Moment
 from .run import Run
+
+_HOUR = 3600.0  # s
 
 
 def clock(seconds: float) -> str:
@@ -56,19 +60,27 @@ def nothing(run: Run) -> str:
 def place(run: Run, moment: Moment) -> str:
     """Layer, bead and point, from 0 as everywhere."""
     motion, row = run.motion, moment.row
+    return _place(run, int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
+
+
+def _place(run: Run, layer: int, bead: int, point: int) -> str:
     return tr("Layer {layer} ({first} to {last}), bead {bead}, point {point}").format(
-        layer=int(motion.layer[row]), first=int(run.times.layers[0]), last=int(run.times.layers[-1]),
-        bead=int(motion.bead[row]), point=int(motion.point[row]),
+        layer=layer, first=int(run.times.layers[0]), last=int(run.times.layers[-1]), bead=bead, point=point
     )
 
 
 def doing(run: Run, moment: Moment) -> str:
     """What the machine does."""
+    out_of_reach, waits_lit, waits, deposits, rapid = _doings()
     if not np.isfinite(moment.state.joints).all():
-        return tr("out of reach")
+        return out_of_reach
     if moment.state.standing and run.times.waits[moment.row] > 0.0:
-        return tr("waits, deposit on") if moment.state.deposit else tr("waits")
-    return tr("deposits") if run.motion.deposit[moment.row] else tr("rapid move")
+        return waits_lit if moment.state.deposit else waits
+    return deposits if run.motion.deposit[moment.row] else rapid
+
+
+def _doings() -> tuple[str, str, str, str, str]:
+    return tr("out of reach"), tr("waits, deposit on"), tr("waits"), tr("deposits"), tr("rapid move")
 
 
 def speed(moment: Moment) -> tuple[str, bool]:
@@ -78,19 +90,69 @@ def speed(moment: Moment) -> tuple[str, bool]:
         return "–", True
     if kept:
         return _speed(moment.asked), True
-    return tr("{achieved} instead of {asked}").format(achieved=_speed(moment.achieved), asked=_speed(moment.asked)), False
+    return _instead(_speed(moment.achieved), _speed(moment.asked)), False
+
+
+def _instead(achieved: str, asked: str) -> str:
+    return tr("{achieved} instead of {asked}").format(achieved=achieved, asked=asked)
 
 
 def _speed(value: float) -> str:
     """A speed, mm/s, in the unit that the user prefers."""
-    return f"{preferences.speed(value):.3g} {preferences.speed_unit()}"
+    return _in_unit(preferences.speed(value))
+
+
+def _in_unit(value: float) -> str:
+    return f"{value:.3g} {preferences.speed_unit()}"
 
 
 def condition(moment: Moment) -> str:
     """The condition and the least allowed."""
     if not math.isfinite(moment.condition):
         return "–"
-    return tr("{condition:.3f} (at least {threshold:.3f})").format(condition=moment.condition, threshold=moment.threshold)
+    return _condition(moment.condition, moment.threshold)
+
+
+def _condition(condition: float, threshold: float) -> str:
+    return tr("{condition:.3f} (at least {threshold:.3f})").format(condition=condition, threshold=threshold)
+
+
+def times(run: Run, time: float) -> str:
+    """A time of the job, s, and the time of all of it."""
+    return f"{clock(time)} / {clock(run.times.total)}"
+
+
+# ---- how wide it gets
+
+
+def widest(run: Run) -> dict[str, tuple[str, ...]]:
+    """Texts as wide as those that are told of a run, by the field that tells them."""
+    motion, pace = run.motion, run.pace
+    place = (_wide(int(column.max())) for column in (motion.layer, motion.bead, motion.point))
+    asked, slower = pace.asked, ~(pace.achieved >= pace.asked * (1.0 - 1e-6)) & np.isfinite(pace.asked)
+    speeds = [_widest_speed(asked)]
+    if slower.any():
+        speeds.append(_instead(_widest_speed(pace.achieved[slower]), _widest_speed(asked[slower])))
+    shorter = min(run.times.total, _HOUR - 1.0)  # has tenths of a second
+    return {
+        "clock": tuple(re.sub(r"\d", "8", times(run, time)) for time in (run.times.total, shorter)),
+        "place": (_place(run, *place),), "doing": _doings(), "speed": tuple(speeds),
+        "condition": (_condition(0.888, 0.888),),
+    }
+
+
+def _wide(number: int) -> int:
+    """A number of as many digits, and wide ones."""
+    return int("8" * len(str(number)))
+
+
+def _widest_speed(speeds: Array) -> str:
+    """A text as wide as those of any of these speeds (n,) mm/s."""
+    shown = preferences.speed(1.0) * speeds[np.isfinite(speeds) & (speeds > 0.0)]
+    if not len(shown):
+        return "–"
+    powers = np.floor(np.log10([shown.min(), shown.max()]))
+    return max((_in_unit(8.88 * 10.0**power) for power in powers), key=len)
 
 
 def totals(run: Run) -> list[tuple[str, str]]:

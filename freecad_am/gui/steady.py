@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts and numbers that are others in every frame, and move nothing beside them.
+
+The size of a plain label is that of its text: whenever it changes Qt lays all of the window out anew, and puts it together
+once more, which costs as much as a small picture. It asks nobody where a widget's size is fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+
+class SteadyLabel(QtGui.QLabel):
+    """A line that has room for the widest of its texts from the start."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__()
+        self.setObjectName(name)
+
+    def make_room(self, texts: Iterable[str]) -> None:
+        """For these, and for what is shown now."""
+        shown = self.text()
+        sizes = [self._size(text) for text in (*texts, shown)]
+        self.setFixedSize(max(size.width() for size in sizes), max(size.height() for size in sizes))
+
+    def tell(self, text: str) -> None:
+        """Show a text; one that is wider than was thought is shown whole too."""
+        if text != self.text():
+            size = self._size(text)
+            if size.width() > self.minimumWidth():
+                self.setFixedWidth(size.width())
+
+    def _size(self, text: str) -> Any:
+        self.setText(text)
+        return self.sizeHint()
+
+
+class SteadyText(QtGui.QWidget):
+    """A text that is wrapped, with room for some lines, and for more once there were more."""
+
+    def __init__(self, name: str, lines: int) -> None:
+        super().__init__()
+        self.label = QtGui.QLabel(self)  # in no layout, so that its size is nobody's concern
+        self.label.setObjectName(name)
+        self.label.setWordWrap(True)
+        self.label.setAlignment(QtCore.Qt.AlignTop)
+        self.setMinimumHeight(lines * self.label.fontMetrics().lineSpacing())
+
+    def tell(self, text: str) -> None:
+        """Show a text."""
+        self.label.setText(text)
+        self._fit()
+
+    def resizeEvent(self, event: Any) -> None:
+        """It has another width."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        self.label.setGeometry(self.rect())
+        needed = self.label.heightForWidth(self.width())
+        if needed > self.minimumHeight():
+            self.setMinimumHeight(needed)
+
+
+def hold(widget: Any) -> None:
+    """Keep a field as large as it has to be now, or had to be before."""
+    size = widget.sizeHint().expandedTo(widget.minimumSize())
+    if size != widget.minimumSize():
+        widget.setFixedSize(size)

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A frame costs no more than it must: picture and figures in one turn of the window, nothing laid out anew, no more of the
+deposit given to Coin than has grown."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from freecad_am import api
+from freecad_am.core.toolpath import Bead
+from freecad_am.gui.path import dock as paths
+from freecad_am.gui.path.pieces import PathNodes
+from freecad_am.gui.path.rows import Rows
+from freecad_am.gui.simulation import dock as simulations
+from freecad_am.gui.simulation import tool
+
+FRAMES = 12
+
+
+@pytest.fixture
+def joint_path(hemisphere):
+    doc = hemisphere.Document
+    feature, cell = api.make_feature(doc, hemisphere, layer_height=5), api.make_cell(doc, limits="paper")
+    return api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
+
+
+class Turns:
+    """What the window does until it is at rest again: how often it is put together, and its 3D view drawn; which widgets of
+    a dock are painted and laid out meanwhile."""
+
+    def __init__(self, person, inside):
+        from pivy import coin
+
+        kind, watched = person.core.QEvent, [person.window, inside, *inside.findChildren(person.widgets.QWidget)]
+
+        class Seen(person.core.QObject):
+            def eventFilter(self, widget, event, turns=self):
+                if widget is watched[0]:
+                    turns.together += event.type() == kind.UpdateRequest
+                elif event.type() == kind.Paint:
+                    turns.painted.add(widget.objectName())
+                elif event.type() in (kind.LayoutRequest, kind.Move, kind.Resize):
+                    turns.laid_out.add(widget.objectName())
+                return False
+
+        self.person, self.watched, self.seen = person, watched, Seen()
+        self.drawing, self.node = coin.SoGLRenderAction.getClassTypeId(), coin.SoCallback()
+        self.node.setCallback(self._drawn)
+        self.graph = person.gui.activeDocument().activeView().getSceneGraph()
+        self.forget()
+
+    def forget(self):
+        self.together = self.drawn = 0
+        self.painted, self.laid_out = set(), set()
+
+    def _drawn(self, _, action):
+        self.drawn += bool(action.isOfType(self.drawing))
+
+    def __enter__(self):
+        self.graph.addChild(self.node)
+        for widget in self.watched:
+            widget.installEventFilter(self.seen)
+        self.person.idle(0.5)
+        return self
+
+    def __exit__(self, *_):
+        for widget in self.watched:
+            widget.removeEventFilter(self.seen)
+        self.graph.removeChild(self.node)
+
+    def of(self, act):
+        """(times the window was put together, times the view was drawn) for an act."""
+        self.forget()
+        act()
+        self.person.until(lambda: self.drawn, "the view to be drawn")
+        self.person.idle(0.1)
+        return self.together, self.drawn
+
+
+def test_a_frame_of_a_simulation_is_one_turn_of_the_window_and_moves_no_field(person, joint_path):
+    person.look()
+    tool.show(joint_path)
+    simulation = simulations._open[0]
+    person.idle(0.5)
+    total = simulation.run.times.total
+
+    def frame(share):
+        simulation.player.go(share * total)
+        simulation.show()
+
+    with Turns(person, simulation.dock) as turns:
+        frame(0.3)
+        person.idle(0.3)
+        turns_of, painted = [], set()
+        for share in np.linspace(0.31, 0.9, FRAMES):
+            turns_of.append(turns.of(partial(frame, share)))
+            painted |= turns.painted
+            assert turns.laid_out == set()
+    # what else FreeCAD does now and then is its own
+    assert sorted(turns_of)[FRAMES // 2] == (1, 1) and {drawn for _, drawn in turns_of} == {1}
+    assert {"time", "clock", "place", "joints"} <= painted
+    assert painted <= {"time", "clock", "place", "joints", "doing", "speed", "condition", "form"}
+
+
+def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path):
+    person.look()
+    value = api.result(joint_path)
+    motion = value.motion
+    motion.joints.flags.writeable = True
+    rows = np.flatnonzero(motion.deposit)
+    motion.joints[rows[100:200], 5] += np.linspace(0.0, 30.0, 100)  # much faster than it can be
+    motion.joints.flags.writeable = False
+    tool.show(joint_path)
+    simulation = simulations._open[0]
+    person.idle(0.3)
+    labels, run = simulation.told, simulation.run
+    sizes = {name: (label.width(), label.height()) for name, label in labels.items()}
+    texts = {name: set() for name in labels}
+    for row in range(0, len(run.motion), 3):
+        simulation.player.go_to_row(row)
+        simulation._tell(simulation.player.moment())
+        for name, label in labels.items():
+            texts[name].add(label.text())
+            assert label.sizeHint().width() <= label.width()
+    assert {name: (label.width(), label.height()) for name, label in labels.items()} == sizes
+    assert len(texts["place"]) > 100 and any("instead of" in text for text in texts["speed"]) and len(texts["doing"]) > 1
+    person.idle(0.2)
+    assert not simulation.scroll.horizontalScrollBar().isVisible()
+    # a text that nobody has thought of is shown whole
+    labels["doing"].tell("deposits and waits and rapids " * 4)
+    assert labels["doing"].width() >= labels["doing"].sizeHint().width()
+    simulation.close()
+
+
+def test_a_slider_of_the_path_is_one_turn_of_the_window(person, joint_path):
+    person.look()
+    person.click("RoboticAM_Path")
+    panel = person.panel(paths.NAME)
+    with Turns(person, panel) as turns:
+        for name in ("to", "point"):
+            slider = person.field(panel, f"{name}_slider")
+            most = slider.maximum() - 1
+            found = [turns.of(partial(slider.setValue, most - step)) for step in range(FRAMES)]
+            assert sorted(found)[FRAMES // 2] == (1, 1) and {drawn for _, drawn in found} == {1}
+    paths._dock._show_all()
+
+
+def beads():
+    """One of many thousand points, then shorter ones: circles one above the other, then a wave."""
+    turn = np.linspace(0.0, 60 * np.pi, 9000)
+    yield np.column_stack([40 * np.cos(turn), 40 * np.sin(turn), turn / 10])
+    for k in range(12):
+        along = np.linspace(0.0, 100.0, 350)
+        yield np.column_stack([along, 60.0 + 3.0 * k + np.sin(along), np.zeros(350)])
+
+
+def path():
+    up, made = np.array([0.0, 0.0, 1.0]), []
+    for points in beads():
+        n = len(points)
+        made.append(Bead(points=points, build=np.tile(up, (n, 1)), tool=np.tile(up, (n, 1)), parameter=np.arange(float(n)),
+                         speed=np.full(n, 8.0), closed=False))
+    return Rows.of(made, range(len(made)), 1.5, lambda: 1.0)
+
+
+def area(nodes):
+    """Of all triangles that are drawn, mm2."""
+    found = 0.0
+    for look in (nodes.tubes.pieces, nodes.tubes.ends):
+        for k in range(look.getNumChildren()):
+            child = look.getChild(k)
+            if look is nodes.tubes.pieces:
+                if child.whichChild.getValue() == -1:
+                    continue
+                child = child.getChild(0)
+            shape = child.getChild(0)
+            vertices = np.array([point.getValue() for point in shape.vertexProperty.getValue().vertex.getValues()])
+            found += area_of(vertices, np.array(list(shape.coordIndex.getValues()), dtype=int).reshape(-1, 4)[:, :3])
+    return found
+
+
+def area_of(points, triangles):
+    a, b, c = (points[triangles[:, k]].astype(float) for k in range(3))
+    return 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
+def test_tubes_that_grow_are_whole_at_every_row(person):
+    """Against one mesh of all of it; a cut may add a face, and the last segment a second time."""
+    nodes, rows = PathNodes(), path()
+    nodes.as_tubes = True
+    nodes.set(rows)
+    nodes.paint(np.full((len(rows), 3), 0.5))
+    steps = np.linalg.norm(np.diff(rows.points, axis=0), axis=1)
+    random = np.random.default_rng(5)
+    for end in (2, 3, 130, 9000, 9001, 9002, 9350, len(rows), *random.integers(2, len(rows), 12)):
+        nodes.show(0, int(end))
+        mesh, _ = rows.tube(0, int(end))
+        whole = area_of(mesh.points, mesh.triangles)
+        more = area(nodes) - whole
+        assert -1e-3 * whole < more < 2 * 1.5 * 1.0 * 4 + 5.0 * 2 * steps[max(end - 130, 0) : end].max() + 1e-3 * whole
+
+
+def test_tubes_that_grow_give_coin_only_what_has_grown(person):
+    from pivy import coin
+
+    nodes, rows = PathNodes(), path()
+    nodes.as_tubes = True
+    nodes.set(rows)
+    nodes.paint(np.full((len(rows), 3), 0.5))
+    nodes.show(0, 6000)
+    given = []
+    shape = nodes.tubes.pieces.getChild(1).getChild(0).getChild(0)
+    sensor = coin.SoNodeSensor(lambda *_: given.append(1), None)
+    sensor.setPriority(0)
+    sensor.attach(shape)
+    for end in range(6001, 6401):
+        nodes.show(0, end)
+    sensor.detach()
+    assert 1 <= len(given) <= 4 * 4  # 400 rows; a block takes a few notices
+
+
+def test_what_is_to_come_is_drawn_from_where_the_deposit_ends(person, joint_path):
+    person.look()
+    tool.show(joint_path)
+    simulation = simulations._open[0]
+    scene, motion = simulation.scene, simulation.run.motion
+    starts = set(scene.deposit.rows.starts.tolist())
+    for row in np.flatnonzero(motion.deposit)[1::7]:
+        simulation.player.go_to_row(int(row))
+        simulation.show()
+        done = scene.deposit.end
+        assert scene.to_come.end == len(scene.to_come.rows)
+        assert scene.to_come.first == (done if done in starts and done < scene.to_come.end else done - 1)
+    simulation.close()
