@@ -213,10 +213,7 @@ class CellPanel(PreviewPanel):
         self.nodes.clear()
 
     def _show_own(self, visible: bool) -> None:
-        if visible:
-            self.aside.take_back()
-        else:
-            self.aside.put(self.obj)
+        self.aside.put(None if visible else self.obj)
 
 
 def _alike(one: Any, other: Any) -> bool:

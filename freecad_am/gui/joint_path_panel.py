@@ -87,10 +87,7 @@ class JointPathPanel(PreviewPanel):
         self.aside.put(self.obj)
 
     def _show_own(self, visible: bool) -> None:
-        if visible:
-            self.aside.take_back()
-        else:
-            self.aside.put(self.obj)
+        self.aside.put(None if visible else self.obj)
 
 
 def _tried(job: Job) -> Trial:

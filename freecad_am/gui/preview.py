@@ -9,7 +9,6 @@ from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import FreeCADGui as Gui
-from pivy import coin
 
 from ..objects import faults
 from ..objects.stage import Stage, Work
@@ -69,27 +68,19 @@ class Preview:
 
 
 class Aside:
-    """What objects themselves draw, switched off while a preview stands for it; their properties stay as they are."""
+    """What stages themselves draw, which stands back while a preview stands for it."""
 
     def __init__(self) -> None:
-        self.drawn: dict[str, tuple[Any, int]] = {}
+        self.objects: list[Any] = []
 
     def put(self, *objects: Any) -> None:
-        """Switch off what these draw, in place of those before."""
-        wanted = {obj.Name: obj for obj in objects if obj is not None}
-        self.take_back(*(name for name in self.drawn if name not in wanted))
-        for name, obj in wanted.items():
-            switch = obj.ViewObject.SwitchNode
-            which = int(switch.whichChild.getValue())
-            if which != coin.SO_SWITCH_NONE:
-                self.drawn[name] = obj, which
-                switch.whichChild = coin.SO_SWITCH_NONE
+        """Let these stand back, in place of those before; None is none."""
+        wanted = [obj for obj in objects if obj is not None]
+        self._stand_back(False, [obj for obj in self.objects if not any(obj is one for one in wanted)])
+        self._stand_back(True, wanted)
+        self.objects = wanted
 
-    def take_back(self, *names: str) -> None:
-        """Switch on again what these draw, all where none are named; not what has been hidden meanwhile, or is gone."""
-        for name in names or tuple(self.drawn):
-            obj, which = self.drawn.pop(name)
-            with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):
-                switch = obj.ViewObject.SwitchNode
-                if obj.ViewObject.Visibility and switch.whichChild.getValue() == coin.SO_SWITCH_NONE:
-                    switch.whichChild = which
+    def _stand_back(self, aside: bool, objects: list[Any]) -> None:
+        for obj in objects:
+            with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # it is gone
+                obj.ViewObject.Proxy.stand_back(aside)

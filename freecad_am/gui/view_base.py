@@ -71,9 +71,15 @@ class StageView:
     def attach(self, vobj: Any) -> None:
         """Make the scene; called when the view provider is set, and when a document opens."""
         self.obj = vobj.Object
-        self.root = coin.SoSeparator()
+        self.root, self.switch = coin.SoSeparator(), coin.SoSwitch()
         self.scene(self.root)
-        vobj.addDisplayMode(self.root, MODE)
+        self.switch.addChild(self.root)
+        self.stand_back(False)
+        vobj.addDisplayMode(self.switch, MODE)
+
+    def stand_back(self, aside: bool) -> None:
+        """Draw nothing while a preview stands for it, whatever its properties say; they stay as they are."""
+        self.switch.whichChild = coin.SO_SWITCH_NONE if aside else coin.SO_SWITCH_ALL
 
     def refresh(self) -> None:
         """Draw what is stored now."""

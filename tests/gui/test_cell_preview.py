@@ -76,7 +76,7 @@ def planned(person, hemisphere):
 def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_picture_back(person, hand, planned):
     cell, toolpath = planned
     document, steps, path = cell.Document, cell.Document.UndoCount, api.result(toolpath)
-    switch = cell.ViewObject.SwitchNode
+    switch = cell.ViewObject.Proxy.switch
     which, before = switch.whichChild.getValue(), cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue()
     person.look()
     person.double_click(cell)
@@ -114,10 +114,10 @@ def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, 
     np.testing.assert_allclose(previewed(person)[1, :3, 3], last.points[-1], atol=1e-4)
     hand.enter(panel, "PlatformDiameter", "100 mm")
     person.press("Apply")
-    assert cell.PlatformDiameter.Value == 100.0 and cell.ViewObject.SwitchNode.whichChild.getValue() == -1
+    assert cell.PlatformDiameter.Value == 100.0 and cell.ViewObject.Proxy.switch.whichChild.getValue() == -1
     person.press("Ok")
     person.panel_closed()
-    assert cell.ViewObject.SwitchNode.whichChild.getValue() != -1 and previewed(person) is None
+    assert cell.ViewObject.Proxy.switch.whichChild.getValue() != -1 and previewed(person) is None
 
 
 def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, hemisphere):

@@ -77,7 +77,7 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
     assert text.startswith("Can be carried out.\nLeast joint margin: ")
     figures = [float(number) for number in re.findall(r": (-?[\d.]+)", text)]
     assert len(drawn(person)) >= api.result(toolpath).point_count
-    assert toolpath.ViewObject.SwitchNode.whichChild.getValue() == -1  # the preview lies where it does
+    assert toolpath.ViewObject.Proxy.switch.whichChild.getValue() == -1  # the preview lies where it does
     person.look()
     person.screenshot("joint_path_preview")
     assert document.UndoCount == steps and document.getObject("JointPath") is None
@@ -99,10 +99,10 @@ def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(perso
     document = toolpath.Document
     made = api.make_joint_path(document, toolpath, cell)
     person.idle()
-    which, key = made.ViewObject.SwitchNode.whichChild.getValue(), made.Key
+    which, key = made.ViewObject.Proxy.switch.whichChild.getValue(), made.Key
     person.double_click(made)
     panel = person.panel(PANEL)
-    assert made.ViewObject.SwitchNode.whichChild.getValue() == -1
+    assert made.ViewObject.Proxy.switch.whichChild.getValue() == -1
     first = told(person, panel, "Can be carried out.")
     assert re.search(r"Preview of one point in \d+(?: of one bead in \d+)?, without rapid moves; OK plans all\.", first)
     assert 100 < len(drawn(person)) < api.result(toolpath).point_count
@@ -120,7 +120,7 @@ def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(perso
     told(person, panel, "Can be carried out.")
     person.press("Cancel")
     person.panel_closed()
-    assert drawn(person) is None and made.ViewObject.SwitchNode.whichChild.getValue() == which
+    assert drawn(person) is None and made.ViewObject.Proxy.switch.whichChild.getValue() == which
     assert (made.Key, made.Status, made.Method) == (key, "up to date", "layer-by-layer")
 
 
@@ -146,7 +146,7 @@ def test_a_panel_that_is_closed_while_it_computes_leaves_nothing(person, stages,
     person.panel_closed()
     person.until(ended.is_set, "its end", 20)
     threads_end(person)
-    assert drawn(person) is None and stages[0].ViewObject.SwitchNode.whichChild.getValue() != -1
+    assert drawn(person) is None and stages[0].ViewObject.Proxy.switch.whichChild.getValue() != -1
     assert len(api.stages_of(stages[0].Document)) == 3
 
 
