@@ -42,14 +42,14 @@ def marked(text: str) -> str:
 def translated(text: str) -> str:
     """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
     the window, with parameters as its panels call them; itself where no translation is there."""
-    return _translated(text, tr("en"))  # each translation says its own code
+    return _translated(text, tr("en"), tr("“{}”"))  # each translation says its own code
 
 
 def translated_error(error: BaseException) -> str:
     """An error with the place it belongs to, in the language of the window."""
     if not isinstance(error, AmError):
         return str(error)
-    return tr("{}: {}").format(translated(error.where), translated(error.message))
+    return tr("{}: {}").format(_translated(error.where, tr("en"), "{}"), translated(error.message))
 
 
 def error_line(error: AmError) -> str:
@@ -65,9 +65,9 @@ def sentence(text: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def _translated(text: str, language: str) -> str:
+def _translated(text: str, language: str, quoted: str) -> str:
     told = text if language == "en" else _phrases().translated(text, tr)
-    return as_in_panels(told, tr if language == "en" else translated, tr("“{}”"))
+    return as_in_panels(told, tr if language == "en" else translated, quoted)
 
 
 @lru_cache(maxsize=1)

@@ -7677,6 +7677,11 @@
         <translation>les points de {0} ne sont pas tous dans un repère</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>the points reach over {0} mm, {1} over {2} mm; check the unit of the file</source>
+        <translation>les points s&apos;étendent sur {0} mm, {1} sur {2} mm ; vérifiez l&apos;unité du fichier</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>the pose at all zeros is missing</source>
         <translation>la pose à zéro de tous les axes manque</translation>
@@ -9067,7 +9072,7 @@
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/registration.py"/>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>{0} points do not hold a part; measure {1} or more all over</source>
         <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
     </message>

@@ -31,6 +31,7 @@ from .registration import (
 Array = NDArray[np.float64]
 Report = Callable[[float, str], None]
 
+UNLIKE = 8.0  # times smaller than the part points are hardly of all of it; cm, inches and m are 10 times and more
 SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 
 
@@ -62,6 +63,11 @@ class Inspected:
 
 def inspect(measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report) -> Inspected:
     """Lay measured points onto the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
+    if len(measured.points) < LEAST_POINTS:
+        raise InputError(
+            "TOO_FEW_POINTS", measured.label,
+            f"{len(measured.points)} points do not hold a part; measure {LEAST_POINTS} or more all over",
+        )
     report(0.05, "laying the points onto the part")
     found, counted, distances = _laid(measured, planned, parameters)
     report(0.6, "sphericity and circularity")
@@ -73,7 +79,9 @@ def inspect(measured: Measured, planned: Planned, parameters: InspectionParamete
     fitted = counted & (np.abs(deviation) <= np.abs(found.distance[found.used]).max() + 1e-9)
     kept, where = points[counted], measured.label
     ball = figures.ball(kept, kept - deviation[counted, None] * normal[counted], where)
-    issues = [*measured.issues, *_told(found, planned, counted, fitted, ball is not None)]
+    issues = [
+        *measured.issues, *_unlike(measured.points, planned), *_told(found, planned, counted, fitted, ball is not None),
+    ]
     levels = parameters.levels() or figures.default_heights(planned, kept)
     circles = []
     for height in levels:
@@ -162,6 +170,15 @@ def _thickness(
     raw, normal = planned.exact(laid[counted])
     feet = laid[counted] - raw[:, None] * normal
     return figures.thickness(feet, deviation[counted], raw >= 0.0, parameters.thickness, max(parameters.band, 0.5))
+
+
+def _unlike(points: Array, planned: Planned) -> list[Issue]:
+    """That the points (n, 3) are of another size than the part, as they are in another unit: a few of them fit anywhere."""
+    measured, part = (float(np.linalg.norm(np.ptp(one, axis=0))) for one in (points, planned.spread))
+    if measured * UNLIKE > part:
+        return []
+    return [Issue(WARNING, "SMALL", f"the points reach over {measured:.3g} mm, {planned.name} over {part:.3g} mm; check the "
+                  "unit of the file")]
 
 
 def _told(

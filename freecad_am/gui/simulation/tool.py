@@ -47,7 +47,7 @@ def show(obj: Any) -> None:
         run = hooks.carry_out(prepared(obj), tr("Simulation"))
     except AmError as error:
         App.Console.PrintError(error_line(error))
-        _say(translated_error(error))
+        Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)
         return
     except Cancelled:
         return

@@ -283,3 +283,20 @@ def test_points_of_something_else_are_refused_or_told():
     points, _ = sampled(hemisphere(), np.random.default_rng(29), 500, 0.3, 0.5)
     found = inspected(points, planned(hemisphere(), "dome"), heights=("44",))
     assert "FEW_POINTS" in codes(found) and found.circles == ()
+
+
+@pytest.mark.parametrize("unit", [1.0, 10.0, 25.4, 1000.0])
+def test_points_in_another_unit_fit_anywhere_which_is_told(unit):
+    """A cap of millimetres lies well on a dome of centimetres: the figures alone would look good."""
+    wall = hemisphere()
+    points, _ = sampled(wall, np.random.default_rng(3), 500)
+    found = inspected(points / unit, planned(wall, "dome"))
+    assert ("SMALL" in codes(found)) == (unit > 1.0)
+    told = [issue.message for issue in found.issues if issue.code == "SMALL"]
+    assert all("check the unit of the file" in text for text in told)
+
+
+def test_three_points_are_told_to_be_too_few():
+    with pytest.raises(InputError, match="3 points do not hold a part; measure .* or more") as caught:
+        inspected(np.eye(3) * R0, planned(hemisphere(), "dome"))
+    assert caught.value.code == "TOO_FEW_POINTS"
