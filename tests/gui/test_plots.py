@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.gui.plots import canvas as canvases
 from freecad_am.gui.plots import dock as docks
 from freecad_am.plots import catalogue
 from freecad_am.plots.rows import rows
@@ -210,3 +211,13 @@ def test_closed_documents_and_long_beads(person, planned, panel):
     person.idle(0.5)
     assert dock.picture is None
     assert "Traceback" not in person.console()
+
+
+def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
+    """Also where many charts, more than there was room for, were there before."""
+    canvas = take(person, panel, "angles").canvas
+    assert canvas.minimumHeight() == 6 * canvases.PER_CHART
+    App.closeDocument(planned.Document.Name)
+    person.until(lambda: "nothing to plot" in canvas.text, "the text", 5)
+    person.until(lambda: canvas.visibleRegion().boundingRect().contains(canvas.rect().center()), "the text in sight", 5)
+    assert canvas.height() <= canvas.visibleRegion().boundingRect().height()

@@ -70,6 +70,8 @@ class Canvas(QtGui.QWidget):
             self.across, self.up = {}, {}
         if self.picture is None:
             self.drawn = None
+            if self.interactive:
+                self.setMinimumHeight(0)  # the text is in the middle, which would be out of sight
         elif self.interactive:
             self.setMinimumHeight(PER_CHART * len(self.picture.charts))
         self.update()
