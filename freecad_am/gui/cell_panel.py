@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from PySide import QtGui
+from PySide import QtCore, QtGui
 
 from ..core.issues import AmError, InputError
 from ..core.kinematics import machine as machines
@@ -63,7 +63,7 @@ class CellPanel(PreviewPanel):
         self.machine_box.setToolTip(help)
         self.machine_box.setWhatsThis(help)
         self.machine_box.setChecked(True)
-        self.column.insertWidget(self.column.indexOf(self.state), self.machine_box)
+        self.column.insertWidget(self.column.indexOf(self.state), self.machine_box, 0, QtCore.Qt.AlignLeft)
 
     def _widget(self, place: str) -> Any:
         return self.places[place][0].widget
