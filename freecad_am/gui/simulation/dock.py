@@ -163,7 +163,7 @@ class Simulation:
         names = (("doing", tr("Machine")), ("speed", tr("Speed")), ("condition", tr("Condition")))
         for row, (name, text) in enumerate(names):
             grid.addWidget(QtGui.QLabel(text), row, 0)
-            grid.addWidget(self.told[name], row, 1)
+            grid.addWidget(self.told[name], row, 1, QtCore.Qt.AlignLeft)
         grid.setColumnStretch(1, 1)
         return grid
 
