@@ -27,6 +27,7 @@ _UNITS = {
     f.TIME: (App.Units.TimeSpan, "a time such as 2 s"),
     f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
 }
+_ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
 
 
 @dataclass(frozen=True)
@@ -60,8 +61,7 @@ class Row:
         """Its name in a panel: 'Layer height' for layer_height; the group is told by its box."""
         words = [("from", "to")[step] if isinstance(step, int) else step for step in self.path]
         words = words[1:] if len(words) > 1 and words[-1] not in ("from", "to") else words
-        text = " ".join(words).replace("_", " ")
-        return "RZ" if text == "rz" else text[0].upper() + text[1:]
+        return _headed(" ".join(words))
 
     def inner(self, value: Any, where: str) -> Any:
         """The value as the dataclass holds it, from a property's value, a plain value in outer units or a text.
@@ -109,7 +109,13 @@ class Row:
 
 def group_of(row: Row) -> str:
     """What a panel calls the group that a row is nested in: 'Seam' for seam.angle."""
-    return str(row.path[0]).replace("_", " ").capitalize()
+    return _headed(str(row.path[0]))
+
+
+def _headed(key: str) -> str:
+    """A key as a heading."""
+    text = key.replace("_", " ")
+    return _ABBREVIATED.get(text) or text[0].upper() + text[1:]
 
 
 def property_name(key: str) -> str:

@@ -2852,6 +2852,11 @@
         <translation>Montage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>NC machines</source>
+        <translation>Machines à CN</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>Name</source>
         <translation>Nom</translation>
@@ -2875,11 +2880,6 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Name of the program to call between layers, such as nozzle cleaning.</source>
         <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Nc</source>
-        <translation>CN</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
