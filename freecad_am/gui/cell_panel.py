@@ -18,12 +18,13 @@ from ..core.kinematics.proposed_cell import cell_of
 from ..core.parameters.cell import CellParameters
 from ..objects import user_machines
 from ..objects.cell import Cell
-from ..objects.stage import Outcome
+from ..objects.stage import Outcome, stage_of
 from .busy import carry_out
 from .cell_nodes import CellNodes, Rest, Scenery, at_the_end, with_machine
 from .later import Background, Later
 from .preview import Aside, Draft
 from .preview_panel import PreviewPanel
+from .selection import meant
 from .texts import tr, translated
 from .view_cell import toolpath_of
 from .worker import Worker
@@ -192,7 +193,7 @@ class CellPanel(PreviewPanel):
         draft.check()
         work, folders = draft.prepare(), user_machines.folders()
         drawn = with_machine if self.machine_box.isChecked() else at_the_end
-        toolpath = None if self.obj is None else toolpath_of(self.obj)
+        toolpath = self._toolpath()
         read = None if toolpath is None else toolpath.Proxy.reader(toolpath)
 
         def both() -> tuple[Outcome, Scenery]:
@@ -200,6 +201,14 @@ class CellPanel(PreviewPanel):
             return made, drawn(made.value, None if read is None else read(), folders)
 
         return both
+
+    def _toolpath(self) -> Any:
+        """The toolpath that is for the cell; for a new one the selected toolpath, or the only one there is."""
+        if self.obj is not None:
+            return toolpath_of(self.obj)
+        known = [obj for obj in self.document.Objects if getattr(stage_of(obj), "kind", "") == "toolpath" and obj.Key]
+        chosen = [obj for obj in meant(self.document.Name) if obj in known] or known
+        return chosen[0] if len(chosen) == 1 else None
 
     def _draw(self, made: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)
@@ -236,6 +245,6 @@ def _stands(rest: Rest) -> str:
         return told.format(rest.machine.title)
     margin, label = rest.limits.smallest(rest.joints)
     left, axis = float(np.degrees(margin)), rest.limits.labels[int(label)]
-    told = tr("{} with the nozzle upright on the part: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
-        "{} with the nozzle upright on the part: {} is {:.0f}° past its limit")
+    told = tr("{} with the nozzle upright: {} is {:.0f}° from its limit") if left >= 0.0 else tr(
+        "{} with the nozzle upright: {} is {:.0f}° past its limit")
     return told.format(rest.machine.title, axis, abs(left))

@@ -9583,12 +9583,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/cell_panel.py"/>
-        <source>{} with the nozzle upright on the part: {} is {:.0f}° from its limit</source>
+        <source>{} with the nozzle upright: {} is {:.0f}° from its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} est à {:.0f}° de sa limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/cell_panel.py"/>
-        <source>{} with the nozzle upright on the part: {} is {:.0f}° past its limit</source>
+        <source>{} with the nozzle upright: {} is {:.0f}° past its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} dépasse sa limite de {:.0f}°</translation>
     </message>
     <message>

@@ -81,7 +81,7 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     person.look()
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "with the nozzle upright on the part: q")
+    told(person, panel, "with the nozzle upright: q")
     assert switch.whichChild.getValue() == -1
     assert stands_as(person, CellParameters(), path)
     person.look()
@@ -103,12 +103,32 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     assert (document.UndoCount, cell.Status, api.result(cell)) == (steps, "up to date", CellParameters())
 
 
+def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemisphere):
+    """That of a document with one toolpath; of two the selected one, and the platform where neither is."""
+    document = hemisphere.Document
+    small = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15))
+    panel_of = {"": api.result(small)}
+    for chosen in ("", "large", "neither"):
+        if chosen == "large":
+            large = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=4))
+            panel_of.update(large=api.result(large), neither=None)
+        person.gui.Selection.clearSelection()
+        if chosen == "large":
+            person.gui.Selection.addSelection(large)
+        person.click("RoboticAM_Cell")
+        panel = person.panel(PANEL)
+        told(person, panel, "with the nozzle upright: q")
+        assert stands_as(person, CellParameters(), panel_of[chosen]), chosen
+        person.press("Cancel")
+        person.panel_closed()
+
+
 def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, planned):
     cell, toolpath = planned
     last = api.result(toolpath).layers[-1].beads[-1]
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "nozzle upright on")
+    told(person, panel, "with the nozzle upright: ")
     hand.click(person.field(panel, "PreviewMachine"))
     person.until(lambda: len(previewed(person)) == 2, "the machine to go", 5)
     np.testing.assert_allclose(previewed(person)[1, :3, 3], last.points[-1], atol=1e-4)
@@ -132,7 +152,7 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     person.until(lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]), "what is proposed", 10)
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
     assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
-    told(person, panel, "KUKA KR 16-2 with the nozzle upright on")
+    told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
     person.until(lambda: stands_as(person, wanted, None), "the robot at its point", 10)
     person.look()
     person.screenshot("cell_proposed")
