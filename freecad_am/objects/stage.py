@@ -211,9 +211,10 @@ class Stage:
     def value(self, obj: Any) -> Any:
         """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
         _check_made(obj)
-        if self._kept is None or self._kept[0] != obj.Key:
-            self._kept = (obj.Key, store.unpack(store.numbers_of(obj.ResultData), obj.ResultLayout, obj.Key, obj.Label))
-        return self._kept[1]
+        kept, key = self._kept, obj.Key  # a reader in another thread may put another one there
+        if kept is None or kept[0] != key:
+            self._kept = kept = key, store.unpack(store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label)
+        return kept[1]
 
     def reader(self, obj: Any) -> Callable[[], Any]:
         """What gives the stored result without the document, of which all is read now: for other threads. Errors as

@@ -17,6 +17,7 @@ import functools
 import importlib
 import json
 import lzma
+import math
 import zlib
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -33,6 +34,7 @@ _HIGHEST_BYTE = 0x40  # makes any seven bytes below it an ordinary number
 _OLDER_BYTES = 6  # of a whole number
 Place = tuple[str | int, ...]
 _DTYPES = ("float64", "int64", "bool")
+_WHOLE = 2**53  # up to here floats know all whole numbers
 
 
 def pack(value: Any, key: str) -> tuple[list[float], str]:
@@ -165,7 +167,12 @@ class _Packer:
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
     def put(self, value: NDArray[Any], place: Place) -> list[int]:
-        """The table that an array becomes part of, from which row on, and how many rows."""
+        """The table that an array becomes part of, from which row on, and how many rows. TypeError for what is none, and
+        for whole numbers that a float cannot tell apart."""
+        if not value.ndim or str(value.dtype) not in _DTYPES:
+            raise TypeError(f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored")
+        if value.dtype == np.int64 and value.size and not -_WHOLE <= value.min() <= value.max() <= _WHOLE:
+            raise TypeError(f"whole numbers beyond {_WHOLE} cannot be stored")
         kind = (place, _DTYPES.index(str(value.dtype)), value.shape[1:])
         number = self.kinds.setdefault(kind, len(self.tables))
         if number == len(self.tables):
@@ -229,6 +236,8 @@ class _Reader:
     def rows(self, number: int, first: int, rows: int) -> NDArray[Any]:
         """Rows of a table, and nothing else of it."""
         dtype, count, *shape = self.tables[number]
+        if rows * math.prod(shape) > self.numbers.size:
+            raise ValueError("it is cut short")
         table = np.empty((rows, *shape), dtype=_DTYPES[dtype])
         columns = table.reshape(rows, int(np.prod(shape)))
         for k in range(columns.shape[1]):

@@ -121,7 +121,7 @@ def test_a_tool_without_its_input_is_greyed_and_says_what_to_make_first(person, 
         ("LayerHeight", "-1 mm", "more than 0 mm"),
         ("LayerHeight", "rubbish", "'rubbish' is not understood"),
         ("LayerHeight", "3 deg", "not understood"),
-        ("LayerHeight", "500 mm", "layer"),
+        ("LayerHeight", "500 mm", "500 mm is more than the wall is long"),
     ],
 )
 def test_what_is_wrong_is_told_in_the_panel_and_nothing_is_made(person, hemisphere, name, text, message):

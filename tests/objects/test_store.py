@@ -115,6 +115,18 @@ def test_damaged_results_are_told():
         assert caught.value.code == "BAD_RESULT" and caught.value.where == "My path"
 
 
+def test_a_table_that_says_it_is_huge_is_damaged_and_takes_no_memory():
+    floats, text = store.pack(toolpath(), "k")
+    layout = json.loads(text[2:])
+    layout["t"][0][1] = 10**12
+    path = toolpath()
+    huge = f"k {json.dumps(layout)}".replace(f'"a": [0, 0, {len(path.layers[0].beads[0])}]', '"a": [0, 0, 1000000000000]')
+    assert huge.count("1000000000000") == 2
+    for places in ((), (("layers", 0, "beads", 0, "points"),)):
+        with pytest.raises(InputError, match="cut short"):
+            store.picked(floats, huge, "k", "x", *places, ())
+
+
 def test_parts_of_two_results_do_not_pass_for_one():
     (one, one_text), (other, other_text) = store.pack((1.0,), "a" * 32), store.pack((2.0,), "b" * 32)
     assert store.unpack(one, one_text, "a" * 32, "x") == (1.0,)
@@ -126,3 +138,8 @@ def test_parts_of_two_results_do_not_pass_for_one():
 def test_what_is_no_data_is_refused():
     with pytest.raises(TypeError):
         store.pack(object(), "k")
+    for array in (np.array(1.0), np.zeros(3, dtype=np.float32), np.array([2**53 + 1]), np.array([-(2**60), 0])):
+        with pytest.raises(TypeError, match="cannot be stored"):
+            store.pack((array,), "k")
+    whole = np.array([2**53, -(2**53)])
+    assert equal(store.unpack(*store.pack((whole, whole[:0]), "k"), "k", "x"), (whole, whole[:0]))
