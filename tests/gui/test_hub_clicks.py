@@ -332,7 +332,8 @@ def test_a_cell_follows_its_machine(person, rotor):
     assert "did you mean table-xyz" in fields["MachineNote"].text()
     person.type(panel, "Machine", "kuka-kr16-2")
     person.until(fields["Branch"].isEnabled, "the branch to be open again", 5)
-    assert fields["Setup"].currentText() == "part-on-robot" and not fields["MachineNote"].isVisible()
+    assert fields["Setup"].currentText() == "part-on-robot"
+    person.until(lambda: not fields["MachineNote"].isVisible(), "the preview to find nothing wrong any more", 10)
     person.type(panel, "Machine", "table-xyzac")
     person.press("Ok")  # before the panel has followed by itself
     person.panel_closed()
