@@ -122,7 +122,7 @@ def of_panels() -> list[dict[str, object]]:
     settle(1.0)
     found = [
         {"job": "cell", "preview": previewed(
-            lambda: stage_panel.show(cell_panel.CellPanel(job.inputs["cell"])), "upright on the part")},
+            lambda: stage_panel.show(cell_panel.CellPanel(job.inputs["cell"])), "nozzle upright")},
         {"job": "joint path", "preview": previewed(
             lambda: stage_panel.show(joint_path_panel.JointPathPanel()), "without rapid moves")},
     ]
