@@ -205,6 +205,7 @@ def test_a_message_that_begins_with_a_name_is_known():
         ("joints.given is of no effect; use process.seam.", "“Given” is of no effect; use “Seam”."),
         ("my/process.bead_model.csv and strategy.nothing", "my/process.bead_model.csv and strategy.nothing"),
         ("cell.machine.json is no file", "cell.machine.json is no file"),
+        ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),
     ],
 )
 def test_messages_call_parameters_as_the_panels_do(text, told):

@@ -7,6 +7,7 @@ import contextlib
 from collections.abc import Callable
 from typing import Any
 
+import FreeCAD as App
 import numpy as np
 from PySide import QtCore, QtGui
 
@@ -18,6 +19,7 @@ from ..core.kinematics.proposed_cell import cell_of
 from ..core.parameters.cell import CellParameters
 from ..objects import user_machines
 from ..objects.cell import Cell
+from ..objects.progress import Cancelled
 from ..objects.stage import Outcome, stage_of
 from .busy import carry_out
 from .cell_nodes import CellNodes, Rest, Scenery, at_the_end, with_machine
@@ -77,8 +79,7 @@ class CellPanel(PreviewPanel):
         try:
             machine = machines.load(name, user_machines.folders())
         except InputError as error:
-            self.unknown = translated(error.message)
-            self.tell(MACHINE, self.unknown)
+            self._tell_of_machine(translated(error.message))
             return
         if self.unknown and self.unknown == self.notes[MACHINE].text():
             self.tell(MACHINE, "")
@@ -91,6 +92,11 @@ class CellPanel(PreviewPanel):
             widget.setToolTip(fixed if machine.is_table else self.tips[place])
         self._offer_limits(list(machine.limit_sets))
         self._ask_proposal(name, machine)
+
+    def _tell_of_machine(self, text: str) -> None:
+        """What is wrong with the machine, until another one is followed."""
+        self.unknown = text
+        self.tell(MACHINE, text)
 
     def _set_setup(self, is_table: bool) -> None:
         setup = self._widget(SETUP)
@@ -129,7 +135,14 @@ class CellPanel(PreviewPanel):
 
     def _propose(self, worker: Worker, before: str, name: str, title: str) -> None:
         """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
-        self.of_machine = worker.result()
+        try:
+            self.of_machine = worker.result()
+        except AmError as error:
+            self._tell_of_machine(translated(error.message))
+            return
+        except Exception as error:  # of nobody's making
+            self._tell_of_machine(f"{type(error).__name__}: {error}")
+            return
         proposal, usual = self.of_machine.get(name), self.of_machine.get(before, CellParameters())
         if proposal is None:  # no cell can have it, which the preview tells
             return
@@ -164,13 +177,28 @@ class CellPanel(PreviewPanel):
                 self.tell(place, "")
 
     def _carry_out(self) -> bool:
-        """Make or change the cell, after what was typed last is followed."""
+        """Make or change the cell, after what was typed last is followed. What that entered nobody has seen: it is told."""
+        before = dict(self.put)
         self.later.at_once()
         worker = self.proposing.worker
         if worker is not None:
-            carry_out(worker.ended.wait, self.form.windowTitle())
+            try:
+                carry_out(worker.ended.wait, self.form.windowTitle())
+            except Cancelled:
+                self.say(tr("Cancelled: the document is as it was."))
+                return False
             self.proposing.at_once()
-        return super()._carry_out()
+        unseen = [self._line(place) for place, value in self.put.items() if value != before.get(place)]
+        done = super()._carry_out()
+        for line in unseen if done else []:
+            App.Console.PrintWarning(line)
+        return done
+
+    def _line(self, place: str) -> str:
+        """A line of the report view about what the panel itself has entered at a place."""
+        label, value = self.places[place][0].label, _told(self.put[place])
+        told = tr("{}: {} is now {}. {}").format(self.form.windowTitle(), label, value, self.notes[place].text())
+        return f"{told}\n"
 
     def close(self, *_: Any) -> None:
         """Take away the preview; once or more often."""
@@ -187,7 +215,8 @@ class CellPanel(PreviewPanel):
         return {}
 
     def _entered(self) -> Any:
-        return *super()._entered(), self.machine_box.isChecked()
+        toolpath = self._toolpath()
+        return *super()._entered(), self.machine_box.isChecked(), None if toolpath is None else toolpath.Key
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Scenery]]:
         draft.check()
@@ -228,6 +257,8 @@ class CellPanel(PreviewPanel):
 def _alike(one: Any, other: Any) -> bool:
     """Whether two poses, or two texts, are the same to whoever reads them."""
     if isinstance(one, tuple) and isinstance(other, tuple):
+        if any(isinstance(number, str) for number in (*one, *other)):  # an expression
+            return one == other
         return bool(np.allclose(one, other, rtol=0.0, atol=1e-6))
     return isinstance(one, str) and isinstance(other, str) and one.replace(",", " ").split() == other.split()
 

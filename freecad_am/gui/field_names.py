@@ -21,7 +21,7 @@ _SECTIONS = (
     ("strategy", DevelopableParameters), ("build_direction", BuildDirectionParameters), ("process", ProcessParameters),
     ("joints", JointParameters), ("program", ProgramParameters), ("inspection", InspectionParameters),
 )
-_KEY = re.compile(rf"(?<![\w./-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/-])")
+_KEY = re.compile(rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])")
 
 
 @lru_cache(maxsize=1)

@@ -14,7 +14,7 @@ from ..core.issues import InputError
 from ..core.parameters import field as f
 from ..objects import preferences
 from ..objects.expressions import FOLLOW, is_expression
-from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row
+from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
 from .quantity import PlainQuantity, QuantityField
 from .texts import tr, translated
 
@@ -22,6 +22,7 @@ _QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
 _NUMBERS = (*_QUANTITIES, f.TURN_RATE, f.NUMBER, f.RATIO)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
+_PLAIN = re.compile(r"[-+]?(?:\d+|\d*\.\d+)(?:[eE][-+]?\d+)?")
 _LARGEST = 2_147_483_647
 
 
@@ -30,12 +31,12 @@ class Field:
     naming the field for what cannot be read; it is a text that starts with `=` for an expression."""
 
     def __init__(
-        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None] = lambda value: None
+        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None] | None = None
     ) -> None:
         self.row = row
         self.widget = widget
         self.read = read
-        self.show = show
+        self._show = show
         self.label = translated(row.label)
         self.shown = read()
         widget.setObjectName(row.name)
@@ -45,6 +46,12 @@ class Field:
     def value(self) -> Any:
         """What the widget holds, in outer units as a macro passes it."""
         return self.read()
+
+    def show(self, value: Any) -> None:
+        """Show another value, in outer units, in place of what is there."""
+        if self._show is None:
+            raise NotImplementedError(f"no panel shows another value in {self.row.name} yet")
+        self._show(value)
 
     @property
     def changed(self) -> bool:
@@ -105,7 +112,7 @@ def _make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None, exp
         return _speed(row, shown, expression)
     if row.form in _QUANTITIES:
         quantity = QuantityField(shown, row.unit, row.label, expression)
-        return Field(row, quantity.box, quantity.read)
+        return Field(row, quantity.box, quantity.read, quantity.show)
     if row.form == f.CHOICE:
         return _choice(row, shown)
     if row.form == f.FLAG:
@@ -133,15 +140,15 @@ def _speed(row: Row, shown: float, expression: str) -> Field:
         value = quantity.read()
         return value if isinstance(value, str) else round(value / factor, 9)
 
-    return Field(row, quantity.box, read)
+    return Field(row, quantity.box, read, lambda value: quantity.show(round(value * factor, 9)))
 
 
 def _text(row: Row, value: Any, expression: str = "") -> Field:
     edit = QtGui.QLineEdit()
     if row.form == TEXT_LIST:
-        edit.setText(" ".join(value))
-        return Field(row, edit, lambda: tuple(edit.text().replace(",", " ").split()))
-    numeric = row.spec.kind in _NUMBERS
+        edit.setText(_with_point(" ".join(value), ".", _point(edit)))
+        return Field(row, edit, lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)))
+    numeric = row.spec.kind in (*_NUMBERS, f.POSE)
     text = row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}"
     edit.setText(_with_point(text, ".", _point(edit)) if numeric else text)
     wanted = ([tr("a quantity in {}").format(row.unit)] if row.unit else []) + list(row.spec.words)
@@ -166,7 +173,11 @@ def _point(edit: Any) -> str:
 
 
 def _with_point(text: str, old: str, new: str) -> str:
-    """A text that is one number, with its unit or without, with another decimal point; any other text as it is."""
+    """A text of one number, with its unit or without, or of several with nothing but blanks between, with another decimal
+    point; any other text as it is."""
+    numbers = re.split(r"[ \t]+", text.strip())  # no-break blanks stand within a number
+    if len(numbers) > 1 and all(_PLAIN.fullmatch(number.replace(old, ".")) for number in numbers):
+        return " ".join(number.replace(old, new) for number in numbers)
     return re.sub(rf"^([-+]?\d*){re.escape(old)}(\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s.,].*)?)$", rf"\g<1>{new}\2", text)
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import re
 from typing import Any
 
 import FreeCAD as App
@@ -21,6 +22,8 @@ from PySide import QtCore, QtGui
 
 from ..core.issues import InputError
 from ..objects.expressions import MARK, is_expression
+from ..objects.rows import plain_blanks
+from ..objects.rows import quantity as quantity_of
 from .signals import connect
 from .texts import tr
 
@@ -85,13 +88,13 @@ class QuantityField:
     def _number(self, text: str) -> float:
         locale = self.box.locale()
         point, group = str(locale.decimalPoint()), str(locale.groupSeparator())
-        if group.strip() and group in text:
+        if (group.strip() and group in text) or re.search(r"\d[\s’]+\d", text):
             example = f"1{point}5 {self.unit}"
             raise self._wrong(text, f"write decimals with '{point}', as in {example}, and do not group digits")
         if not text.strip():
             raise InputError("BAD_VALUE", self.name, f"it is empty; give a quantity in {self.unit}")
         try:
-            quantity = App.Units.Quantity(text.replace(point, "."))
+            quantity = quantity_of(text.replace(point, "."))
         except (ValueError, TypeError, ArithmeticError):
             raise self._wrong(text, f"give a quantity in {self.unit}") from None
         if quantity.Unit not in (self.dimension, App.Units.Unit()) or not math.isfinite(quantity.Value):
@@ -100,7 +103,7 @@ class QuantityField:
         return float(quantity.Value if plain else quantity.getValueAs(self.unit))
 
     def _wrong(self, text: str, remedy: str) -> InputError:
-        return InputError("BAD_VALUE", self.name, f"{text!r} is not understood; {remedy}")
+        return InputError("BAD_VALUE", self.name, f"{plain_blanks(text)!r} is not understood; {remedy}")
 
     # ---- the field changes its own text when it is left
 
@@ -149,17 +152,26 @@ class PlainQuantity(QuantityField):
     """The same in a plain line, for units other than those that FreeCAD shows in its own field."""
 
     def __init__(self, shown: float, unit: str, name: str, expression: str = "") -> None:
-        self.shown: float | str = expression or shown
         self.unit, self.name = unit, name
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
         self.box = self.line = QtGui.QLineEdit()
         self.line.setMinimumWidth(_LEAST_WIDTH)
-        plain = f"{shown:.{_DIGITS}g} {unit}".replace(".", str(self.box.locale().decimalPoint()))
-        self.line.setText(expression or plain)
-        self.line.setCursorPosition(0)
         self.typed = None  # only a field of FreeCAD changes what was typed
-        self.first_text = self.line.text()
+        self.show(shown)
+        if expression:
+            self.shown = expression
+            self._put(expression)
         self._add_mark()
+
+    def show(self, number: float) -> None:
+        """Show another number, in the field's unit, in place of what is there."""
+        self.shown: float | str = number
+        self._put(f"{number:.{_DIGITS}g} {self.unit}".replace(".", str(self.box.locale().decimalPoint())))
+
+    def _put(self, text: str) -> None:
+        self.line.setText(text)
+        self.line.setCursorPosition(0)
+        self.first_text = self.line.text()
 
     def read(self) -> float | str:
         """The number in the field's unit, or the expression. InputError 'BAD_VALUE' for what is neither."""

@@ -27,6 +27,9 @@ _UNITS = {
     f.TIME: (App.Units.TimeSpan, "a time such as 2 s"),
     f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
 }
+_OTHER_SIGNS = "°µμ′″−"  # beside those of ASCII, of what FreeCAD reads in a quantity
+# a comma that may begin decimals, a no-break blank that may group digits
+_TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
 
 
@@ -71,9 +74,8 @@ class Row:
         if self.form == f.POSE:
             return _pose(value, where)
         if self.form == TEXT_LIST:
-            words = value.replace(",", " ").split() if isinstance(value, str) else value
-            return tuple(words)
-        if self.form == LENGTH_OR_POSE and (_is_list(value) or (isinstance(value, str) and len(_split(value)) > 2)):
+            return tuple(split(value, where) if isinstance(value, str) else value)
+        if self.form == LENGTH_OR_POSE and (_is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)):
             return _pose(value, where)
         if self.form == MIXED and (value is None or (isinstance(value, str) and not value.strip())):
             return None
@@ -195,8 +197,27 @@ def _is_list(value: Any) -> bool:
     return isinstance(value, (tuple, list))
 
 
-def _split(text: str) -> list[str]:
+def split(text: str, where: str) -> list[str]:
+    """The words of a list with commas or blanks between. InputError 'BAD_VALUE' naming `where` for one with both, where a
+    comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
+    if _TWO_WAYS.search(text.strip()):
+        remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
+        raise InputError("BAD_VALUE", where, f"{plain_blanks(text)!r} may be read in two ways; {remedy}")
     return text.replace(",", " ").split()
+
+
+def plain_blanks(text: str) -> str:
+    """A text with plain blanks for no-break and thin ones, which FreeCAD does not know."""
+    return re.sub(r"\s", " ", text)
+
+
+def quantity(text: str) -> Any:
+    """FreeCAD's quantity of a text. ValueError for what is none, also where FreeCAD would end at a sign it does not know
+    and leave out the rest, unit and all: of '1’234 mm' it takes the 1."""
+    plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
+    if any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
+        raise ValueError(text)
+    return App.Units.Quantity(plain)
 
 
 def _number(spec: f.Spec, value: Any, where: str) -> Any:
@@ -210,10 +231,10 @@ def _number(spec: f.Spec, value: Any, where: str) -> Any:
             return int(number) if number.is_integer() else number
         return number * f.TO_INNER.get(spec.kind, 1.0)
     unit, example = _UNITS[spec.kind]
-    quantity = _quantity(value, where, example + also)
-    if quantity.Unit != unit and quantity.Unit != App.Units.Unit():
+    found = _quantity(value, where, example + also)
+    if found.Unit != unit and found.Unit != App.Units.Unit():
         raise InputError("BAD_UNIT", where, f"{value!s} has another dimension; give {example}{also}")
-    return math.radians(quantity.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(quantity.Value)
+    return math.radians(found.Value) if spec.kind in (f.ANGLE, f.TURN_RATE) else float(found.Value)
 
 
 def _quantity(value: Any, where: str, example: str) -> Any:
@@ -224,9 +245,10 @@ def _quantity(value: Any, where: str, example: str) -> Any:
             raise ValueError
         if isinstance(value, bool):
             raise ValueError
-        return App.Units.Quantity(value)
+        return quantity(value) if isinstance(value, str) else App.Units.Quantity(value)
     except (ValueError, TypeError, ArithmeticError, OSError):
-        raise InputError("BAD_VALUE", where, f"{value!r} is not understood; give {example}") from None
+        told = plain_blanks(value) if isinstance(value, str) else value
+        raise InputError("BAD_VALUE", where, f"{told!r} is not understood; give {example}") from None
 
 
 def _pose(value: Any, where: str) -> tuple[float, ...]:
@@ -234,7 +256,7 @@ def _pose(value: Any, where: str) -> tuple[float, ...]:
         from .placement import pose_of
 
         return pose_of(value)
-    numbers = _split(value) if isinstance(value, str) else list(value)
+    numbers = split(value, where) if isinstance(value, str) else list(value)
     try:
         floats = [float(number) for number in numbers]
     except (TypeError, ValueError):

@@ -13,9 +13,11 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation.placing import at_rest
+from freecad_am.gui import cell_panel
 from freecad_am.gui.cell_nodes import resting_point
 from freecad_am.gui.preview import NAME
 from freecad_am.kdl.chain import KdlArm
+from freecad_am.objects.progress import Cancelled
 
 PANEL = "RoboticAM_Cell"
 POINT = "DepositionPoint"
@@ -177,8 +179,12 @@ def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_prop
     person.double_click(cell)
     panel = person.panel(PANEL)
     person.type(panel, "Machine", "kuka-kr16-2")
+    before = len(person.console())
     person.press("Ok")  # before anything has followed by itself
     person.panel_closed()
+    line = f"{cell.Label}: Branch is now {' '.join(cell_of('kuka-kr16-2').branch)}. Proposed for KUKA KR 16-2; enter what"
+    person.until(lambda: line in person.console()[before:], "what nobody saw to be told", 5)
+    assert "Deposition point is now" not in person.console()[before:]
     proposed, made = cell_of("kuka-kr16-2"), api.result(cell)
     assert made == replace(proposed, deposition_point=(1000.0, 0.0, 700.0, 0.0, 0.0, 0.0))
     person.double_click(cell)
@@ -188,3 +194,48 @@ def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_prop
     person.press("Cancel")
     person.panel_closed()
     person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
+
+
+def test_an_expression_in_a_coordinate_is_left_and_told(person, hemisphere):
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    person.type(panel, f"{POINT}X", "=500 mm")
+    person.type(panel, "Machine", "kuka-kr16-2")
+    note = person.field(panel, f"{POINT}Note")
+    person.until(lambda: note.text().startswith("Left as it was entered"), "what is kept", 10)
+    person.type(panel, f"{POINT}X", "=600 mm")
+    person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
+    person.press("Cancel")
+    person.panel_closed()
+
+
+@pytest.mark.parametrize("ends", ["cancelled", "fails"])
+def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monkeypatch, ends):
+    """The user cancels while OK waits for it, or the work ends in an error of nobody's making."""
+    document = hemisphere.Document
+
+    def proposing(name, folders):
+        raise RuntimeError("broken")
+
+    def cancelled(work, title):
+        raise Cancelled
+
+    if ends == "fails":
+        monkeypatch.setattr(cell_panel, "cell_of", proposing)
+    else:
+        monkeypatch.setattr(cell_panel, "carry_out", cancelled)
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    person.type(panel, "Machine", "kuka-kr16-2")
+    if ends == "fails":
+        note = person.field(panel, "MachineNote")
+        person.until(lambda: note.isVisible() and note.text() == "RuntimeError: broken", "the error", 10)
+        person.type(panel, "Machine", "fanuc-arcmate120ic")
+        monkeypatch.undo()
+        person.until(lambda: not note.isVisible(), "the error to go", 10)
+    else:
+        person.press("Ok")
+        assert person.panel_error(panel) == "Cancelled: the document is as it was."
+        assert document.getObject("Cell") is None
+    person.press("Cancel")
+    person.panel_closed()

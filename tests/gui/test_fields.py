@@ -6,8 +6,9 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.parameters import field as parameters
+from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.gui import fields
-from freecad_am.gui.quantity import QuantityField
+from freecad_am.gui.quantity import PlainQuantity, QuantityField
 from freecad_am.objects.cell import Cell
 from freecad_am.objects.developable_feature import DevelopableFeature
 from freecad_am.objects.feature import RevolutionFeature
@@ -59,7 +60,8 @@ def test_what_is_typed_is_what_is_read(person, window):
     field = QuantityField(1.0, "mm", "Layer height")
     window.addWidget(field.box)
     assert field.read() == 1.0
-    for text, number in (("2", 2.0), ("0.5 cm", 5.0), ("1+1", 2.0), ("0.1234567891234 mm", 0.1234567891234), ("2", 2.0)):
+    for text, number in (("2", 2.0), ("0.5 cm", 5.0), ("1+1", 2.0), ("0.1234567891234 mm", 0.1234567891234),
+                         ("2\u202fm", 2000.0), ("2", 2.0)):
         typed(person, field, text)
         assert field.read() == pytest.approx(number, rel=1e-14), text
     field.box.setFocus()
@@ -74,6 +76,24 @@ def test_a_speed_is_typed_in_any_unit(person, window):
     for text, speed in (("360 mm/min", 6.0), ("0.3m/min", 5.0), ("12 in/min", 5.08), ("9", 9.0), ("4 mm/s", 4.0)):
         typed(person, field, text)
         assert field.read() == pytest.approx(speed, rel=1e-14), text
+
+
+def test_another_number_is_shown_in_a_plain_line_and_read_as_it_is(person):
+    field = PlainQuantity(6.0, "mm/min", "Travel speed", "=Sheet.speed")
+    assert field.read() == "=Sheet.speed"
+    field.show(1 / 3)
+    assert (field.line.text(), field.read()) == ("0.3333333333 mm/min", 1 / 3)
+    field.line.setText("9")
+    assert field.read() == 9.0
+
+
+def test_a_field_that_cannot_show_another_value_says_so(person):
+    known = {row.key: row for row in rows(CellParameters)}
+    field = fields.make(known["platform_diameter"], 120.0)
+    field.show(30.5)
+    assert (field.value, field.changed) == (30.5, True)
+    with pytest.raises(NotImplementedError, match="Platform"):
+        fields.make(known["platform"], 120.0).show(30.5)
 
 
 @pytest.mark.parametrize(("unit", "text"), [("mm/s", "7 mm"), ("mm/s", "20 s"), ("mm/s", "7 kg"), ("mm", "3 deg")])
@@ -97,7 +117,9 @@ def test_a_number_too_long_for_its_field_shows_its_first_digits(person, window):
     assert field.line.cursorPosition() == 0 and field.read() == 654321.5
 
 
-@pytest.mark.parametrize("text", ["1,5 mm", "1,000", "abc", "1 inch", "2 mm mm", " "])
+@pytest.mark.parametrize(
+    "text", ["1,5 mm", "1,000", "abc", "1 inch", "2 mm mm", " ", "1\u202f234 mm", "1\u00a0234", "1’234 mm"]
+)
 def test_what_the_field_would_change_unseen_is_refused_and_stays_to_be_seen(person, window, text):
     field = QuantityField(1.0, "mm", "Layer height")
     window.addWidget(field.box)

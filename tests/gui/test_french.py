@@ -14,7 +14,12 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.inspection import InspectionParameters
+from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.gui import fields
+from freecad_am.gui.quantity import PlainQuantity, QuantityField
+from freecad_am.objects.rows import rows
 from tests import run
 
 NO_BREAK = "\u00a0"
@@ -121,10 +126,51 @@ def test_plain_numbers_have_the_comma_that_the_language_has(french, commas, hand
 @pytest.mark.parametrize(
     ("text", "told"),
     [("7,85", "7.85"), (",5", ".5"), ("-1,5e-3 deg/mm", "-1.5e-3 deg/mm"), ("auto", "auto"), ("1,2,3", "1,2,3"),
-     ("1,2 3,4 5", "1,2 3,4 5"), ("=a,1", "=a,1"), ("12", "12"), ("1,5mm", "1.5mm"), ("", "")],
+     ("1,2 3,4 5", "1.2 3.4 5"), ("10,5 -,5\t30", "10.5 -.5 30"), ("10,5, 20", "10,5, 20"), ("10,5,20", "10,5,20"),
+     ("1\u202f234,5", "1\u202f234,5"), ("1\u202f234,5 0", "1\u202f234,5 0"),
+     ("=a,1", "=a,1"), ("12", "12"), ("1,5mm", "1.5mm"), ("", "")],
 )
-def test_one_number_alone_has_its_point_changed(text, told):
+def test_numbers_with_blanks_between_have_their_point_changed(text, told):
     assert fields._with_point(text, ",", ".") == told
+
+
+def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french, commas):
+    lines = {}
+    for cls, key, value in ((CellParameters, "platform", (10.5, 20.5, 30.5, 0.0, 0.0, 0.0)),
+                            (ProgramParameters, "origin", (1.5, 2.0, 3.0, 0.0, 0.0, 0.0)),
+                            (InspectionParameters, "heights", ("10.5", "20"))):
+        row = next(row for row in rows(cls) if row.key == key)
+        field = lines[key] = fields.make(row, value)
+        assert row.inner(field.value, key) == value and not field.changed
+    assert lines["platform"].widget.text() == "10,5 20,5 30,5 0,0 0,0 0,0"
+    assert lines["heights"].widget.text() == "10,5 20"
+    for key, text, read in (
+        ("platform", "10,5 20,5 31,5", (10.5, 20.5, 31.5, 0.0, 0.0, 0.0)), ("platform", "100,5 mm", 100.5),
+        ("platform", "1,2,3", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)), ("platform", "10.5 20,5 3", (10.5, 20.5, 3.0, 0.0, 0.0, 0.0)),
+        ("origin", "1,5 2,5 3,5", (1.5, 2.5, 3.5, 0.0, 0.0, 0.0)), ("heights", "10,5 20,5", ("10.5", "20.5")),
+        ("heights", "10,5", ("10.5",)), ("heights", "10, 5, 20", ("10", "5", "20")),
+    ):
+        lines[key].widget.setText(text)
+        assert lines[key].row.inner(lines[key].value, key) == read, text
+    for key, text in (("platform", "10,5, 20,5, 3"), ("heights", "10,5, 20"), ("heights", "1\u202f234 20")):
+        lines[key].widget.setText(text)
+        with pytest.raises(api.InputError, match=r"may be read in two ways.*10\.5 20\.5"):
+            lines[key].row.inner(lines[key].value, key)
+
+
+def test_a_number_of_the_language_is_read_whole_or_refused(french, commas):
+    for made in (QuantityField, PlainQuantity):
+        field = made(1.5, "mm", "Length")
+        assert field.line.text() == "1,5 mm"
+        for text, number in (("1234,5\u202fmm", 1234.5), ("12\u00a0m", 12000.0)):
+            field.line.setText(text)
+            field.typed = text  # as its keys have left it
+            assert field.read() == number, text
+        for text in ("1\u202f234 mm", "1\u00a0234,5", "1’234 mm"):
+            field.line.setText(text)
+            field.typed = text
+            with pytest.raises(api.InputError, match="do not group digits"):
+                field.read()
 
 
 def test_findings_and_docks_are_french(french, hemisphere):

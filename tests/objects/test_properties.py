@@ -12,6 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.inspection import InspectionParameters
 from freecad_am.core.parameters.joints import METHODS, JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
@@ -157,6 +158,10 @@ def test_units_of_properties(holder):
         (JointParameters, "joints", "Compare", ["nothing"], "BAD_VALUE"),
         (CellParameters, "cell", "Branch", "front sideways flip", "BAD_VALUE"),
         (CellParameters, "cell", "Platform", "1,5 mm", "BAD_VALUE"),
+        (CellParameters, "cell", "Platform", "10,5 20,5 30,5", "BAD_VALUE"),
+        (CellParameters, "cell", "Platform", "1\u202f234 mm", "BAD_VALUE"),
+        (JointParameters, "joints", "Rz", "1\u00a0234 deg", "BAD_VALUE"),
+        (JointParameters, "joints", "Rz", "1’234 deg", "BAD_VALUE"),
         (CellParameters, "cell", "NozzleLength", 0, "BAD_VALUE"),
         (ProcessParameters, "process", "BetweenLayersInput", "1.5", "BAD_VALUE"),
         (ProcessParameters, "process", "StandOff", "2 deg", "BAD_UNIT"),
@@ -170,6 +175,36 @@ def test_bad_values_name_label_and_property(holder, cls, section, name, value, c
         properties.read(holder, cls, section)
     assert caught.value.code == code
     assert caught.value.where == f"Héros n° 1.{name}"
+
+
+@pytest.mark.parametrize(
+    "text", ["10,5 20,5", "10,5, 20,5", "10, 5,5", "10,5 mm", ",5 20", ",5", "1\u202f234", "1 2\u00a0345"]
+)
+def test_a_list_that_may_be_read_in_two_ways_is_refused(text):
+    heights = next(row for row in rows.rows(InspectionParameters) if row.key == "heights")
+    with pytest.raises(InputError, match=r"may be read in two ways; write decimals with a point .* as in 10\.5 20\.5"):
+        heights.inner(text, "inspection.heights")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("10, 5, 20", "10 5 20"), ("10,5,20", "10 5 20"), ("10.5,20.5", "10.5 20.5"), ("10.5 20 , 5", "10.5 20 5"),
+     ("\u00a010.5\u202f mm ", "10.5 mm"), ("0/0:1.5:-2 *:0", "0/0:1.5:-2 *:0"), ("", "")],
+)
+def test_a_list_has_blanks_or_commas_between(text, words):
+    heights = next(row for row in rows.rows(InspectionParameters) if row.key == "heights")
+    assert heights.inner(text, "inspection.heights") == tuple(words.split())
+
+
+@pytest.mark.parametrize("text", ["12\u202fm", "12\u00a0m", "12 m", "1.2e7\u2009\u03bcm", "1.2e7 \u00b5m"])
+def test_a_quantity_may_have_any_blank_before_its_unit(text):
+    assert rows.quantity(text).getValueAs("mm").Value == pytest.approx(12000.0)
+
+
+@pytest.mark.parametrize("text", ["1\u202f234 mm", "1\u00a0234 mm", "1\u2009234", "1’234 mm", "2 mm²", "5 мм", "１２ mm"])
+def test_a_quantity_is_read_whole_or_not_at_all(text):
+    with pytest.raises((ValueError, OSError)):
+        rows.quantity(text)
 
 
 def test_an_angle_that_freecad_would_cut_is_refused(holder):
