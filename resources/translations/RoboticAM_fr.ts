@@ -1147,6 +1147,11 @@
         <translation>Tous les cordons ensemble</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>All deposit points can be carried out.</source>
+        <translation>Tous les points de dépôt sont réalisables.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inspection/inputs.py"/>
         <source>All files</source>
         <translation>Tous les fichiers</translation>
@@ -1377,11 +1382,6 @@
         <translation>Appel</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
-        <source>Can be carried out.</source>
-        <translation>Réalisable.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/busy.py"/>
         <source>Cancel</source>
         <translation>Annuler</translation>
@@ -1392,7 +1392,7 @@
         <translation>Annulé : rien n&apos;a été fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
         <source>Cancelled: the document is as it was.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
@@ -2947,6 +2947,11 @@
         <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <source>Nothing stands against it so far.</source>
+        <translation>Rien ne s&apos;y oppose jusqu&apos;ici.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Nozzle</source>
         <translation>Buse</translation>
@@ -3328,23 +3333,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
-        <source>Preview of all points, without rapid moves.</source>
-        <translation>Aperçu de tous les points, sans les rapides.</translation>
+        <source>Preview of all points; OK looks at the rapid moves too.</source>
+        <translation>Aperçu de tous les points ; OK examine aussi les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
-        <source>Preview of one bead in {}, without rapid moves; OK plans all.</source>
-        <translation>Aperçu d&apos;un cordon sur {}, sans les rapides ; OK planifie tout.</translation>
+        <source>Preview of one bead in {}; OK looks at those between and at the rapid moves too.</source>
+        <translation>Aperçu d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
-        <source>Preview of one point in {} of one bead in {}, without rapid moves; OK plans all.</source>
-        <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {}, sans les rapides ; OK planifie tout.</translation>
+        <source>Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.</source>
+        <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
-        <source>Preview of one point in {}, without rapid moves; OK plans all.</source>
-        <translation>Aperçu d&apos;un point sur {}, sans les rapides ; OK planifie tout.</translation>
+        <source>Preview of one point in {}; OK looks at those between and at the rapid moves too.</source>
+        <translation>Aperçu d&apos;un point sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -8942,6 +8947,11 @@
         <translation>{0} peut être un programme de ce travail même ; appelez-en un d&apos;un autre nom</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/rows.py"/>
+        <source>{0} may be read in two ways; write decimals with a point and one kind of separator, as in 10.5 20.5</source>
+        <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>{0} means something else to the controller; use another word</source>
         <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
@@ -9422,6 +9432,16 @@
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/spin_map/tool.py"/>
+        <source>{} has no joint path to map; make one first, or select another job.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <source>{} has no joint path to simulate; make one first, or select another job.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/needs.py"/>
         <source>{} has no result: {}</source>
         <translation>{} n&apos;a pas de résultat : {}</translation>
@@ -9507,7 +9527,7 @@
         <translation>{} n&apos;est pas de révolution, c&apos;est donc une paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/preview_panel.py"/>
         <source>{} is out of date; this is of what it was.</source>
         <translation>{} n&apos;est pas à jour ; ceci est de ce qu&apos;il était.</translation>
     </message>
@@ -9615,6 +9635,11 @@
         <location filename="../../freecad_am/gui/busy.py"/>
         <source>{}: {}</source>
         <translation>{} : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <source>{}: {} is now {}. {}</source>
+        <translation>{} : {} est maintenant {}. {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
