@@ -124,7 +124,7 @@ def of_panels() -> list[dict[str, object]]:
         {"job": "cell", "preview": previewed(
             lambda: stage_panel.show(cell_panel.CellPanel(job.inputs["cell"])), "nozzle upright")},
         {"job": "joint path", "preview": previewed(
-            lambda: stage_panel.show(joint_path_panel.JointPathPanel()), "without rapid moves")},
+            lambda: stage_panel.show(joint_path_panel.JointPathPanel()), "rapid moves too")},
     ]
     App.closeDocument(job.document.Name)
     document = App.newDocument("Program")

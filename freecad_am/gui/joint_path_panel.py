@@ -18,12 +18,11 @@ from ..core.planning.sampled import Sampled, sampled
 from ..objects import progress
 from ..objects.joint_path import Job, JointPath
 from ..objects.stage import Outcome
-from ..objects.staleness import STALE
 from . import inputs
 from .joint_path_nodes import JointPathNodes
 from .path.colouring import CONDITION, MARGIN, RATIO
 from .preview import Aside, Draft
-from .preview_panel import PreviewPanel
+from .preview_panel import PreviewPanel, told_stale
 from .texts import tr, translated
 
 MOST = 1000  # points that are planned for a preview, about: a second or two
@@ -32,8 +31,11 @@ MOST_TOLD = 3  # findings
 
 @dataclass(frozen=True)
 class Trial:
-    """A plan of some points of a toolpath."""
+    """A plan of some points of a toolpath. toolpath: its object, which may be gone by now. stale: labels of the inputs that
+    were out of date when it was begun."""
 
+    toolpath: Any
+    stale: tuple[str, ...]
     sample: Sampled
     planned: JointsOfBeads
     judgement: Judgement
@@ -58,9 +60,10 @@ class JointPathPanel(PreviewPanel):
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Trial]]:
         job = draft.stage.job(draft.obj)
+        toolpath, stale = draft.obj.Toolpath, self._stale_inputs()
 
         def work() -> tuple[Outcome, Trial]:
-            trial = _tried(job)
+            trial = Trial(toolpath, stale, *_tried(job))
             return Outcome(trial.planned, trial.planned.issues), trial
 
         return work
@@ -70,11 +73,8 @@ class JointPathPanel(PreviewPanel):
         kind = self._colouring(judgement)
         values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[kind]
         self.nodes.set(drawing.planned.beads, values, kind, np.isnan(judgement.margin))
-        self.aside.put(self.obj, self._links()["Toolpath"])
-        stale = [linked.Label for linked in self._links().values() if linked.Status == STALE]
-        return "\n".join([*_found(drawing), *_figures(judgement), *(
-            tr("{} is out of date; this is of what it was.").format(label) for label in stale
-        ), _looked_at(drawing.sample)])
+        self.aside.put(self.obj, drawing.toolpath)
+        return "\n".join([*_found(drawing), *_figures(judgement), *told_stale(drawing.stale), _looked_at(drawing.sample)])
 
     def _colouring(self, judgement: Judgement) -> str:
         """What the object's own view tells by its colours, if that is of the machine and known."""
@@ -87,23 +87,27 @@ class JointPathPanel(PreviewPanel):
         self.aside.put(self.obj)
 
     def _show_own(self, visible: bool) -> None:
-        self.aside.put(None if visible else self.obj)
+        """What else stands back for the preview goes on doing so until the panel closes."""
+        others = [] if visible else [one for one in self.aside.objects if one is not self.obj]
+        self.aside.put(*others, None if visible else self.obj)
 
 
-def _tried(job: Job) -> Trial:
+def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
     """The plan of as many points as are soon planned. Raises what planning raises."""
     sample = sampled(job.toolpath(), MOST)
     toolpath = sample.toolpath
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
-    planned = plan_joints(toolpath, cell, replace(job.parameters, compare=()), progress.report)
-    return Trial(sample, planned, judged(planned.beads, cell.limits, cell.machine.max_speed))
+    parameters = replace(job.parameters, compare=(), given=sample.given(job.parameters.given))
+    planned = plan_joints(toolpath, cell, parameters, progress.report)
+    return sample, planned, judged(planned.beads, cell.limits, cell.machine.max_speed)
 
 
 def _found(trial: Trial) -> list[str]:
-    """Whether it can be carried out, and where not."""
+    """Whether it can be carried out, as far as that is known, and where not."""
     errors = [issue for issue in trial.planned.issues if issue.level == ERROR]
     if not errors:
-        return [tr("Can be carried out.")]
+        return [tr("All deposit points can be carried out.") if trial.sample.whole else tr(
+            "Nothing stands against it so far.")]
     told = [tr("Cannot be carried out:"), *(_told(issue, trial.sample.whole) for issue in errors[:MOST_TOLD])]
     if len(errors) > MOST_TOLD:
         told.append(tr("and {} more").format(len(errors) - MOST_TOLD))
@@ -130,12 +134,12 @@ def _figures(judgement: Judgement) -> list[str]:
 
 
 def _looked_at(sample: Sampled) -> str:
-    """Of what this is the preview."""
+    """Of what this is the preview, and what is left to OK."""
     if sample.whole:
-        return tr("Preview of all points, without rapid moves.")
+        return tr("Preview of all points; OK looks at the rapid moves too.")
     if sample.beads == 1:
-        return tr("Preview of one point in {}, without rapid moves; OK plans all.").format(sample.points)
+        return tr("Preview of one point in {}; OK looks at those between and at the rapid moves too.").format(sample.points)
     if sample.points == 1:
-        return tr("Preview of one bead in {}, without rapid moves; OK plans all.").format(sample.beads)
-    told = tr("Preview of one point in {} of one bead in {}, without rapid moves; OK plans all.")
+        return tr("Preview of one bead in {}; OK looks at those between and at the rapid moves too.").format(sample.beads)
+    told = tr("Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.")
     return told.format(sample.points, sample.beads)

@@ -10,10 +10,11 @@ from typing import Any
 from PySide import QtCore
 
 from ..core.issues import AmError, InputError, has_errors
-from ..objects import expressions
+from ..objects import expressions, hooks
 from ..objects.stage import Outcome, Stage
+from ..objects.staleness import STALE
 from .colours import WRONG
-from .inputs import Input
+from .inputs import Input, StageChoice
 from .later import Background
 from .preview import Draft, Preview
 from .stage_panel import CLOSED, StagePanel
@@ -82,7 +83,9 @@ class PreviewPanel(StagePanel):
     # ---- preview
 
     def _look(self) -> None:
-        """Preview what is entered once it no longer changes."""
+        """Preview what is entered once it no longer changes. What is being computed may change inputs: it is waited for."""
+        if hooks.carrying():
+            return
         try:
             now = self._entered()
             if now != self.seen:
@@ -106,7 +109,17 @@ class PreviewPanel(StagePanel):
                 texts.append((field.row.name, field.value))
             except InputError as error:
                 texts.append((field.row.name, error.message))
-        return self.document.Name, self._inputs(), texts
+        results = [(stage.Key, stage.Status) for stage in self._stages()]
+        return self.document.Name, self._inputs(), results, texts
+
+    def _stages(self) -> list[Any]:
+        """The stages that are inputs."""
+        chosen = [choice.value() for choice in self.choices if isinstance(choice, StageChoice)]
+        return [stage for stage in chosen if stage is not None]
+
+    def _stale_inputs(self) -> tuple[str, ...]:
+        """The labels of those that are out of date now."""
+        return tuple(stage.Label for stage in self._stages() if stage.Status == STALE)
 
     def _renew(self) -> None:
         """Begin to compute what is entered, in place of what was before."""
@@ -200,8 +213,8 @@ class PreviewPanel(StagePanel):
     def _carry_out(self) -> bool:
         self.background.cancel()
         done = super()._carry_out()
+        self.seen = self.shown = None  # what was being previewed is begun again, what was made is another one
         if not done:
-            self.seen = self.shown = None  # what was being previewed is begun again
             with contextlib.suppress(ReferenceError):
                 self.refused = self._entered()
         return done
@@ -223,3 +236,8 @@ class PreviewPanel(StagePanel):
             self.timer.stop()
         with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # the object is gone
             self._show_own(True)
+
+
+def told_stale(labels: Sequence[str]) -> list[str]:
+    """What to say of inputs that were out of date when the preview was begun."""
+    return [tr("{} is out of date; this is of what it was.").format(label) for label in labels]

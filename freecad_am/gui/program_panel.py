@@ -16,11 +16,10 @@ from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import Totals, totals
 from ..objects.program import Job, Program, Written, posted
 from ..objects.stage import Outcome
-from ..objects.staleness import STALE
 from ..posts import catalogue
 from . import inputs, suggestions
 from .preview import Draft
-from .preview_panel import PreviewPanel
+from .preview_panel import PreviewPanel, told_stale
 from .simulation import told
 from .texts import tr, translated
 
@@ -32,7 +31,8 @@ POST, START, START_LAYER = "program_post", "program.start_at", "program_start_at
 
 @dataclass(frozen=True)
 class Beginning:
-    """How a program begins. name: of its main file; text: the first lines. lines, files: in all."""
+    """How a program begins. name: of its main file; text: the first lines. lines, files: in all. stale: labels of the inputs
+    that were out of date when it was begun."""
 
     name: str
     text: str
@@ -40,6 +40,7 @@ class Beginning:
     files: int
     sums: Totals
     dry: bool
+    stale: tuple[str, ...]
 
 
 class ProgramPanel(PreviewPanel):
@@ -81,10 +82,10 @@ class ProgramPanel(PreviewPanel):
         return {path.link.name: path.value(), "ProgramName": self.name.widget.text().strip()}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Beginning | None]]:
-        job = draft.stage.job(draft.obj)
+        job, stale = draft.stage.job(draft.obj), self._stale_inputs()
 
         def work() -> tuple[Outcome, Beginning | None]:
-            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job)
+            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job, stale)
 
         return work
 
@@ -95,9 +96,7 @@ class ProgramPanel(PreviewPanel):
         self.text.show()
         if self.text.toPlainText() != drawing.text:
             self.text.setPlainText(drawing.text)
-        path = self._links()["JointPath"]
-        stale = [tr("{} is out of date; this is of what it was.").format(path.Label)] if path.Status == STALE else []
-        return "\n".join([*_told(drawing), *stale])
+        return "\n".join([*_told(drawing), *told_stale(drawing.stale)])
 
     def _draw_without(self) -> None:
         self.text.clear()  # once seen it keeps its room: a field that is typed into stays in place
@@ -110,7 +109,7 @@ class ProgramPanel(PreviewPanel):
         return (START_LAYER, translated(error.message)) if error.where == START else super()._placed(error)
 
 
-def _begun(job: Job) -> Beginning:
+def _begun(job: Job, stale: tuple[str, ...]) -> Beginning:
     """The program of a joint path. Raises what writing it raises."""
     made = posted(job)
     main = catalogue.main_file(made.files)
@@ -118,7 +117,7 @@ def _begun(job: Job) -> Beginning:
     times = timeline(made.motion, job.process, [layer.wait for layer in made.toolpath.layers])
     return Beginning(
         main, "\n".join(lines), sum(content.count(b"\n") for content in made.files.values()), len(made.files),
-        totals(made.motion, times, job.process, made.toolpath.layer_height), job.parameters.dry_run,
+        totals(made.motion, times, job.process, made.toolpath.layer_height), job.parameters.dry_run, stale,
     )
 
 

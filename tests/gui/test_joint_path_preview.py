@@ -74,7 +74,8 @@ def test_the_figures_of_a_whole_preview_are_those_of_the_plan(person, stages, mo
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
     text = told(person, panel, "Preview of all points")
-    assert text.startswith("Can be carried out.\nLeast joint margin: ")
+    assert text.startswith("All deposit points can be carried out.\nLeast joint margin: ")
+    assert text.endswith("Preview of all points; OK looks at the rapid moves too.")
     figures = [float(number) for number in re.findall(r": (-?[\d.]+)", text)]
     assert len(drawn(person)) >= api.result(toolpath).point_count
     assert toolpath.ViewObject.Proxy.switch.whichChild.getValue() == -1  # the preview lies where it does
@@ -103,8 +104,9 @@ def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(perso
     person.double_click(made)
     panel = person.panel(PANEL)
     assert made.ViewObject.Proxy.switch.whichChild.getValue() == -1
-    first = told(person, panel, "Can be carried out.")
-    assert re.search(r"Preview of one point in \d+(?: of one bead in \d+)?, without rapid moves; OK plans all\.", first)
+    first = told(person, panel, "Nothing stands against it so far.")
+    left = r"Preview of one point in \d+(?: of one bead in \d+)?; OK looks at those between and at the rapid moves too\."
+    assert re.search(left, first) and "can be carried out" not in first
     assert 100 < len(drawn(person)) < api.result(toolpath).point_count
     person.choose(panel, "Method", "constant")
     worse = told(person, panel, "Cannot be carried out:")
@@ -117,7 +119,7 @@ def test_a_change_is_planned_anew_and_tells_where_it_cannot_be_carried_out(perso
     assert "out of range" in person.field(panel, "MinConditionNote").text()
     assert len(drawn(person)) == 0
     hand.enter(panel, "MinCondition", "auto")
-    told(person, panel, "Can be carried out.")
+    told(person, panel, "Nothing stands against it so far.")
     person.press("Cancel")
     person.panel_closed()
     assert drawn(person) is None and made.ViewObject.Proxy.switch.whichChild.getValue() == which
@@ -157,11 +159,77 @@ def test_what_is_missing_is_told_and_a_stale_toolpath_too(person, stages):
     person.select(toolpath)
     person.click("RoboticAM_JointPath")
     panel = person.panel(PANEL)
-    assert "Toolpath is out of date; this is of what it was." in told(person, panel, "Can be carried out.")
+    text = told(person, panel, "All deposit points can be carried out.")
+    assert "Toolpath is out of date; this is of what it was." in text
+    toolpath.Document.recompute()
+    state = person.field(panel, "preview")
+    person.until(lambda: "All deposit points" in state.text() and "out of date" not in state.text(), "what it is now", 30)
     toolpath.Document.removeObject(toolpath.Name)
+    text = told(person, panel, "No preview: see the field marked.")
+    note = person.field(panel, "ToolpathNote")
+    assert note.isVisible() and "Toolpath is missing" in note.text() and "Error" not in text + note.text()
+    assert len(drawn(person)) == 0
     person.press("Cancel")
     person.panel_closed()
     threads_end(person)
+
+
+def test_inputs_deleted_while_the_preview_is_computed_are_told_as_missing(person, stages, monkeypatch):
+    toolpath, _ = stages
+    begun, go_on, seen = threading.Event(), threading.Event(), []
+    tried = joint_path_panel._tried
+
+    def held(job):
+        begun.set()
+        go_on.wait(20)
+        return tried(job)
+
+    monkeypatch.setattr(joint_path_panel, "_tried", held)
+    say = joint_path_panel.JointPathPanel._say
+    monkeypatch.setattr(
+        joint_path_panel.JointPathPanel, "_say", lambda panel, text, *more: (seen.append(text), say(panel, text, *more))
+    )
+    monkeypatch.setattr(joint_path_panel.JointPathPanel, "_entered", lambda panel: "the same")  # what ends before a look
+    person.select(toolpath)
+    person.click("RoboticAM_JointPath")
+    panel = person.panel(PANEL)
+    person.until(begun.is_set, "the preview to begin", 10)
+    toolpath.Document.removeObject(toolpath.Name)
+    go_on.set()
+    person.until(lambda: any("deposit points" in text for text in seen), f"the preview, not {seen}", 30)
+    assert not [text for text in seen if "Error" in text]
+    monkeypatch.undo()
+    told(person, panel, "No preview: see the field marked.")
+    person.press("Cancel")
+    person.panel_closed()
+    threads_end(person)
+
+
+def test_apply_renews_the_preview_and_the_toolpath_stays_back(person, stages, monkeypatch):
+    toolpath, cell = stages
+    monkeypatch.setattr(joint_path_panel, "MOST", 300)
+    made = api.make_joint_path(toolpath.Document, toolpath, cell)
+    begun = []
+    tried = joint_path_panel._tried
+    monkeypatch.setattr(joint_path_panel, "_tried", lambda job: (begun.append(job.parameters.degree), tried(job))[1])
+    person.double_click(made)
+    panel = person.panel(PANEL)
+    first = told(person, panel, "Nothing stands against it so far.")
+    before = drawn(person)
+    person.type(panel, "Degree", "0")
+    person.until(lambda: begun[-1:] == [0], "the preview of what is typed to begin", 10)
+    person.press("Apply")  # ends it
+    person.until(lambda: made.Degree == 0, "Apply", 30)
+    own = toolpath.ViewObject.Proxy.switch, made.ViewObject.Proxy.switch
+    assert [switch.whichChild.getValue() for switch in own] == [-1, -1]
+    state, count = person.field(panel, "preview"), len(begun)
+    person.until(lambda: len(begun) > count or begun.count(0) > 1, "the preview of what was made", 10)
+    person.until(lambda: state.text() not in (first, "The preview is being computed."), "its figures", 30)
+    assert "Nothing stands against it so far." in state.text() and len(drawn(person)) == len(before)
+    assert [switch.whichChild.getValue() for switch in own] == [-1, -1]
+    person.press("Ok")
+    person.panel_closed()
+    assert all(switch.whichChild.getValue() != -1 for switch in own)
 
 
 def test_a_table_has_no_condition_and_is_told_of_all_the_same(person, stages):

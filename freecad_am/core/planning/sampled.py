@@ -4,51 +4,88 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..parameters.joints import given_polynomials
 from ..toolpath import Bead, Layer, Toolpath
 
 PER_TURN = 16  # points of a turn that are kept, about
+FEWEST_PER_TURN = 5  # where beads of many turns are too few to leave some out: all sides are seen, axes still counted on
 LEAST = 8  # segments of a bead that are kept where it has so many
 TURN = 2.0 * np.pi
+
+Place = tuple[int, int]
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """Some beads and points of a toolpath. beads, points: of how many one is among them, 1 where all are."""
+    """Some beads and points of a toolpath. beads, points: of how many one is among them, 1 where all are. places: (layer,
+    bead) that each of the beads has in the whole, in the order of deposit."""
 
     toolpath: Toolpath
     beads: int
     points: int
+    places: tuple[Place, ...]
 
     @property
     def whole(self) -> bool:
         """Whether it is all of the toolpath."""
         return self.beads == self.points == 1
 
+    def given(self, given: Sequence[str]) -> tuple[str, ...]:
+        """Entries of `joints.given` for the whole, told of the beads as they are numbered here; without those of beads that
+        are left out."""
+        here = {place: (layer, bead) for place, (layer, bead, _) in zip(self.places, self.toolpath)}
+        told = []
+        for entry, place in zip(given, given_polynomials(tuple(given))):
+            if place is None:
+                told.append(entry)
+            elif place in here:
+                layer, bead = here[place]
+                told.append(f"{layer}/{bead}:{entry.partition(':')[2]}")
+        return tuple(told)
+
 
 def sampled(toolpath: Toolpath, most: int) -> Sampled:
     """About `most` points of a toolpath, all of it where it has no more. The first and last bead are among those that are
-    kept, and the ends of each; layers keep their numbers, beads not. The chord error grows as that of the points does."""
+    kept, and the ends of each; layers keep their numbers, beads not. The chord error grows as that of the points does.
+    More are kept of a few beads that have very many turns."""
+    every = list(toolpath)
     total = toolpath.point_count
     if total <= most:
-        return Sampled(toolpath, 1, 1)
-    turns = sum(abs(float(bead.parameter[-1] - bead.parameter[0])) for _, _, bead in toolpath) / TURN
-    points = max(1, min(math.ceil(total / most), int(total / (PER_TURN * max(turns, 1.0)))))
-    thin = [(layer, bead.thinned(_kept(bead, points))) for layer, _, bead in toolpath]
-    beads = math.ceil(sum(len(bead) for _, bead in thin) / most)
-    chosen = [*thin[:-1:beads], thin[-1]]
+        return Sampled(toolpath, 1, 1, tuple((layer, index) for layer, index, _ in every))
+    points = _one_in([bead for _, _, bead in every], most, PER_TURN)
+    wanted = math.ceil(sum(len(_kept(bead, points)) for _, _, bead in every) / most)
+    beads = min(wanted, max(1, len(every) - 1))
+    chosen = [*every[:-1:beads], every[-1]]
+    if beads < wanted:  # there are no more beads to leave out
+        points = max(points, _one_in([bead for _, _, bead in chosen], most, FEWEST_PER_TURN))
     layers = tuple(
-        Layer(tuple(bead for place, bead in chosen if place == number), layer.wait, layer.first)
+        Layer(tuple(bead.thinned(_kept(bead, points)) for place, _, bead in chosen if place == number), layer.wait,
+              layer.first)
         for number, layer in enumerate(toolpath.layers)
     )
-    return Sampled(replace(toolpath, layers=layers, chord_error=toolpath.chord_error * points**2), beads, points)
+    return Sampled(
+        replace(toolpath, layers=layers, chord_error=toolpath.chord_error * points**2), beads, points,
+        tuple((layer, index) for layer, index, _ in chosen),
+    )
+
+
+def _one_in(beads: Sequence[Bead], most: int, per_turn: int) -> int:
+    """Of how many points of beads one is kept for about `most`, but `per_turn` of each turn."""
+    total = sum(map(len, beads))
+    turns = sum(abs(float(bead.parameter[-1] - bead.parameter[0])) for bead in beads) / TURN
+    return max(1, min(math.ceil(total / most), int(total / (per_turn * max(turns, 1.0)))))
 
 
 def _kept(bead: Bead, points: int) -> NDArray[np.intp]:
-    """The numbers of the points of a bead that are kept: one of so many, more of a short one."""
+    """The numbers of the points of a bead that are kept: one of so many, more of a short one and of turns with few."""
     last = len(bead) - 1
-    return np.unique(np.append(np.arange(0, last, max(1, min(points, last // LEAST))), last))
+    step = max(1, min(points, last // LEAST))
+    share = np.abs(np.diff(bead.parameter)) * (FEWEST_PER_TURN / TURN)
+    passed = np.floor(np.cumsum(np.maximum(1.0, step * share)) / step)
+    return np.unique(np.r_[0, np.flatnonzero(np.diff(passed, prepend=0.0) >= 1.0) + 1, last])

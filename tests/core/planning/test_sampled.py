@@ -9,9 +9,11 @@ import pytest
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics.jacobian import condition, jacobian
 from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.planning.given import coefficients
 from freecad_am.core.planning.judgement import judged
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.sampled import sampled
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +43,73 @@ def test_a_small_toolpath_is_looked_at_whole(dome):
     assert sample.whole and sample.toolpath is dome
 
 
+def rings(layers, beads):
+    """A toolpath whose layers have several closed beads, each told by its radius and height alone."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 101)
+    up, speed = np.tile([0.0, 0.0, 1.0], (101, 1)), np.full(101, 10.0)
+
+    def ring(layer, k):
+        points = np.column_stack([(10 + 2 * k) * np.cos(turn), (10 + 2 * k) * np.sin(turn), np.full(101, float(layer))])
+        points[-1] = points[0]
+        return Bead(points, up, up, turn, speed, True)
+
+    made = tuple(Layer(tuple(ring(layer, k) for k in range(beads))) for layer in range(layers))
+    return Toolpath(made, np.eye(4), 1.0, 0.05)
+
+
+@pytest.mark.parametrize("most", [700, 1000, 3000, 20_000])
+def test_polynomials_that_are_given_stay_with_their_beads(most):
+    whole = rings(100, 5)
+    sample = sampled(whole, most)
+    beads = [bead for _, _, bead in sample.toolpath]
+    assert not sample.whole and len(beads) == len(sample.places) == len(set(sample.places))
+    for bead, (layer, index) in zip(beads, sample.places):
+        assert (bead.points[0] == whole.layers[layer].beads[index].points[0]).all()
+    named = [(layer, index) for layer in (0, 30, 31, 99) for index in range(5)]
+    given = tuple(f"{layer}/{index}:{layer}.5:{index}" for layer, index in named)
+    told = sample.given((*given, "*:7"))
+    places = [(layer, index) for layer, index, _ in sample.toolpath]
+    found = coefficients(JointParameters(given=told), places)
+    wanted = coefficients(JointParameters(given=(*given, "*:7")), sample.places)
+    assert found == wanted and len(found) == len(beads)
+    kept = [place for place in named if place in set(sample.places)]
+    assert len(told) == len(kept) + 1 and (0, 0) in kept and (99, 4) in kept
+
+
+def test_a_polynomial_for_a_bead_that_is_left_out_falls_on_no_other():
+    sample = sampled(rings(100, 5), 1000)
+    lost = next((layer, k) for layer in range(100) for k in range(5) if (layer, k) not in sample.places)
+    assert sample.given((f"{lost[0]}/{lost[1]}:1.0", "200/0:3")) == ()
+    whole = sampled(rings(2, 2), 10_000)
+    assert whole.whole and whole.given(("1/1:2:3", "0:4", "*:5")) == ("1/1:2:3", "0/0:4", "*:5")
+
+
+@pytest.mark.parametrize("layer_height", [3.0, 1.0, 0.5])
+def test_of_a_single_bead_of_many_turns_points_alone_are_left_out(sliced, layer_height):
+    spiral = sliced("sphere", layer_height, path="spiral")
+    assert spiral.bead_count == 1
+    bead = spiral.layers[0].beads[0]
+    turns = abs(bead.parameter[-1] - bead.parameter[0]) / (2.0 * np.pi)
+    sample = sampled(spiral, 400)
+    kept = sample.toolpath.layers[0].beads[0]
+    assert (sample.beads, sample.places, sample.toolpath.bead_count) == (1, ((0, 0),), 1)
+    assert 0.5 * 400 <= len(kept) <= max(1.1 * 400, 8.0 * turns)
+    assert len(kept) == pytest.approx(len(bead) / sample.points, rel=0.15)
+    assert np.abs(np.diff(kept.parameter)).max() < 0.6 * np.pi  # all sides are seen, also where turns have few points
+    assert (kept.points[[0, -1]] == bead.points[[0, -1]]).all()
+
+
+def test_of_two_spirals_both_are_kept_and_as_few_points_as_of_one(sliced):
+    one = sliced("sphere", 0.5, path="spiral")
+    two = dataclasses.replace(one, layers=one.layers * 2)
+    three = dataclasses.replace(one, layers=one.layers * 3)
+    alone = sampled(one, 150).toolpath.point_count
+    for toolpath, beads, places in ((two, 1, ((0, 0), (1, 0))), (three, 2, ((0, 0), (2, 0)))):
+        sample = sampled(toolpath, 150)
+        assert (sample.beads, sample.places) == (beads, places)
+        assert sample.toolpath.point_count == pytest.approx(2 * alone, rel=0.01)
+
+
 def test_points_leave_the_curve_by_no_more_than_the_chord_error_of_the_sample(dome):
     sample = sampled(dome, 400)
     for number, _, bead in sample.toolpath:
@@ -50,15 +119,20 @@ def test_points_leave_the_curve_by_no_more_than_the_chord_error_of_the_sample(do
 
 
 def test_a_sample_is_feasible_where_the_whole_is_and_nearly_as_near_to_limits(dome, cell_of):
-    for limits, feasible in (("paper", True), ("maker", True)):
+    for limits, method, feasible in (
+        ("paper", "layer-by-layer", True), ("maker", "layer-by-layer", True), ("maker", "constant", False),
+    ):
         cell = cell_of(dome, limits=limits)
         found = []
         for toolpath in (dome, sampled(dome, 400).toolpath):
-            planned = plan_joints(toolpath, cell, JointParameters())
+            planned = plan_joints(toolpath, cell, JointParameters(method=method))
             assert has_errors(planned.issues) != feasible
             found.append(judged(planned.beads, cell.limits, cell.machine.max_speed))
         whole, some = found
         assert some.worst_margin.value == pytest.approx(whole.worst_margin.value, abs=0.05)
+        if not feasible:  # beyond limits and through a singularity by how much depends on the points
+            assert some.worst_margin.value < 0.0 and some.worst_margin.label == whole.worst_margin.label
+            continue
         assert some.worst_condition.value == pytest.approx(whole.worst_condition.value, rel=0.1)
         assert abs(some.worst_condition.layer - whole.worst_condition.layer) <= 2 * sampled(dome, 400).beads
 
