@@ -135,7 +135,7 @@ class ExportPanel:
         return os.path.join(folder, self.path.currentText().replace(os.sep, "-"))
 
     def _first(self) -> int:
-        """The path that is selected, else the last joint path."""
+        """The path that is selected, or that of the job that is, else the last joint path."""
         for obj in meant(self.document.Name):
             if obj in self.paths:
                 return self.paths.index(obj)

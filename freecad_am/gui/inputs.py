@@ -11,7 +11,7 @@ from PySide import QtGui
 
 from ..objects.stage import Link, Stage, stage_of
 from . import picking, recorded
-from .selection import meant
+from .selection import meant, selected
 from .texts import tr, translated
 
 
@@ -39,7 +39,8 @@ class Input:
 
 
 class StageChoice(Input):
-    """One of the stages of a kind in the active document; the present one, else the selected one, else the last."""
+    """One of the stages of a kind in the active document; the present one, else the selected one or that of the job that
+    is selected, else the last."""
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, translated(link.label)
@@ -55,9 +56,22 @@ class StageChoice(Input):
                 self.widget.addItem(obj.Label, obj.Name)
         if not link.required:
             self.widget.addItem(tr("none"), "")
-        selected = [obj.Name for obj in meant() if obj.Name in names]
-        wanted = present.Name if present is not None else (selected or names[-1:] or [""])[0]
-        self.widget.setCurrentIndex(max(0, self.widget.findData(wanted)))
+        wished = [obj.Name for obj in meant() if obj.Name in names]
+        self.proposed = present.Name if present is not None else (wished or names[-1:] or [""])[0]
+        self.widget.setCurrentIndex(max(0, self.widget.findData(self.proposed)))
+
+    def follow(self, toolpath: StageChoice) -> None:
+        """Propose the cell that the chosen toolpath was made for, now and for another one, until a cell is chosen; one
+        that is selected itself stays."""
+        if not any(obj is self.value() for obj in selected()):
+            toolpath.widget.currentIndexChanged.connect(lambda *_: self._propose(toolpath))
+            self._propose(toolpath)
+
+    def _propose(self, toolpath: StageChoice) -> None:
+        cell = getattr(toolpath.value(), "Cell", None)
+        if cell is not None and self.widget.currentData() == self.proposed and self.widget.findData(cell.Name) >= 0:
+            self.proposed = cell.Name
+            self.widget.setCurrentIndex(self.widget.findData(cell.Name))
 
     @property
     def missing(self) -> str:
@@ -238,4 +252,13 @@ def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
             found.append(ObjectChoice(link, present))
         else:
             found.append(ShapeChoice(link, present, take_now=link.required))
+    if obj is None:
+        _match(found)
     return found
+
+
+def _match(choices: list[Input]) -> None:
+    """A cell is proposed for the toolpath that runs in it."""
+    stages = {choice.link.kind: choice for choice in choices if isinstance(choice, StageChoice)}
+    if "toolpath" in stages and "cell" in stages:
+        stages["cell"].follow(stages["toolpath"])

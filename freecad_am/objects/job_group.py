@@ -6,26 +6,39 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import FreeCAD as App
+
 from . import hooks
 from .stage import stage_of
 
 TYPE = "App::DocumentObjectGroupPython"
+_PASTE = "Paste"  # what FreeCAD calls this step of undo, in every language
 
 
 class JobGroup:
     """Proxy of a group of stages. Its class path is a file format."""
 
+    _held: tuple[Any, ...] = ()  # what was in the group before it is changed
+
     def __init__(self, obj: Any) -> None:
         obj.Proxy = self
         hooks.attach(obj)
 
+    def onBeforeChange(self, obj: Any, name: str) -> None:
+        """Remember what is in the group."""
+        if name == "Group":
+            self._held = tuple(obj.Group)
+
     def onChanged(self, obj: Any, name: str) -> None:
-        """FreeCAD pastes into the group that is selected: a copy of the job, or of its part, comes beside the job."""
-        document = obj.Document
-        if name == "Group" and not (document.Transacting or document.Restoring or document.Importing):
-            stages = stages_in(obj)
-            if len(stages) < len(obj.Group):
-                obj.Group = stages
+        """FreeCAD pastes into the group that is selected: a copy of the job, or of its part, comes beside the job. What is
+        put there in another way, as by a macro, stays."""
+        document, held = obj.Document, self._held
+        if name != "Group" or document.Transacting or document.Restoring or document.Importing:
+            return
+        if (App.getActiveTransaction() or ("",))[0] == _PASTE:
+            kept = [one for one in obj.Group if one in held or stage_of(one) is not None]
+            if len(kept) < len(obj.Group):
+                obj.Group = kept
 
     def onDocumentRestored(self, obj: Any) -> None:
         """Show one that was made without a window."""

@@ -9434,12 +9434,12 @@
     <message>
         <location filename="../../freecad_am/gui/spin_map/tool.py"/>
         <source>{} has no joint path to map; make one first, or select another job.</source>
-        <translation type="unfinished"></translation>
+        <translation>{} n&apos;a pas de trajectoire articulaire pour une carte ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/tool.py"/>
         <source>{} has no joint path to simulate; make one first, or select another job.</source>
-        <translation type="unfinished"></translation>
+        <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>

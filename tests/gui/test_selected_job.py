@@ -5,23 +5,51 @@ import pytest
 
 from freecad_am import api
 from freecad_am.gui.plots import dock as plots
+from freecad_am.gui.simulation import tool as simulation
+from freecad_am.gui.spin_map import tool as spin_map
 from freecad_am.objects.job_group import grouped
+
+KINDS = ("cell", "feature", "toolpath", "joint path")
 
 
 @pytest.fixture
-def jobs(person, hemisphere):
-    """The groups of two jobs of few layers on one part."""
+def stages(person, hemisphere):
+    """The stages, by kind, of two jobs of few layers on one part."""
     doc = hemisphere.Document
     made = []
     for name in ("First", "Second"):
         cell, feature = api.make_cell(doc, limits="paper"), api.make_feature(doc, hemisphere, layer_height=15)
         toolpath = api.make_toolpath(doc, feature, cell)
-        stages = [cell, feature, toolpath, api.make_joint_path(doc, toolpath, cell)]
-        for stage in stages:
-            stage.Label = f"{name} {stage.Proxy.kind}"
-        made.append(grouped(doc, name, stages))
+        made.append(dict(zip(KINDS, (cell, feature, toolpath, api.make_joint_path(doc, toolpath, cell)))))
+        for kind, stage in made[-1].items():
+            stage.Label = f"{name} {kind}"
     person.open_workbench()
     return made
+
+
+@pytest.fixture
+def jobs(stages):
+    """The groups of the two jobs."""
+    return [grouped(of["cell"].Document, name, list(of.values())) for name, of in zip(("First", "Second"), stages)]
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """The labels of what tools without a panel open."""
+    labels = []
+    monkeypatch.setattr(simulation, "show", lambda obj: labels.append(obj.Label))
+    monkeypatch.setattr(spin_map.dock, "show", lambda obj: labels.append(obj.Label))
+    return labels
+
+
+def inputs_of(person, command, panel, *links):
+    """What a panel proposes for its links."""
+    person.click(command)
+    form = person.panel(panel)
+    shown = [person.field(form, f"Input{link}").currentText() for link in links]
+    person.press("Cancel")
+    person.panel_closed()
+    return shown
 
 
 @pytest.mark.parametrize("which", [0, 1])
@@ -49,6 +77,92 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     person.until(lambda: plots._dock.building.worker is None and plots._dock.canvas.ready, "the picture", 20)
     panel.close()
     person.idle()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.parametrize("in_groups", [True, False])
+def test_a_stage_stands_for_its_job(person, stages, opened, request, in_groups, which, kind):
+    if in_groups:
+        request.getfixturevalue("jobs")
+    name = ("First", "Second")[which]
+    person.select(stages[which][kind])
+    person.click("RoboticAM_Simulate")
+    person.click("RoboticAM_SpinMap")
+    assert opened == [f"{name} joint path"] * 2
+    assert inputs_of(person, "RoboticAM_Program", "RoboticAM_Program", "JointPath") == [f"{name} joint path"]
+    shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
+    assert shown == [f"{name} toolpath", f"{name} cell"]
+    person.click("RoboticAM_ExportPath")
+    path = "toolpath" if kind == "toolpath" else "joint path"
+    assert person.field(person.panel("RoboticAM_ExportPath"), "Path").currentText() == f"{name} {path}"
+    person.press("Cancel")
+    person.panel_closed()
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_of_two_jobs_that_are_selected_the_first_is_taken(person, jobs, opened, order):
+    person.select(jobs[order[0]])
+    person.gui.Selection.addSelection(jobs[order[1]].Document.Name, jobs[order[1]].Name)
+    person.click("RoboticAM_Simulate")
+    assert opened == [f"{jobs[order[0]].Label} joint path"]
+
+
+def test_what_jobs_share_stands_for_the_job_that_was_made_last(person, stages, opened):
+    first, second = stages
+    second["toolpath"].Cell = second["joint path"].Cell = first["cell"]
+    person.select(first["cell"])
+    person.click("RoboticAM_Simulate")
+    person.select(first["toolpath"])
+    person.click("RoboticAM_Simulate")
+    assert opened == ["Second joint path", "First joint path"]
+
+
+def test_a_cell_in_the_group_of_another_job_is_found(person, stages):
+    first, second = stages
+    doc = first["cell"].Document
+    second["toolpath"].Cell = second["joint path"].Cell = first["cell"]
+    group = grouped(doc, "Second", [second["feature"], second["toolpath"]])
+    grouped(doc, "First", list(first.values()))
+    person.select(group)
+    shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
+    assert shown == ["Second toolpath", "First cell"]
+
+
+@pytest.mark.parametrize("of_group", [True, False])
+def test_tools_tell_what_the_job_lacks_and_take_no_other(person, stages, jobs, opened, of_group):
+    first = stages[0]
+    first["cell"].Document.removeObject(first["joint path"].Name)
+    person.select(jobs[0] if of_group else first["cell"])
+    for command, told in (("Simulate", "to simulate"), ("SpinMap", "to map")):
+        person.click(f"RoboticAM_{command}")
+        said = person.window.statusBar().currentMessage()
+        assert said == f"First has no joint path {told}; make one first, or select another job."
+    assert opened == []
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_Simulate")
+    person.click("RoboticAM_SpinMap")
+    assert opened == ["Second joint path"] * 2
+
+
+def test_the_cell_follows_the_toolpath_until_one_is_chosen(person, stages):
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_JointPath")
+    panel = person.panel("RoboticAM_JointPath")
+    toolpath, cell = (person.field(panel, f"Input{link}") for link in ("Toolpath", "Cell"))
+    assert (toolpath.currentText(), cell.currentText()) == ("Second toolpath", "Second cell")
+    toolpath.setCurrentIndex(toolpath.findText("First toolpath"))
+    assert cell.currentText() == "First cell"
+    cell.setCurrentIndex(cell.findText("Second cell"))
+    toolpath.setCurrentIndex(toolpath.findText("Second toolpath"))
+    toolpath.setCurrentIndex(toolpath.findText("First toolpath"))
+    assert cell.currentText() == "Second cell"
+    person.press("Cancel")
+    person.panel_closed()
+    person.select(stages[0]["toolpath"])
+    person.gui.Selection.addSelection(stages[1]["cell"].Document.Name, stages[1]["cell"].Name)
+    shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
+    assert shown == ["First toolpath", "Second cell"]  # both are selected
 
 
 def test_the_point_at_the_origin_is_of_no_path(person, jobs):

@@ -191,6 +191,23 @@ def test_a_whole_job_is_deleted_and_brought_back_by_keys(person, hand, job):
     assert state(job) == before and len(group_of(job).Group) == 5
 
 
+def test_what_a_macro_puts_into_a_job_stays_and_a_paste_comes_beside_it(person, hand, job):
+    group = group_of(job)
+    stages = len(group.Group)
+    body = job.addObject("Part::Box", "Body")
+    group.addObject(body)
+    assert body in group.Group and len(group.Group) == stages + 1
+    hand.click_tree("Cup")
+    person.gui.runCommand("Std_Copy")
+    hand.click_tree(group.Label)
+    there = {obj.Name for obj in job.Objects}
+    person.gui.runCommand("Std_Paste")
+    (pasted,) = person.until(lambda: [obj for obj in job.Objects if obj.Name not in there], "the copy", 5)
+    assert pasted not in group.Group and body in group.Group and len(group.Group) == stages + 1
+    group.removeObject(job.Toolpath)
+    assert body in group.Group and len(group.Group) == stages
+
+
 def test_a_job_pasted_while_it_is_selected_comes_beside_it(person, hand, job):
     """FreeCAD would put it, and the copy of its part, into the job."""
     group, before = group_of(job), state(job)

@@ -21,8 +21,8 @@ from ..texts import tr, translated
 
 
 class PlannedChoice(inputs.Input):
-    """A feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one, else the last
-    feature."""
+    """A feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one or that of the job
+    that is selected, else the last feature."""
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, tr("Planned")

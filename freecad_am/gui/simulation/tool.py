@@ -12,7 +12,7 @@ from ...core.issues import AmError
 from ...objects import hooks
 from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
-from ..selection import meant
+from ..selection import job_named, meant
 from ..texts import error_line, tr, translated_error
 from . import dock
 from .run import prepared
@@ -21,8 +21,12 @@ KINDS = ("program", "joint path")
 
 
 def simulate() -> None:
-    """Simulate the selected joint path or program, else the last one of the document that has a result."""
+    """Simulate the selected joint path or program, or that of the job that is selected; where nothing of a job is, the last
+    joint path of the document that has a result."""
     selected = [obj for obj in meant() if _kind(obj) in KINDS]
+    if not selected and job_named():
+        _say(tr("{} has no joint path to simulate; make one first, or select another job.").format(job_named()))
+        return
     made = [obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key]
     if selected or made:
         show(selected[0] if selected else made[-1])

@@ -10,14 +10,18 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..selection import meant
+from ..selection import job_named, meant
 from ..texts import error_line, tr, translated_error
 from . import dock
 
 
 def spin_map() -> None:
-    """Open the map of the selected joint path, or that of a selected program, else of the last one with a result."""
+    """Open the map of the selected joint path, or that of the program or job that is selected; where nothing of a job is,
+    of the last one with a result."""
     selected = [found for found in map(_joint_path, meant()) if found is not None]
+    if not selected and job_named():
+        _say(tr("{} has no joint path to map; make one first, or select another job.").format(job_named()))
+        return
     made = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
     if not selected and not made:
         _say(tr("There is no joint path to map; make one first."))
