@@ -27,7 +27,8 @@ _UNITS = {
     f.TIME: (App.Units.TimeSpan, "a time such as 2 s"),
     f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
 }
-_OTHER_SIGNS = "°µμ′″−"  # beside those of ASCII, of what FreeCAD reads in a quantity
+# what FreeCAD reads in a quantity beside the signs of ASCII
+_OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS SIGN}"
 # a comma that may begin decimals, a no-break blank that may group digits
 _TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
