@@ -20,6 +20,7 @@ from ..posts import catalogue
 from . import inputs, suggestions
 from .preview import Draft
 from .preview_panel import PreviewPanel, told_stale
+from .selection import meant
 from .simulation import told
 from .texts import tr, translated
 
@@ -53,7 +54,7 @@ class ProgramPanel(PreviewPanel):
         super().__init__(
             tr("Program") if obj is None else obj.Label, [*inputs.of(Program, obj), self.name], obj, None
         )
-        post = suggestions.post_for(App.ActiveDocument) if obj is None else ""
+        post = suggestions.post_for(self._links()["JointPath"]) if obj is None else ""
         if post:
             self.places[POST][0].show(post)
         self._add_text()
@@ -131,8 +132,8 @@ def _told(beginning: Beginning) -> list[str]:
 
 
 def _part_name() -> str:
-    """A first proposal for the program's name, from the part that is deposited."""
-    for obj in App.ActiveDocument.Objects:
+    """A first proposal for the program's name, from the part that is deposited: that of the selected job first."""
+    for obj in [*meant(), *App.ActiveDocument.Objects]:
         if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
             return api.proposed_name(obj.Source[0].Label)
     return api.proposed_name(App.ActiveDocument.Label)

@@ -30,13 +30,12 @@ def _branches() -> list[str]:
     return ["auto", *(" ".join(words) for words in sides)]
 
 
-def post_for(document: Any) -> str:
-    """The post for the last joint path's machine, '' where the one by default will do or none is known."""
-    paths = [obj for obj in document.Objects if getattr(getattr(obj, "Proxy", None), "kind", "") == "joint path"]
-    if not paths or paths[-1].Cell is None:
+def post_for(path: Any) -> str:
+    """The post for the machine of a joint path, '' where the one by default will do or none is known."""
+    if path is None or path.Cell is None:
         return ""
     try:
-        posts = machine.load(paths[-1].Cell.Machine, user_machines.folders()).posts
+        posts = machine.load(path.Cell.Machine, user_machines.folders()).posts
     except InputError:
         return ""
     wanted = preferences.post() or ProgramParameters().post

@@ -145,6 +145,22 @@ def test_tools_tell_what_the_job_lacks_and_take_no_other(person, stages, jobs, o
     assert opened == ["Second joint path"] * 2
 
 
+@pytest.mark.parametrize("which, name, post", [(0, "PART", "staubli"), (1, "BALL", "fanuc")])
+def test_a_program_is_proposed_for_part_and_machine_of_its_job(person, stages, jobs, which, name, post):
+    first, second = stages
+    first["feature"].Source[0].Label = "part"
+    ball = first["cell"].Document.addObject("Part::Sphere", "Ball")
+    second["feature"].Source = (ball, [])
+    first["cell"].Machine = "staubli-tx60"
+    person.select(jobs[which])
+    person.click("RoboticAM_Program")
+    panel = person.panel("RoboticAM_Program")
+    assert person.field(panel, "ProgramName").text() == name
+    assert person.field(panel, "Post").currentText() == post
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_the_cell_follows_the_toolpath_until_one_is_chosen(person, stages):
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_JointPath")
