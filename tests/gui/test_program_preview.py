@@ -119,13 +119,13 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
     before = told(person, panel, "Begins with")
     state = person.field(panel, "preview")
     document.Feature.LayerHeight = "15 mm"
-    told(person, panel, "JointPath is out of date; this is of what it was.")
+    told(person, panel, "Joint path is out of date; this is of what it was.")
     document.recompute()
     person.until(lambda: "Begins with" in state.text() and "out of date" not in state.text(), "what it is now", 30)
     assert state.text() != before
     document.removeObject(joint_path.Name)
     told(person, panel, "No preview: see the field marked.")
-    note = person.field(panel, "Joint pathNote")
+    note = person.field(panel, "InputJointPathNote")
     assert note.isVisible() and "JointPath is missing" in note.text() and "Error" not in state.text() + note.text()
     person.press("Cancel")
     person.panel_closed()
