@@ -125,6 +125,22 @@ def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemispher
         person.panel_closed()
 
 
+def test_a_toolpath_that_is_made_anew_beside_the_panel_moves_the_machine(person, planned):
+    cell, toolpath = planned
+    before = api.result(toolpath)
+    person.double_click(cell)
+    panel = person.panel(PANEL)
+    told(person, panel, "with the nozzle upright: q")
+    assert stands_as(person, CellParameters(), before)
+    cell.Document.Feature.LayerHeight = "20 mm"
+    cell.Document.recompute()
+    after = api.result(toolpath)
+    person.until(lambda: stands_as(person, CellParameters(), after), "the machine to stand at the new toolpath", 10)
+    assert not stands_as(person, CellParameters(), before)
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, planned):
     cell, toolpath = planned
     last = api.result(toolpath).layers[-1].beads[-1]
