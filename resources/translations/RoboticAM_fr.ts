@@ -3334,22 +3334,22 @@
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Preview of all points; OK looks at the rapid moves too.</source>
-        <translation>Aperçu de tous les points ; OK examine aussi les rapides.</translation>
+        <translation>Aperçu de tous les points ; OK examine aussi les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Preview of one bead in {}; OK looks at those between and at the rapid moves too.</source>
-        <translation>Aperçu d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
+        <translation>Aperçu d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.</source>
-        <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
+        <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Preview of one point in {}; OK looks at those between and at the rapid moves too.</source>
-        <translation>Aperçu d&apos;un point sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
+        <translation>Aperçu d&apos;un point sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
