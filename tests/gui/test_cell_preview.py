@@ -212,14 +212,14 @@ def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_prop
     person.until(lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"], "the threads to end", 10)
 
 
-def test_an_expression_in_a_coordinate_is_left_and_told(person, hemisphere):
+def test_an_expression_in_a_coordinate_is_left_and_told(person, hand, hemisphere):
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
-    person.type(panel, f"{POINT}X", "=500 mm")
-    person.type(panel, "Machine", "kuka-kr16-2")
+    hand.enter(panel, f"{POINT}X", "=500 mm")
+    hand.enter(panel, "Machine", "kuka-kr16-2")
     note = person.field(panel, f"{POINT}Note")
-    person.until(lambda: note.text().startswith("Left as it was entered"), "what is kept", 10)
-    person.type(panel, f"{POINT}X", "=600 mm")
+    person.until(lambda: note.text().startswith("Left as it was entered"), "what is kept", 30)
+    hand.enter(panel, f"{POINT}X", "=600 mm")
     person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
     person.press("Cancel")
     person.panel_closed()
