@@ -105,6 +105,7 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
     along = joints[:, axis]
     if high - low < TURN:
         count = int(np.ceil(np.ptp(along) / (USABLE * (high - low)))) + more
+        count = min(count, len(bead) - 1)  # a piece has two points at least
         ends = np.round(np.linspace(0, len(bead) - 1, count + 1)).astype(int)
         return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
     if abs(along[-1] - along[0]) > ROUNDING:

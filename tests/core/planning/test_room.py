@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Limited axes: turns counted, seams moved, beads split, spirals refused."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.toolpath import Layer
 
 
 def codes(found):
@@ -42,6 +45,23 @@ def test_beads_are_split_only_where_the_stroke_is_less_than_a_turn(sliced, cell_
         assert planned.beads[0].length - 1e-6 < sum(piece.length for piece in pieces) < 2 * np.pi * radius
         for before, after in zip(pieces, pieces[1:]):
             assert np.abs(before.points[-1] - after.points[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("half", [2.0, 8.0, 20.0, 60.0])
+@pytest.mark.parametrize("kept", [2, 4, 8, 17])
+def test_beads_of_few_points_are_cut_no_finer_than_that(sliced, cell_of, with_axis_6, kept, half):
+    """An axis with hardly any stroke asks for more pieces of a coarse bead than it has segments."""
+    whole = sliced("sphere", 15.0)
+    beads = [layer.beads[0] for layer in whole.layers[:3]]
+    coarse = [bead.thinned(np.round(np.linspace(0, len(bead) - 1, kept + 1)).astype(int)) for bead in beads]
+    toolpath = dataclasses.replace(whole, layers=tuple(Layer((bead,)) for bead in coarse))
+    cell = with_axis_6(cell_of(toolpath), half)
+    found = plan_joints(toolpath, cell, JointParameters())
+    assert min(len(path.bead) for path in found.beads) >= 2
+    assert found.feasible == (not cell.limits.exceeded(found.joints).any() and not {"error"} & {
+        issue.level for issue in found.issues})
+    length = sum(bead.length for bead in coarse)
+    assert length - 1e-6 < sum(path.bead.length for path in found.beads) < 1.3 * length
 
 
 def test_an_endless_axis_accumulates(sliced, cell_of):
