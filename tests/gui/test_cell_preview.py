@@ -2,6 +2,7 @@
 """The panel of a cell shows machine, platform and nozzle as they are entered, and proposes what suits a machine."""
 
 import threading
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -189,8 +190,13 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
 
 
-def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(person, planned):
+def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(person, planned, monkeypatch):
+    def slowly(name, folders):
+        time.sleep(1.0)
+        return cell_of(name, folders)
+
     cell = planned[0]
+    monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
     api.change(cell, deposition_point=(1000, 0, 700, 0, 0, 0))
     person.double_click(cell)
     panel = person.panel(PANEL)
@@ -233,12 +239,17 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
     def proposing(name, folders):
         raise RuntimeError("broken")
 
+    def slowly(name, folders):
+        time.sleep(1.0)
+        return cell_of(name, folders)
+
     def cancelled(work, title):
         raise Cancelled
 
     if ends == "fails":
         monkeypatch.setattr(cell_panel, "cell_of", proposing)
     else:
+        monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
         monkeypatch.setattr(cell_panel, "carry_out", cancelled)
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
