@@ -11,7 +11,7 @@ from statistics import median
 from in_window import Drawn, begin, settle
 
 FRAMES = 6
-OPENINGS = 3
+OPENINGS = 5
 SIZES = (10_000, 100_000, 300_000)
 OF_LAYER = 1000
 

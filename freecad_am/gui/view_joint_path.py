@@ -17,7 +17,6 @@ from ..core.parameters.strategy import RevolutionParameters
 from ..core.simulation.margins import from_next, speed_ratios
 from ..objects import user_machines
 from ..objects.findings import issues_of
-from ..objects.joint_path import Planned
 from .lines import DASHED, Array, Lines, Points
 from .path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
 from .path.path_view import OPTIONS, TUBES, PathView
@@ -43,11 +42,12 @@ class Course:
 
 @dataclass(frozen=True)
 class Seen:
-    """A joint path as a view sees it. limits: their name. whole: reads the result, from when the rest was read."""
+    """A joint path as a view sees it. limits: their name. whole: reads the result, or places of it, from when the rest was
+    read."""
 
     course: Course
     limits: str
-    whole: Callable[[], Planned]
+    whole: Callable[..., Any]
 
 
 class JointPathView(PathView):
@@ -87,6 +87,7 @@ class JointPathView(PathView):
             course.position[self.at], np.append(starts, len(self.at)), course.layer[self.at[starts]],
             np.where(np.isfinite(known), known, width), lambda: [path.bead for path in value.whole().joint_path.beads],
             lambda: _known_layer_height(obj) if height is None else height,
+            lambda index: value.whole(("joint_path", "beads", index, "bead"))[0],
         )
 
     def draw(self, obj: Any, value: Seen) -> None:
@@ -102,14 +103,14 @@ class JointPathView(PathView):
 
     def find_wrong(self, obj: Any) -> None:
         """The rows of the motion that the machine does not reach, or that a finding forbids a program for."""
-        motion = self.motion
+        motion, layers = self.motion, self.motion.layer[self.at]  # rising
         wrong = motion.deposit & ~self.reachable
         for issue in issues_of(obj):
             if issue.level == ERROR and issue.layer is not None:
-                here = motion.deposit & (motion.layer == issue.layer)
+                here = self.at[slice(*np.searchsorted(layers, [issue.layer, issue.layer + 1]))]
                 for column, index in ((motion.bead, issue.bead), (motion.point, issue.point)):
-                    here &= True if index is None else column == index
-                wrong |= here
+                    here = here if index is None else here[column[here] == index]
+                wrong[here] = True
         self.bad = np.flatnonzero(wrong)
 
     def updateData(self, obj: Any, name: str) -> None:

@@ -14,7 +14,7 @@ import contextlib
 import functools
 import hashlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -226,20 +226,23 @@ class Stage:
         Errors as `value`."""
         return self.partly(obj, *places)[0]
 
-    def partly(self, obj: Any, *places: store.Place) -> tuple[tuple[Any, ...], Callable[[], Any]]:
-        """`picked`, and a `reader` of the same result for when more of it is needed."""
+    def partly(self, obj: Any, *places: store.Place) -> tuple[tuple[Any, ...], Callable[..., Any]]:
+        """`picked`, and a `reader` of the same result for when more of it is needed: all of it, or given places these alone,
+        as `picked` has them."""
         _check_made(obj)
         kept, key = self._kept, obj.Key
         if kept is not None and kept[0] == key:
             whole = kept[1]
-            return tuple(functools.reduce(_step, place, whole) for place in places), lambda: whole
+            return _picked(whole, places), lambda *more: _picked(whole, more) if more else whole
         stored = store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
 
-        def read() -> Any:
+        def read(*more: store.Place) -> Any:
             kept = self._kept
             if kept is None or kept[0] != key:
+                if more:
+                    return store.picked(*stored, *more)
                 self._kept = kept = key, store.unpack(*stored)
-            return kept[1]
+            return _picked(kept[1], more) if more else kept[1]
 
         return store.picked(*stored, *places), read
 
@@ -349,6 +352,11 @@ def deferred() -> Iterator[None]:
 def _check_made(obj: Any) -> None:
     if not obj.Key:
         raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
+
+
+def _picked(value: Any, places: Sequence[store.Place]) -> tuple[Any, ...]:
+    """What is at places of a result."""
+    return tuple(functools.reduce(_step, place, value) for place in places)
 
 
 def _step(value: Any, step: str | int) -> Any:

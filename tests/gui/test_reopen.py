@@ -7,6 +7,7 @@ import FreeCAD as App
 import numpy as np
 
 from freecad_am import api
+from freecad_am.gui.path.facts import facts
 from freecad_am.gui.path.rows import Rows
 from freecad_am.objects import store
 
@@ -76,6 +77,12 @@ def test_opening_reads_what_is_drawn_alone(person, hemisphere, tmp_path, monkeyp
     assert not {again.Toolpath.Label, again.JointPath.Label, again.Program.Label} & set(read)
     view = again.JointPath.ViewObject.Proxy
     rows, margin = view.rows, view.scale.values
+    person.select(again.JointPath)
+    person.click("RoboticAM_Path")  # which tells of the last bead
+    shown = person.field(person.panel("RoboticAM_PathDock"), "facts")
+    assert shown.text().endswith(facts(rows, len(rows) - 1)) and again.JointPath.Label not in read
+    told = facts(rows, len(rows) - 2)
+    assert again.JointPath.Label not in read
     again.JointPath.ViewObject.Look = "tubes"
     assert read.count(again.JointPath.Label) == 1
     planned = api.result(again.JointPath)
@@ -85,6 +92,7 @@ def test_opening_reads_what_is_drawn_alone(person, hemisphere, tmp_path, monkeyp
     for name in ("points", "starts", "layers", "width"):
         assert np.array_equal(getattr(rows, name), getattr(whole, name)), name
     assert len(rows.beads) == len(paths) and all(one is path.bead for one, path in zip(rows.beads, paths, strict=True))
+    assert facts(rows, len(rows) - 2) == told and facts(rows, 0) != told  # as when the bead was read alone
     assert margin.shape == (len(rows),) and 0.0 < margin.min() < margin.max() <= 100.0
 
 

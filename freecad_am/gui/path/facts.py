@@ -18,7 +18,7 @@ def facts(rows: Rows, row: int) -> str:
     is told too, by which the dock counts.
     """
     index = rows.bead_of(row)
-    bead, layer = rows.beads[index], int(rows.layers[index])
+    bead, layer = rows.bead(index), int(rows.layers[index])
     first, end = np.searchsorted(rows.layers, [layer, layer + 1])
     at = row - int(rows.starts[index])
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)

@@ -25,7 +25,7 @@ PIECE = 4096  # rows of a piece, about
 class Rows:
     """n points (n, 3) mm of m beads in order. starts: (m + 1,) first row of each bead, and n. layers: (m,) of each bead,
     rising. width: (n,) mm. read: gives the beads, asked for when more than lines is drawn or told. layer_height: mm of beads
-    that know no height of their own, asked for when tubes are drawn."""
+    that know no height of their own, asked for when tubes are drawn. read_bead: gives one bead, where that is soon done."""
 
     points: Array
     starts: Index
@@ -33,6 +33,7 @@ class Rows:
     width: Array
     read: Callable[[], Sequence[Bead]]
     layer_height: Callable[[], float]
+    read_bead: Callable[[int], Bead] | None = None
 
     @classmethod
     def of(cls, beads: Sequence[Bead], layers: Sequence[int], width: float, layer_height: Callable[[], float]) -> Rows:
@@ -50,6 +51,19 @@ class Rows:
     def beads(self) -> tuple[Bead, ...]:
         """The m beads."""
         return tuple(self.read())
+
+    def bead(self, index: int) -> Bead:
+        """One of the beads. The first one that is told of is read alone; who asks for another looks through them."""
+        if self.read_bead is None or "beads" in vars(self):
+            return self.beads[index]
+        alone = self._alone
+        if not alone:
+            alone[index] = self.read_bead(index)
+        return alone[index] if index in alone else self.beads[index]
+
+    @cached_property
+    def _alone(self) -> dict[int, Bead]:
+        return {}
 
     @cached_property
     def build(self) -> Array:
