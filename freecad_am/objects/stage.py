@@ -11,10 +11,9 @@ done in another thread while the window stays alive, and be dropped at any momen
 from __future__ import annotations
 
 import contextlib
-import functools
 import hashlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -25,6 +24,7 @@ from . import expressions, faults, hooks, progress, properties, staleness, store
 from .findings import as_text, first_message, issues_of, say
 from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
+from .stored import Stored
 
 SCHEMA_VERSION = 1
 CLASS_PROPERTY = "StageClass"
@@ -75,14 +75,13 @@ class Outcome:
 Work = Callable[[], Outcome]
 
 
-class Stage:
+class Stage(Stored):
     """Base of the proxies. Class paths are a file format; nothing is kept in the proxy that must be saved."""
 
     kind: ClassVar[str] = ""
     sections: ClassVar[tuple[Section, ...]] = ()
     links: ClassVar[tuple[Link, ...]] = ()
     figures: ClassVar[tuple[tuple[str, str, str], ...]] = ()  # property, FreeCAD type, help
-    _kept: tuple[str, Any] | None = None
     _busy = False
     changes = 0  # of the inputs, counted by `staleness`
 
@@ -208,44 +207,6 @@ class Stage:
         finally:
             self._busy = False
 
-    def value(self, obj: Any) -> Any:
-        """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
-        _check_made(obj)
-        kept, key = self._kept, obj.Key  # a reader in another thread may put another one there
-        if kept is None or kept[0] != key:
-            self._kept = kept = key, store.unpack(store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label)
-        return kept[1]
-
-    def reader(self, obj: Any) -> Callable[[], Any]:
-        """What gives the stored result without the document, of which all is read now: for other threads. Errors as
-        `value`."""
-        return self.partly(obj)[1]
-
-    def picked(self, obj: Any, *places: store.Place) -> tuple[Any, ...]:
-        """Values within the stored result, by the field names and indices that lead to them, when not all of it is needed.
-        Errors as `value`."""
-        return self.partly(obj, *places)[0]
-
-    def partly(self, obj: Any, *places: store.Place) -> tuple[tuple[Any, ...], Callable[..., Any]]:
-        """`picked`, and a `reader` of the same result for when more of it is needed: all of it, or given places these alone,
-        as `picked` has them."""
-        _check_made(obj)
-        kept, key = self._kept, obj.Key
-        if kept is not None and kept[0] == key:
-            whole = kept[1]
-            return _picked(whole, places), lambda *more: _picked(whole, more) if more else whole
-        stored = store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
-
-        def read(*more: store.Place) -> Any:
-            kept = self._kept
-            if kept is None or kept[0] != key:
-                if more:
-                    return store.picked(*stored, *more)
-                self._kept = kept = key, store.unpack(*stored)
-            return _picked(kept[1], more) if more else kept[1]
-
-        return store.picked(*stored, *places), read
-
     def key(self, obj: Any) -> str:
         """Fingerprint of all inputs. Raises InputError for a missing or failed one."""
         texts = [type(self).__name__, str(SCHEMA_VERSION)]
@@ -347,20 +308,6 @@ def deferred() -> Iterator[None]:
         yield
     finally:
         _deferred -= 1
-
-
-def _check_made(obj: Any) -> None:
-    if not obj.Key:
-        raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
-
-
-def _picked(value: Any, places: Sequence[store.Place]) -> tuple[Any, ...]:
-    """What is at places of a result."""
-    return tuple(functools.reduce(_step, place, value) for place in places)
-
-
-def _step(value: Any, step: str | int) -> Any:
-    return value[step] if isinstance(step, int) else getattr(value, step)
 
 
 def stage_of(obj: Any) -> Stage | None:
