@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import FreeCAD as App
-from PySide import QtGui
 
 from .. import api
 from ..core.issues import AmError
@@ -18,6 +17,7 @@ from ..objects.program import Job, Program, Written, posted
 from ..objects.stage import Outcome
 from ..posts import catalogue
 from . import inputs, suggestions
+from .listing import listing
 from .preview import Draft
 from .preview_panel import PreviewPanel, told_stale
 from .selection import meant
@@ -60,12 +60,8 @@ class ProgramPanel(PreviewPanel):
         self._add_text()
 
     def _add_text(self) -> None:
-        self.text = QtGui.QPlainTextEdit()
-        self.text.setObjectName("FirstLines")
-        self.text.setReadOnly(True)
-        self.text.setLineWrapMode(QtGui.QPlainTextEdit.NoWrap)
-        font = QtGui.QFont("monospace")
-        font.setStyleHint(QtGui.QFont.TypeWriter)
+        self.text = listing("FirstLines")
+        font = self.text.font()
         font.setPointSizeF(max(LEAST, SMALLER * self.form.font().pointSizeF()))
         self.text.setFont(font)
         self.text.setFixedHeight(HIGH * self.text.fontMetrics().lineSpacing())

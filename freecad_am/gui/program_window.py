@@ -16,6 +16,7 @@ from ..objects import preferences
 from ..objects.staleness import UP_TO_DATE
 from . import icons
 from .colours import WRONG
+from .listing import listing
 from .simulation import told
 from .simulation.run import run_of
 from .texts import error_line, tr, translated, translated_error
@@ -41,13 +42,7 @@ class ProgramWindow:
         self.sums.setWordWrap(True)
         self.choice = QtGui.QComboBox()
         self.choice.setObjectName("file")
-        self.text = QtGui.QPlainTextEdit()
-        self.text.setObjectName("text")
-        self.text.setReadOnly(True)
-        self.text.setLineWrapMode(QtGui.QPlainTextEdit.NoWrap)
-        font = QtGui.QFont("monospace")
-        font.setStyleHint(QtGui.QFont.TypeWriter)
-        self.text.setFont(font)
+        self.text = listing("text")
         self.export_button = _button(
             tr("Export…"), "export", tr("Writes all files of the program into a folder"), self._export
         )

@@ -16,9 +16,9 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation.placing import at_rest
 from freecad_am.gui import cell_panel
 from freecad_am.gui.cell_nodes import resting_point
-from freecad_am.gui.preview import NAME
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.progress import Cancelled
+from tests.gui.previews import drawn_by_previews
 
 PANEL = "RoboticAM_Cell"
 POINT = "DepositionPoint"
@@ -27,21 +27,10 @@ POINT = "DepositionPoint"
 def previewed(person):
     """The poses (n, 4, 4) of what previews draw: platform, nozzle, then the links of the machine, base first; None without
     a preview."""
-    from pivy import coin
-
-    search = coin.SoSearchAction()
-    search.setName(NAME)
-    search.setSearchingAll(True)
-    search.apply(person.gui.activeDocument().activeView().getSceneGraph())
-    if search.getPath() is None:
+    nodes = drawn_by_previews(person, "SoMatrixTransform")
+    if nodes is None:
         return None
-    inside = coin.SoSearchAction()
-    inside.setType(coin.SoMatrixTransform.getClassTypeId())
-    inside.setInterest(coin.SoSearchAction.ALL)
-    inside.setSearchingAll(True)
-    inside.apply(search.getPath().getTail())
-    paths = inside.getPaths()
-    poses = [paths[k].getTail().matrix.getValue().getValue() for k in range(paths.getLength())]
+    poses = [node.matrix.getValue().getValue() for node in nodes]
     return np.array(poses).reshape(-1, 4, 4).transpose(0, 2, 1)
 
 

@@ -11,7 +11,7 @@ from freecad_am import api
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.core.planning.judgement import judged
 from freecad_am.gui import joint_path_panel
-from freecad_am.gui.preview import NAME
+from tests.gui.previews import drawn_by_previews
 
 PANEL = "RoboticAM_JointPath"
 
@@ -30,19 +30,8 @@ def stages(person, hemisphere):
 
 def first_of(person, kind):
     """The first node of a kind, of Coin, that previews draw; None without a preview."""
-    from pivy import coin
-
-    search = coin.SoSearchAction()
-    search.setName(NAME)
-    search.setSearchingAll(True)
-    search.apply(person.gui.activeDocument().activeView().getSceneGraph())
-    if search.getPath() is None:
-        return None
-    inside = coin.SoSearchAction()
-    inside.setType(getattr(coin, kind).getClassTypeId())
-    inside.setSearchingAll(True)
-    inside.apply(search.getPath().getTail())
-    return inside.getPath().getTail()
+    nodes = drawn_by_previews(person, kind)
+    return None if nodes is None else nodes[0]
 
 
 def drawn(person):

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What previews draw, found in the scene."""
+
+from freecad_am.gui.preview import NAME
+
+
+def drawn_by_previews(person, kind):
+    """The nodes of a kind, of Coin, in the order they are drawn; None without a preview."""
+    from pivy import coin
+
+    search = coin.SoSearchAction()
+    search.setName(NAME)
+    search.setSearchingAll(True)
+    search.apply(person.gui.activeDocument().activeView().getSceneGraph())
+    if search.getPath() is None:
+        return None
+    inside = coin.SoSearchAction()
+    inside.setType(getattr(coin, kind).getClassTypeId())
+    inside.setInterest(coin.SoSearchAction.ALL)
+    inside.setSearchingAll(True)
+    inside.apply(search.getPath().getTail())
+    paths = inside.getPaths()
+    return [paths[k].getTail() for k in range(paths.getLength())]
