@@ -208,12 +208,6 @@ class CellPanel(PreviewPanel):
 
     # ---- preview
 
-    def _lacks(self) -> str:
-        return ""
-
-    def _links(self) -> dict[str, Any]:
-        return {}
-
     def _entered(self) -> Any:
         toolpath = self._toolpath()
         return *super()._entered(), self.machine_box.isChecked(), None if toolpath is None else toolpath.Key
@@ -236,8 +230,9 @@ class CellPanel(PreviewPanel):
         if self.obj is not None:
             return toolpath_of(self.obj)
         known = [obj for obj in self.document.Objects if getattr(stage_of(obj), "kind", "") == "toolpath" and obj.Key]
-        chosen = [obj for obj in meant(self.document.Name) if obj in known] or known
-        return chosen[0] if len(chosen) == 1 else None
+        if len(known) > 1:
+            known = [obj for obj in meant(self.document.Name) if obj in known]
+        return known[0] if len(known) == 1 else None
 
     def _draw(self, made: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)

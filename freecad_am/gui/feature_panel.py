@@ -30,12 +30,6 @@ class FeaturePanel(PreviewPanel):
         super().__init__(title, inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
         self.say("")  # what is missing is told where the preview will be
 
-    def _lacks(self) -> str:
-        return next((choice.missing for choice in self.choices if choice.missing), "")
-
-    def _links(self) -> dict[str, Any]:
-        return {choice.link.name: choice.value() for choice in self.choices}
-
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
         draft.check()
         work, strategy = draft.prepare(), draft.stage.parameters(draft.obj, RevolutionParameters)

@@ -52,12 +52,6 @@ class JointPathPanel(PreviewPanel):
             tr("Joint path") if obj is None else obj.Label, inputs.of(JointPath, obj), obj, JointPathNodes()
         )
 
-    def _lacks(self) -> str:
-        return next((choice.missing for choice in self.choices if choice.missing), "")
-
-    def _links(self) -> dict[str, Any]:
-        return {choice.link.name: choice.value() for choice in self.choices}
-
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Trial]]:
         job = draft.stage.job(draft.obj)
         toolpath, stale = draft.obj.Toolpath, self._stale_inputs()

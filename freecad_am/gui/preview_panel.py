@@ -57,11 +57,11 @@ class PreviewPanel(StagePanel):
 
     def _lacks(self) -> str:
         """What is to be entered first, '' for nothing."""
-        raise NotImplementedError
+        return next((choice.missing for choice in self.choices if choice.missing), "")
 
     def _links(self) -> dict[str, Any]:
         """The inputs as the links of the stage hold them."""
-        raise NotImplementedError
+        return {choice.link.name: choice.value() for choice in self.choices}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
         """The work, which leaves the document alone, that makes what is entered, and what is drawn of it. Both raise

@@ -71,9 +71,6 @@ class ProgramPanel(PreviewPanel):
         self.text.hide()
         self.column.insertWidget(self.column.indexOf(self.state) + 1, self.text)
 
-    def _lacks(self) -> str:
-        return next((choice.missing for choice in self.choices if choice.missing), "")
-
     def _links(self) -> dict[str, Any]:
         path = next(choice for choice in self.choices if choice is not self.name)
         return {path.link.name: path.value(), "ProgramName": self.name.widget.text().strip()}

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..core.issues import InputError
+from ..core.kinematics.cell import mounted
 from ..objects import user_machines
 from ..objects.stage import stage_of
 from ..objects.store import Place
@@ -45,8 +46,7 @@ class CellView(StageView):
         if standing is not None:
             points, tools, frame, family = standing
             tip, axis = points[-1], tools[-1]
-            by_part = value.mount == "part" or (value.mount == "auto" and family != "revolution")
-            mount = np.eye(4) if by_part else frame
+            mount = mounted(value, frame, family)
         self.nodes.set(without_machine(value, tip, axis, mount))
 
     def follow(self) -> None:

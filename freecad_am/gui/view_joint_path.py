@@ -42,12 +42,11 @@ class Course:
 
 @dataclass(frozen=True)
 class Seen:
-    """A joint path as a view sees it. limits: their name. whole: reads the result, or places of it, from when the rest was
-    read."""
+    """A joint path as a view sees it. limits: their name. read: gives the result that this is of, or places of it."""
 
     course: Course
     limits: str
-    whole: Callable[..., Any]
+    read: Callable[..., Any]
 
 
 class JointPathView(PathView):
@@ -75,8 +74,9 @@ class JointPathView(PathView):
     def read(self, obj: Any) -> Seen:
         """What of the result is drawn."""
         columns = [("motion", column.name) for column in fields(Course)]
-        (limits, *found), whole = obj.Proxy.partly(obj, ("joint_path", "limits"), *columns)
-        return Seen(Course(*found), limits, whole)
+        read = obj.Proxy.reader(obj)
+        limits, *found = read(("joint_path", "limits"), *columns)
+        return Seen(Course(*found), limits, read)
 
     def rows_of(self, obj: Any, value: Seen) -> Rows:
         course, width = value.course, width_of(_linked(obj))
@@ -85,9 +85,9 @@ class JointPathView(PathView):
         known = course.width[self.at]
         return Rows(
             course.position[self.at], np.append(starts, len(self.at)), course.layer[self.at[starts]],
-            np.where(np.isfinite(known), known, width), lambda: [path.bead for path in value.whole().joint_path.beads],
+            np.where(np.isfinite(known), known, width), lambda: [path.bead for path in value.read().joint_path.beads],
             lambda: _known_layer_height(obj) if height is None else height,
-            lambda index: value.whole(("joint_path", "beads", index, "bead"))[0],
+            lambda index: value.read(("joint_path", "beads", index, "bead"))[0],
         )
 
     def draw(self, obj: Any, value: Seen) -> None:
@@ -134,14 +134,14 @@ class JointPathView(PathView):
 
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
         if kind == CONDITION:
-            condition = np.concatenate([path.condition for path in self.seen.whole().joint_path.beads])
+            condition = np.concatenate([path.condition for path in self.seen.read().joint_path.beads])
             return by_machine(np.where(self.reachable[self.at], condition, np.nan), kind)
         if kind in (MARGIN, RATIO):
             try:
                 return by_machine(_of_machine(obj, self.seen, kind)[self.at], kind)
             except InputError as error:
                 return unknown(len(self.at), kind, error.message)
-        planned = self.seen.whole().joint_path
+        planned = self.seen.read().joint_path
         return coloured(planned.toolpath(_toolpath_of(obj)), kind, band_of(obj.Toolpath))
 
     def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
@@ -184,5 +184,5 @@ def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
         raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
     if kind == MARGIN:
         return limits.smallest_share(joints)
-    motion = seen.whole().motion
+    motion = seen.read().motion
     return from_next(motion.deposit, motion.point, speed_ratios(joints, motion.duration, machine.max_speed).max(axis=1))

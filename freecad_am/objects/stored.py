@@ -18,41 +18,33 @@ class Stored:
 
     def value(self, obj: Any) -> Any:
         """The stored result, read when first asked for. InputError 'NO_RESULT' when there is none."""
-        _check_made(obj)
-        kept, key = self._kept, obj.Key  # a reader in another thread may put another one there
-        if kept is None or kept[0] != key:
-            self._kept = kept = key, store.unpack(store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label)
-        return kept[1]
-
-    def reader(self, obj: Any) -> Callable[[], Any]:
-        """What gives the stored result without the document, of which all is read now: for other threads. Errors as
-        `value`."""
-        return self.partly(obj)[1]
+        return self.reader(obj)()
 
     def picked(self, obj: Any, *places: store.Place) -> tuple[Any, ...]:
         """Values within the stored result, by the field names and indices that lead to them, when not all of it is needed.
         Errors as `value`."""
-        return self.partly(obj, *places)[0]
+        return tuple(self.reader(obj)(*places))
 
-    def partly(self, obj: Any, *places: store.Place) -> tuple[tuple[Any, ...], Callable[..., Any]]:
-        """`picked`, and a `reader` of the same result for when more of it is needed: all of it, or given places these alone,
-        as `picked` has them."""
+    def reader(self, obj: Any) -> Callable[..., Any]:
+        """What gives the stored result of now, or given places these alone, as `value` and `picked` do, without the document,
+        for other threads, and for when more of it may be needed. Errors as `value`, those of what is damaged when it reads.
+        """
         _check_made(obj)
         kept, key = self._kept, obj.Key
         if kept is not None and kept[0] == key:
             whole = kept[1]
-            return _picked(whole, places), lambda *more: _picked(whole, more) if more else whole
+            return lambda *places: _at(places, whole)
         stored = store.numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
 
-        def read(*more: store.Place) -> Any:
-            kept = self._kept
+        def read(*places: store.Place) -> Any:
+            kept = self._kept  # which another thread may have put there
             if kept is None or kept[0] != key:
-                if more:
-                    return store.picked(*stored, *more)
+                if places:
+                    return store.picked(*stored, *places)
                 self._kept = kept = key, store.unpack(*stored)
-            return _picked(kept[1], more) if more else kept[1]
+            return _at(places, kept[1])
 
-        return store.picked(*stored, *places), read
+        return read
 
 
 def _check_made(obj: Any) -> None:
@@ -60,9 +52,9 @@ def _check_made(obj: Any) -> None:
         raise InputError("NO_RESULT", obj.Label, "there is no result yet; recompute it")
 
 
-def _picked(value: Any, places: Sequence[store.Place]) -> tuple[Any, ...]:
-    """What is at places of a result."""
-    return tuple(functools.reduce(_step, place, value) for place in places)
+def _at(places: Sequence[store.Place], value: Any) -> Any:
+    """What is at places of a result, all of it without any."""
+    return tuple(functools.reduce(_step, place, value) for place in places) if places else value
 
 
 def _step(value: Any, step: str | int) -> Any:

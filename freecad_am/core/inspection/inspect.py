@@ -24,6 +24,7 @@ from .registration import (
     by_extents,
     by_pairs,
     mean_square,
+    refuse_too_few,
     register,
     roughly,
 )
@@ -63,11 +64,7 @@ class Inspected:
 
 def inspect(measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report) -> Inspected:
     """Lay measured points onto the planned surface and judge them. InputError; InfeasibleError NOT_SETTLED."""
-    if len(measured.points) < LEAST_POINTS:
-        raise InputError(
-            "TOO_FEW_POINTS", measured.label,
-            f"{len(measured.points)} points do not hold a part; measure {LEAST_POINTS} or more all over",
-        )
+    refuse_too_few(measured.points, measured.label)
     report(0.05, "laying the points onto the part")
     found, counted, distances = _laid(measured, planned, parameters)
     report(0.6, "sphericity and circularity")

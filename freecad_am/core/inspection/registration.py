@@ -54,6 +54,14 @@ class Registration:
         return float(np.sqrt((self.distance[self.used] ** 2).mean()))
 
 
+def refuse_too_few(points: Array, where: str) -> None:
+    """InputError TOO_FEW_POINTS, naming `where`, when points (n, 3) are fewer than hold a part in its place."""
+    if len(points) < LEAST_POINTS:
+        raise InputError(
+            "TOO_FEW_POINTS", where, f"{len(points)} points do not hold a part; measure {LEAST_POINTS} or more all over",
+        )
+
+
 def register(
     points: Array, surface: Surface, starts: Iterable[Array], where: str, trim: float = 0.0, radius: float = 0.0,
     allowed: Array | None = None, free: float = FREE,
@@ -67,10 +75,7 @@ def register(
     free: motions that distances feel by no more than this share of the one they feel most are not made.
     Raises InputError for too few points; InfeasibleError NOT_SETTLED naming `where`.
     """
-    if len(points) < LEAST_POINTS:
-        raise InputError(
-            "TOO_FEW_POINTS", where, f"{len(points)} points do not hold a part; measure {LEAST_POINTS} or more all over",
-        )
+    refuse_too_few(points, where)
     if not 0.0 <= trim < 0.5:
         raise InputError("OUT_OF_RANGE", where, f"{trim:g} of the points left out, expected 0 or more and less than 0.5")
     best = roughly(points, surface, starts, trim, radius, allowed, free)

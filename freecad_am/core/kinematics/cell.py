@@ -169,6 +169,12 @@ def _moved_by(frame: Array, poses: Array) -> Array:
     return moved
 
 
+def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:
+    """(4, 4) what sits on the platform, in part coordinates: the feature's own frame (4, 4), or that of the part file."""
+    mount = parameters.mount if parameters.mount != "auto" else ("feature" if family == "revolution" else "part")
+    return np.array(feature_frame) if mount == "feature" else np.eye(4)
+
+
 def resolve(
     parameters: CellParameters, feature_frame: Array, family: str = "revolution", folders: Sequence[str] = ()
 ) -> Cell:
@@ -195,7 +201,6 @@ def resolve(
             "NO_CLOSED_FORM", "cell.machine",
             f"{machine.title} has no spherical wrist; choose a robot that has one (see `freecad-am machines`)",
         )
-    mount = parameters.mount if parameters.mount != "auto" else ("feature" if family == "revolution" else "part")
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     carried = parameters.nozzle.tool if parameters.setup == TOOL_ON_ROBOT else platform_pose
@@ -207,7 +212,7 @@ def resolve(
         setup=parameters.setup,
         station=machine.base @ station,
         carried=frames.bryant(carried),
-        mount=np.array(feature_frame) if mount == "feature" else np.eye(4),
+        mount=mounted(parameters, feature_frame, family),
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
