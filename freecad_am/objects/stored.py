@@ -26,8 +26,9 @@ class Stored:
         return tuple(self.reader(obj)(*places))
 
     def reader(self, obj: Any) -> Callable[..., Any]:
-        """What gives the stored result of now, or given places these alone, as `value` and `picked` do, without the document,
-        for other threads, and for when more of it may be needed. Errors as `value`, those of what is damaged when it reads.
+        """What gives the stored result of now, or given places these alone, as `value` and `picked` do, without the
+        document: for other threads, and for when more of it may be needed. Errors as `value`, those of what is damaged when
+        it reads.
         """
         _check_made(obj)
         kept, key = self._kept, obj.Key
