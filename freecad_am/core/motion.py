@@ -3,7 +3,10 @@
 
 Per bead come its rapid rows (retract from the bead before, lifted approach, down onto the start) and then all
 its deposit rows; the first deposit row repeats the place of the last rapid row and takes no time, so that
-a bead's rows are complete. After the last bead one rapid row lifts off.
+a bead's rows are complete. After the last bead the tool is retracted.
+
+A rapid is driven straight in the joints and stops at each of its rows; a bead passes through its rows and stops at its end.
+What is straight within a bead, joints or tip, the program decides.
 """
 
 from __future__ import annotations
@@ -14,6 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Roles = NDArray[np.int64]
+
+# what the move that ends at a row is for: with deposit; away from the bead before; over to the next; onto its start
+DEPOSIT, RETRACT, TRAVEL, APPROACH = range(4)
 
 
 @dataclass(frozen=True)
@@ -24,7 +31,8 @@ class Motion:
     build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the segment that ends at the row. width: (n,) mm,
     NaN without a bead model. joints: (n, axes) unwrapped along the whole job, NaN where unreachable.
     duration: (n,) s of the segment that ends at the row. wire: (n,) mm/s of the wire on that segment where it follows the
-    travel speed, else NaN, as when left out.
+    travel speed, else NaN, as when left out. role: (n,) DEPOSIT, RETRACT, TRAVEL or APPROACH; left out, as in documents from
+    before there was one, it is that of one retract and one approach row between beads, and of none where there are too few.
     """
 
     deposit: NDArray[np.bool_]
@@ -39,9 +47,12 @@ class Motion:
     joints: Array
     duration: Array
     wire: Array = None  # type: ignore[assignment]
+    role: Roles = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
+        if self.role is None:
+            object.__setattr__(self, "role", _roles(self.deposit))
         if self.wire is None:
             object.__setattr__(self, "wire", np.full(n, np.nan))
         for field in fields(self):
@@ -59,6 +70,12 @@ class Motion:
         return np.asarray(~(self.deposit & (self.point == 0)), dtype=np.bool_)
 
     @property
+    def stops(self) -> NDArray[np.bool_]:
+        """(n,) bool: the rows at which the machine comes to a stop: all of a rapid, and the last of each bead."""
+        last = np.append(~self.deposit[1:] | (self.point[1:] == 0), True)[: len(self)]
+        return np.asarray(~self.deposit | last, dtype=np.bool_)
+
+    @property
     def reachable(self) -> NDArray[np.bool_]:
         """(n,) bool: rows with joint values."""
         return np.asarray(np.isfinite(self.joints).all(axis=1), dtype=np.bool_)
@@ -67,3 +84,19 @@ class Motion:
     def total_time(self) -> float:
         """Time of all moves, s; waits and lead times not counted."""
         return float(self.duration.sum())
+
+
+def _roles(deposit: NDArray[np.bool_]) -> Roles:
+    """(n,) what the rows are for, by what stands before and after them."""
+    role = np.where(deposit, DEPOSIT, TRAVEL).astype(np.int64)
+    edges = np.concatenate([[0], np.flatnonzero(deposit[1:] != deposit[:-1]) + 1, [len(deposit)]])
+    for start, end in zip(edges[:-1].tolist(), edges[1:].tolist()):
+        if start == end or deposit[start]:
+            continue
+        first, last = start == 0, end == len(deposit)
+        if last and not first:
+            role[start:end] = RETRACT
+        elif not last and end - start >= (2 if first else 3):
+            role[end - 1] = APPROACH
+            role[start] = role[start] if first else RETRACT
+    return role

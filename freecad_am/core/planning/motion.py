@@ -14,7 +14,7 @@ from ..geometry.surroundings import Body
 from ..issues import ERROR, NOTE, Issue
 from ..kinematics import opw
 from ..kinematics.cell import Cell
-from ..motion import Motion
+from ..motion import APPROACH, DEPOSIT, RETRACT, TRAVEL, Motion
 from ..parameters.process import ProcessParameters
 from . import table
 from .joint_path import BeadPath, JointPath
@@ -37,7 +37,7 @@ FURTHER = 1.5
 class _Rows:
     """Some rows of a motion before they are joined."""
 
-    deposit: bool
+    role: NDArray[np.int64]
     layer: int
     bead: int
     position: Array
@@ -131,14 +131,14 @@ def _with_rapids(joint_path: JointPath, cell: Cell, process: ProcessParameters, 
     parts: list[_Rows] = []
     before: BeadPath | None = None
     for path, lift in zip(joint_path.beads, lifts):
-        waypoints = [path.joints[0]]
+        waypoints, roles = [path.joints[0]], [TRAVEL]
         if lift > 0.0:
-            waypoints.insert(0, _lifted(path, 0, cell, branch, lift))
+            waypoints, roles = [_lifted(path, 0, cell, branch, lift), *waypoints], [TRAVEL, APPROACH]
             if before is not None:
-                waypoints.insert(0, _lifted(before, -1, cell, branch, lift))
+                waypoints, roles = [_lifted(before, -1, cell, branch, lift), *waypoints], [RETRACT, *roles]
         if before is not None:
-            waypoints = _shorter_turns([before.joints[-1], *waypoints], cell.limits.endless)[1:]
-        parts.append(_rapid(path, waypoints, cell, lift))
+            waypoints, roles = _shorter_turns([before.joints[-1], *waypoints], roles, cell.limits.endless)
+        parts.append(_rapid(path, waypoints, roles, cell, lift))
         parts.append(_deposit(path))
         before = path
     if before is not None and process.between_layers.lift > 0.0:
@@ -161,17 +161,21 @@ def _lifted(path: BeadPath, index: int, cell: Cell, branch: int | None, lift: fl
     return moved
 
 
-def _shorter_turns(waypoints: Sequence[Array], endless: NDArray[np.bool_]) -> list[Array]:
-    """The waypoints, with more on the straight way in the joints where an endless axis would turn too far at once."""
-    result = [waypoints[0]]
-    for start, end in zip(waypoints[:-1], waypoints[1:]):
+def _shorter_turns(
+    waypoints: Sequence[Array], roles: Sequence[int], endless: NDArray[np.bool_]
+) -> tuple[list[Array], list[int]]:
+    """The waypoints after the first and their roles, with more on the straight way in the joints where an endless axis would
+    turn too far at once."""
+    result, of = [], []
+    for start, end, role in zip(waypoints[:-1], waypoints[1:], roles):
         turn = float(np.nan_to_num(np.abs(end - start)[endless]).max(initial=0.0))
         moves = max(1, math.ceil(turn / LARGEST_TURN))
         result += [start + (end - start) * (k / moves) for k in range(1, moves)] + [end]
-    return result
+        of += [role] * moves
+    return result, of
 
 
-def _rapid(path: BeadPath, waypoints: Sequence[Array], cell: Cell, lift: float) -> _Rows:
+def _rapid(path: BeadPath, waypoints: Sequence[Array], roles: Sequence[int], cell: Cell, lift: float) -> _Rows:
     joints = np.array(waypoints)
     flange = cell.machine.chain.forward(np.nan_to_num(joints))
     position, tool = cell.tip_in_part(flange)
@@ -181,14 +185,14 @@ def _rapid(path: BeadPath, waypoints: Sequence[Array], cell: Cell, lift: float) 
     build = tool.copy()
     build[-1] = path.bead.build[0]
     none = np.full(len(joints), np.nan)
-    return _Rows(False, path.layer, path.index, position, build, tool, none, none, joints, none, none)
+    return _Rows(np.array(roles), path.layer, path.index, position, build, tool, none, none, joints, none, none)
 
 
 def _retract(path: BeadPath, joints: Array, lift: float) -> _Rows:
     tool = path.bead.tool[-1:]
     none = np.full(1, np.nan)
-    return _Rows(False, path.layer, path.index, path.bead.points[-1:] + lift * tool, path.bead.build[-1:], tool, none,
-                 none, joints[None], none, none)
+    return _Rows(np.array([RETRACT]), path.layer, path.index, path.bead.points[-1:] + lift * tool, path.bead.build[-1:],
+                 tool, none, none, joints[None], none, none)
 
 
 def _deposit(path: BeadPath) -> _Rows:
@@ -198,7 +202,8 @@ def _deposit(path: BeadPath) -> _Rows:
     width = np.full(len(bead), np.nan) if bead.width is None else bead.width
     wire = np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
     return _Rows(
-        True, path.layer, path.index, bead.points, bead.build, bead.tool, bead.speed, width, path.joints, duration, wire
+        np.full(len(bead), DEPOSIT), path.layer, path.index, bead.points, bead.build, bead.tool, bead.speed, width,
+        path.joints, duration, wire,
     )
 
 
@@ -206,7 +211,7 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     counts = [len(part.joints) for part in parts]
     columns = {
         field.name: np.concatenate([getattr(part, field.name) for part in parts])
-        for field in fields(_Rows) if field.name not in ("deposit", "layer", "bead")
+        for field in fields(_Rows) if field.name not in ("layer", "bead")
     }
     joints, position, duration = columns["joints"], columns["position"], columns["duration"]
     distance = np.concatenate([[0.0], np.linalg.norm(np.diff(position, axis=0), axis=1)])
@@ -220,9 +225,9 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
     speed[0] = process.rapid_speed if rapid[0] else speed[0]
     number = {name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in ("layer", "bead")}
     return Motion(
-        deposit=np.repeat([part.deposit for part in parts], counts),
+        deposit=columns["role"] == DEPOSIT,
         layer=number["layer"], bead=number["bead"],
         point=np.concatenate([np.arange(count) for count in counts]),
         position=position, build=columns["build"], tool=columns["tool"], speed=speed, width=columns["width"],
-        joints=joints, duration=duration, wire=columns["wire"],
+        joints=joints, duration=duration, wire=columns["wire"], role=columns["role"],
     )

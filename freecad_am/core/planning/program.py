@@ -13,7 +13,7 @@ from ..issues import InputError
 from ..kinematics import opw
 from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell
 from ..kinematics.machine import Machine
-from ..motion import Motion
+from ..motion import APPROACH, RETRACT, Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
 from ..program import (
@@ -124,17 +124,9 @@ def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
             f"there is no bead {start.bead} in a layer {start.layer}; the job has layers 0 to {motion.layer.max()}",
         )
     first = int(np.flatnonzero(run)[0])
-    if first > 0 and _has_retract(motion, first):
-        run[first] = False
+    ahead = np.arange(len(motion)) < first + int(motion.deposit[first:].argmax())
+    run[ahead & (motion.role == RETRACT)] = False
     return np.asarray(run, dtype=np.bool_)
-
-
-def _has_retract(motion: Motion, first: int) -> bool:
-    """True when the rapid rows that start here begin with the withdrawal from the bead before."""
-    rapids = 0
-    while not motion.deposit[first + rapids]:
-        rapids += 1
-    return rapids >= 3
 
 
 def _blocks(
@@ -146,9 +138,12 @@ def _blocks(
         place = int(motion.layer[rows[-1]]), int(motion.bead[rows[-1]])
         if process.cooling.below is None or place not in returns:
             return [_moves(motion, cell, rows, RAPID, parameters, arriving)]
-        above = [_moves(motion, cell, rows[:-1], RAPID, parameters, arriving)] if len(rows) > 1 else []
+        onto = motion.role[rows] == APPROACH
+        if not onto.any():
+            onto[-1] = True
+        above = [_moves(motion, cell, rows[~onto], RAPID, parameters, arriving)] if not onto.all() else []
         value = process.cooling.zero + process.cooling.gain * process.cooling.below
-        down = _moves(motion, cell, rows[-1:], RAPID, parameters, arriving and not above)
+        down = _moves(motion, cell, rows[onto], RAPID, parameters, arriving and not above)
         return [*above, WaitBelow(process.cooling.input, value, *place), down]
 
     run = rows_from(motion, parameters.start_at)
@@ -172,12 +167,12 @@ def _blocks(
         elif here == layer:
             blocks += approach(rows)
         else:
-            withdrawal, onward = (rows[:1], rows[1:]) if len(rows) >= 3 else (rows[:0], rows)
-            if len(withdrawal):
-                blocks.append(_moves(motion, cell, withdrawal, RAPID, parameters))
+            retract = motion.role[rows] == RETRACT
+            if retract.any():
+                blocks.append(_moves(motion, cell, rows[retract], RAPID, parameters))
             blocks += _between(process.between_layers, waits[here] if len(waits) else 0.0)
             blocks.append(LayerStart(here))
-            blocks += approach(onward)
+            blocks += approach(rows[~retract])
         layer = here
     return tuple(blocks)
 
