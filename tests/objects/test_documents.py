@@ -24,6 +24,7 @@ IN_ROWS = {
     "JointPath": "66cc8fb7123c35847e5a3021e02e9d578c0ded93ada6d05a2e8a365f51c443b6",
     "Program": "112b574e451870c0bc54f0d48b88b99bb7533aedd47e25faf14f1fa2da69d313",
 }
+ADDED = ("role",)  # columns that there were not then, and that are derived
 
 
 def fingerprint(value):
@@ -42,7 +43,8 @@ def parts(value):
             yield from parts(entry)
     elif dataclasses.is_dataclass(value):
         for field in dataclasses.fields(value):
-            yield from parts(getattr(value, field.name))
+            if field.name not in ADDED:
+                yield from parts(getattr(value, field.name))
     elif isinstance(value, (tuple, list)):
         for entry in value:
             yield from parts(entry)
@@ -194,6 +196,9 @@ def test_results_of_an_old_document_are_read_to_the_last_bit_and_stored_anew(tmp
             obj = document.getObject(name)
             monkeypatch.setattr(type(obj.Proxy), "prepare", lambda self, obj: pytest.fail("computed"))
             assert obj.Status == "up to date" and fingerprint(api.result(obj)) == expected
+            if name == "JointPath":
+                motion = api.result(obj).motion
+                assert set(motion.role.tolist()) == {0, 1, 2, 3} and ((motion.role == 0) == motion.deposit).all()
             obj.ResultData, obj.ResultLayout = store.pack(api.result(obj), obj.Key)
         size = (tmp_path / "rows.FCStd").stat().st_size
         document.save()
