@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Makes FreeCAD importable in whatever Python runs the tests, and skips GUI tests where there is no window."""
 
+import os
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -16,10 +18,32 @@ host.find_freecad()
 import FreeCAD  # noqa: E402
 
 
-def pytest_collection_modifyitems(items):
+def pytest_addoption(parser):
+    parser.addoption("--long", action="store_true", help="run what is marked as long too (docs/testing.md)")
+
+
+def pytest_collection_modifyitems(config, items):
+    named = tuple(word for word in config.args if "::" in word)  # one that is named runs in any case
+    long = [item for item in items if item.get_closest_marker("long") and not item.nodeid.startswith(named)]
+    if long and not config.option.long:
+        config.hook.pytest_deselected(items=long)
+        items[:] = [item for item in items if item not in long]
     for item in items:
         if item.get_closest_marker("gui") and not FreeCAD.GuiUp:
             item.add_marker(pytest.mark.skip(reason="no FreeCAD main window: ./freecad-am test opens one under Xvfb"))
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item):
+    """Adds what a test took, and the fixtures made for it, to the file of TEST_TIMES: s, s of processor, name."""
+    began, before = time.monotonic(), os.times()
+    yield
+    file = os.environ.get("TEST_TIMES")
+    if file:
+        after = os.times()
+        used = sum(after[:4]) - sum(before[:4])  # its own and that of processes that ended
+        with open(file, "a", encoding="utf-8") as stream:
+            stream.write(f"{time.monotonic() - began:.2f}\t{used:.2f}\t{item.nodeid}\n")
 
 
 @pytest.fixture

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs every test: plain and headless ones here, those of the window in FreeCAD under Xvfb; sums all up.
+"""Runs the tests: plain and headless ones here, those of the window in FreeCAD under Xvfb; sums all up.
 
-Arguments go to pytest, both times. `--with-freecad 1.0` first among them runs what depends on FreeCAD's version in that
-version too, at the same time as the tests here (tests/versions/run.sh).
+Arguments go to pytest, both times; `--long` among them adds the tests that are marked as long (docs/testing.md).
+`--with-freecad 1.0` first among them runs what depends on FreeCAD's version in that version too, at the same time as the
+tests here (tests/versions/run.sh).
 """
 
 import os
@@ -31,6 +32,7 @@ NOT_OF_VERSION = "tests/posts/test_interpreters.py"
 FAILED, NO_TESTS, UNABLE = 1, 5, 77  # statuses of pytest, and of tests/versions/run.sh
 TOO_LONG = 124  # of timeout
 SIGNS = {".": "passed", "F": "failed", "E": "failed", "s": "skipped"}  # of pytest, one per test
+LONG = "--long"  # of tests/conftest.py
 FEW = 8  # tests of the window that are run again when they failed
 SCREEN = "-screen 0 1400x900x24 -dpi 96 -nolisten tcp"
 PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
@@ -134,7 +136,8 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
     status, text, failures = in_window(freecad, arguments)
     # FreeCAD leaves a crash with the status of failed tests, but without pytest's summary
     ended = status == FAILED and counts(text)["failed"] > 0
-    if not ended or len(failures) > FEW or any(word.startswith("-") for word in arguments):
+    chosen = any(word.startswith("-") and word != LONG for word in arguments)
+    if not ended or len(failures) > FEW or chosen:
         return status, text
     print(f"freecad-am: {len(failures)} failed and run once more: {' '.join(failures)}", flush=True)
     again, second, _ = in_window(freecad, failures)

@@ -16,7 +16,9 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 # handled by the launcher: what may follow
-LAUNCHED = {"demo": r"(-o \S+)?", "test": r"(--freecad 1\.[01])? ?[\w/.]*", "bench": r"(kinematics|planning|whole)?"}
+LAUNCHED = {
+    "demo": r"(-o \S+)?", "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*", "bench": r"(kinematics|planning|whole)?",
+}
 
 
 def name_of(path):

@@ -2,6 +2,8 @@
 """The runner itself: what it makes of tests of the window that fail, and of a FreeCAD that crashes."""
 
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -72,6 +74,41 @@ def test_options_of_pytest_are_its_own(windows):
     waiting, asked = windows
     waiting.append((1, ENDED.format(1, 3), ["a"]))
     assert run.run_window_tests(["-x", "tests/gui"])[0] == 1 and len(asked) == 1
+
+
+def test_long_ones_leave_the_second_try(windows):
+    waiting, asked = windows
+    waiting += [(1, ENDED.format(1, 3), ["a"]), (0, "1 passed in 9.00s", [])]
+    assert run.run_window_tests(["--long", "tests/gui"])[0] == 0 and asked == [["--long", "tests/gui"], ["a"]]
+
+
+LONG = """\
+import pytest
+
+@pytest.mark.long
+def test_a():
+    pass
+
+def test_b():
+    pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "ran"),
+    [(["."], "1 passed, 1 deselected"), (["--long", "."], "2 passed"), (["test_it.py::test_a"], "1 passed")],
+    ids=["always", "long", "named"],
+)
+def test_long_ones_run_where_they_are_asked_for(tmp_path, words, ran):
+    (tmp_path / "conftest.py").write_text((Path(__file__).parent / "conftest.py").read_text(encoding="utf-8").replace(
+        "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"), encoding="utf-8")
+    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = long: longer\n", encoding="utf-8")
+    (tmp_path / "test_it.py").write_text(LONG, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=tmp_path, capture_output=True, text=True,
+        check=False,
+    )
+    assert done.returncode == 0 and ran in done.stdout.splitlines()[-1], done.stdout
 
 
 @pytest.mark.parametrize(
