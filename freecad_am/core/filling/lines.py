@@ -64,7 +64,7 @@ def lines(region: Region, beads: Beads, angle: float = 0.0, ring: bool = False) 
 
 def rows(place: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     """Level by level the pieces (2, 2) of lines, all in the direction of the angle (rad)."""
-    if not place.room:
+    if not place.room or not place.ends:  # too narrow for lines; what they would fill gets beads along its middle
         return []
     rings = [turned(ring, -angle) for part in place.ends for ring in part.rings()]
     height = np.concatenate([turned(part.rings()[0], -angle)[:, 1] for part in place.room])

@@ -27,6 +27,10 @@ class Surface(Protocol):
     def period(self) -> float | None:
         """Period of v, None when the wall is open."""
 
+    @property
+    def rise_period(self) -> float | None:
+        """Period of u where the wall comes back to itself in that direction too, else None; `inverse` knows u up to it."""
+
     def point(self, u: Array, v: Array) -> Array:
         """Points (..., 3), mm."""
 
@@ -51,6 +55,11 @@ class Torus:
     @property
     def period(self) -> float:
         """A full turn."""
+        return TURN
+
+    @property
+    def rise_period(self) -> float:
+        """A full turn too."""
         return TURN
 
     def point(self, u: Array, v: Array) -> Array:
@@ -91,6 +100,11 @@ class Cone:
     def period(self) -> float:
         """A full turn."""
         return TURN
+
+    @property
+    def rise_period(self) -> None:
+        """None: u is a length."""
+        return None
 
     def point(self, u: Array, v: Array) -> Array:
         """Points (..., 3)."""

@@ -78,6 +78,11 @@ class Placed:
         """Period of v."""
         return self.own.period
 
+    @property
+    def rise_period(self) -> float | None:
+        """Period of u, where it has one."""
+        return self.own.rise_period
+
     def point(self, u: Array, v: Array) -> Array:
         """Points (..., 3)."""
         points: Array = self.own.point(u, v) @ self.frame[:3, :3].T + self.frame[:3, 3]

@@ -44,6 +44,11 @@ class Tabulated:
         """Period of v, None when the wall is open."""
         return self._period
 
+    @property
+    def rise_period(self) -> None:
+        """None: the table ends."""
+        return None
+
     def point(self, u: Array, v: Array) -> Array:
         """Points (..., 3)."""
         u, v, beyond = self._inside(u, v)

@@ -36,7 +36,7 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
     """The stretches of a front below u = end, in the order of their parameter; none where all of it is above."""
     curve = front.curve
     w = curve.refined(FINER)
-    inside = _below(surface, curve, w, end)
+    inside = _below(surface, front, w, end)
     if inside.all():
         return [Stretch(front, float(w[0]), float(w[-1]), True)]
     if not inside.any():
@@ -47,22 +47,27 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
     w = w[order] + np.where(np.arange(count + 1) >= count - start, curve.period, 0.0)
     inside = inside[order]
     enters, leaves = np.flatnonzero(~inside[:-1] & inside[1:]), np.flatnonzero(inside[:-1] & ~inside[1:])
-    low = _crossing(surface, curve, w[enters], w[enters + 1], end, True)
-    high = _crossing(surface, curve, w[leaves], w[leaves + 1], end, False)
+    low = _crossing(surface, front, w[enters], w[enters + 1], end, True)
+    high = _crossing(surface, front, w[leaves], w[leaves + 1], end, False)
     return [Stretch(front, float(a), float(b), False) for a, b in zip(low, high, strict=True)]
 
 
-def _below(surface: Placed, curve: SpaceCurve, w: Array, end: float) -> NDArray[np.bool_]:
-    u, v = surface.inverse(curve.at(w)[0])
+def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> NDArray[np.bool_]:
+    """Which places (n,) of a front lie below the end. Where u is an angle, as along a bend, it is the front that tells which
+    turn a place is on: a surface knows its own points only up to whole turns."""
+    u, v = surface.inverse(front.curve.at(w)[0])
     pace = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
+    if surface.rise_period is not None:
+        about = front.heights(surface, front.curve.wrapped(w))[0]
+        u = u + surface.rise_period * np.round((about - u) / surface.rise_period)
     below: NDArray[np.bool_] = (u - end) * pace <= SAME_END
     return below
 
 
-def _crossing(surface: Placed, curve: SpaceCurve, low: Array, high: Array, end: float, entering: bool) -> Array:
+def _crossing(surface: Placed, front: WallLayer, low: Array, high: Array, end: float, entering: bool) -> Array:
     """Where the front passes the end between two parameters, on the side below it."""
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        below = _below(surface, curve, middle, end) == entering
+        below = _below(surface, front, middle, end) == entering
         low, high = np.where(below, low, middle), np.where(below, middle, high)
     return high if entering else low

@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import PATTERNS, fill
-from freecad_am.core.filling.lines import levels_between
+from freecad_am.core.filling.lines import Frame, levels_between, rows
 from freecad_am.core.geometry.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
 
@@ -198,3 +198,8 @@ def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern, scale):
 def test_unknown_patterns_are_refused():
     with pytest.raises(InputError, match="there is no pattern 'fractal'"):
         filled("circle", "fractal")
+
+
+def test_no_lines_where_they_have_room_but_nothing_to_run_through():
+    region, = regions(SHAPES["circle"])
+    assert rows(Frame([], (region,), (), ()), BEADS, 0.3) == []

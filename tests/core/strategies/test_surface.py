@@ -66,6 +66,24 @@ def test_layers_trimmed_at_the_end(frame):
     assert np.linalg.norm(toolpath.frame - np.eye(4)) == 0.0
 
 
+@pytest.mark.parametrize("end", ["trim", "whole"])
+@pytest.mark.parametrize("spacing", ["constant-distance", "smooth", "iso-parameter"])
+@pytest.mark.parametrize("turn", [90.0, 120.0, 150.0, 170.0, 179.0])
+def test_bends_end_at_their_end_however_far_they_turn(turn, spacing, end):
+    """Angles about the bend's axis from its start on, 0 to a whole turn; and the farthest places of the wall are covered."""
+    last = np.radians(turn)
+    toolpath = planned(bend(end=last), spacing=spacing, end=end, layer_height=8.0)
+    points = np.vstack([bead.points for _, _, bead in toolpath])
+    around = np.mod(parameters(points)[0], 2.0 * np.pi)
+    assert around.max() <= last + 1e-7
+    v = np.linspace(0.0, 2.0 * np.pi, 50)
+    rim = Torus(BEND, TUBE).point(np.full(50, last), v)
+    apart = np.linalg.norm(rim[:, None] - points, axis=2).min(axis=1)
+    assert apart.min() < 12.0  # nothing stops long before the end on its inside, where layers reach it first
+    if end == "trim":
+        assert apart.max() < 12.0
+
+
 def test_points_lie_on_the_wall_and_the_first_layer_on_the_pipe():
     toolpath = planned(bend(), layer_height=2.0)
     for _, _, bead in toolpath:
