@@ -2,9 +2,11 @@
 """Runs the tests: plain and headless ones here, those of the window in FreeCAD under Xvfb; sums all up.
 
 Arguments go to pytest, both times; `--long` among them adds the tests that are marked as long (docs/testing.md).
-`--with-freecad 1.0` first among them runs what depends on FreeCAD's version in that version too, at the same time as the
-tests here (tests/versions/run.sh).
+`--with-freecad 1.0` first among them runs what depends on FreeCAD's version in that version too (tests/versions/run.sh).
+The tests are cut into parts, of which as many run at the same time as there are cores; the last lines tell what they took.
 """
+
+from __future__ import annotations
 
 import os
 import re
@@ -14,19 +16,28 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from tests.run_parts import ROOT, Part, run_parts, say, tell_times, watched
+
 GUI = ROOT / "tests" / "gui"
 WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
-# what depends on FreeCAD's version, and takes a bearable time twice; of the window what users do, and what may crash it
-OF_VERSION = (
-    "tests/objects", "tests/brep", "tests/kdl", "tests/posts", "tests/interop", "tests/batch", "tests/test_package.py",
-    *(f"tests/gui/{name}" for name in (
-        "test_flow.py", "test_fields.py", "test_long_work.py", "test_reopen.py", "test_robust.py", "test_robust_events.py",
-        "test_samples.py", "tutorials",
-    )),
+HEADLESS_TIMEOUT = 2400  # s for a part without a window
+# the folders of parts of their own, longest first; one more part has all the rest
+FOLDERS = (("batch",), ("core/planning", "core/kinematics"), ("core/strategies", "core/filling"), ("brep", "objects"))
+# what depends on FreeCAD's version, and takes a bearable time twice: of the commands those that meet every one of its parts,
+# of the window what users do, and what may crash it
+HEADLESS_OF_VERSION = (
+    *(f"tests/{name}" for name in ("objects", "brep", "kdl", "posts", "interop", "test_package.py")),
+    *(f"tests/batch/test_{name}.py" for name in ("plan_command", "examples", "export_command", "interruption")),
 )
+WINDOW_OF_VERSION = tuple(f"tests/gui/{name}" for name in (
+    "test_flow.py", "test_fields.py", "test_long_work.py", "test_reopen.py", "test_robust.py", "test_robust_events.py",
+    "test_samples.py", "tutorials",
+))
 # foreign interpreters read the texts of programs, which the golden files hold equal in all versions
 NOT_OF_VERSION = "tests/posts/test_interpreters.py"
 FAILED, NO_TESTS, UNABLE = 1, 5, 77  # statuses of pytest, and of tests/versions/run.sh
@@ -61,21 +72,9 @@ def private_home(folder: Path) -> dict[str, str]:
         # the start page's browser will not run as root otherwise
         "QTWEBENGINE_DISABLE_SANDBOX": "1", "LIBGL_ALWAYS_SOFTWARE": "1", "QT_QPA_PLATFORM": "xcb",
         "PYTHONDONTWRITEBYTECODE": "1", "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+        # parts run at the same time, and threads of two would wait for one another's cores
+        "OPENBLAS_NUM_THREADS": os.environ.get("OPENBLAS_NUM_THREADS", "1"),
     }
-
-
-def watched(command: list[str], env: dict[str, str]) -> tuple[int, str]:
-    """Run a command, pass its output on as it comes, and return status and output."""
-    process = subprocess.Popen(
-        command, cwd=ROOT, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        errors="replace",
-    )
-    lines = []
-    assert process.stdout is not None
-    for line in process.stdout:
-        lines.append(line)
-        print(line, end="", flush=True)
-    return process.wait(), "".join(lines)
 
 
 def counts(text: str) -> dict[str, int]:
@@ -112,14 +111,31 @@ def run_headless(arguments: list[str]) -> tuple[int, str]:
     """The tests that need no window, in the Python that runs this."""
     if os.environ.get("FREECAD_AM_VERSION"):
         arguments = [*arguments, f"--ignore={NOT_OF_VERSION}"]
-    elif not any((ROOT / word).exists() for word in arguments) or any("posts" in word for word in arguments):
+    say("freecad-am: plain and headless tests")
+    stopped = ["timeout", "-k", "5", str(HEADLESS_TIMEOUT)] if shutil.which("timeout") else []
+    with tempfile.TemporaryDirectory() as folder:
+        status, text = watched([*stopped, sys.executable, "-m", "pytest", *arguments], private_home(Path(folder)))
+    if status == TOO_LONG:
+        say(f"freecad-am: the tests were stopped after {HEADLESS_TIMEOUT} s")
+    return status, text
+
+
+def headless_parts(arguments: list[str]) -> list[Part]:
+    """The headless tests, in several parts where no folder or file of theirs is asked for."""
+    paths = [word for word in arguments if (ROOT / word.partition("::")[0]).exists()]
+    if not os.environ.get("FREECAD_AM_VERSION") and (not paths or any("posts" in word for word in paths)):
         sys.path.insert(0, str(ROOT))
         from tests.posts import interpreters
 
         interpreters.provide()
-    print("freecad-am: plain and headless tests", flush=True)
-    with tempfile.TemporaryDirectory() as folder:
-        return watched([sys.executable, "-m", "pytest", *arguments], private_home(Path(folder)))
+    if paths:
+        return [Part("headless", lambda: run_headless(arguments))]
+    parts, done = [], []
+    for names in FOLDERS:
+        folders = [f"tests/{name}" for name in names]
+        done += [f"--ignore={folder}" for folder in folders]
+        parts.append(Part(" ".join(names), partial(run_headless, [*arguments, *folders])))
+    return [*parts, Part("rest", lambda: run_headless([*arguments, "tests", *done]))]
 
 
 def run_window_tests(arguments: list[str]) -> tuple[int, str]:
@@ -128,10 +144,10 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
     On a machine that is busy with something else a click or key of theirs may come too early. So a few that failed are
     run once more, in a new FreeCAD, and both times are told. A crash is a failure whatever comes after it.
     """
-    print("freecad-am: tests of the window, under Xvfb", flush=True)
+    say("freecad-am: tests of the window, under Xvfb")
     freecad = shutil.which("freecad") or shutil.which("FreeCAD")
     if not freecad or not shutil.which("xvfb-run"):
-        print("freecad-am: no freecad or no xvfb-run: the tests of the window are NOT run", flush=True)
+        say("freecad-am: no freecad or no xvfb-run: the tests of the window are NOT run")
         return 1, ""
     status, text, failures = in_window(freecad, arguments)
     # FreeCAD leaves a crash with the status of failed tests, but without pytest's summary
@@ -139,7 +155,7 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
     chosen = any(word.startswith("-") and word != LONG for word in arguments)
     if not ended or len(failures) > FEW or chosen:
         return status, text
-    print(f"freecad-am: {len(failures)} failed and run once more: {' '.join(failures)}", flush=True)
+    say(f"freecad-am: {len(failures)} failed and run once more: {' '.join(failures)}")
     again, second, _ = in_window(freecad, failures)
     first, passed = counts(text), counts(second)["passed"]
     failed = len(failures) - passed
@@ -147,7 +163,7 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
         f"total: {first['passed'] + passed} passed, {failed} failed, {first['skipped']} skipped; {passed} of them at the "
         f"second try: {' '.join(failures)}"
     )
-    print(told.replace("total", "freecad-am: window", 1), flush=True)
+    say(told.replace("total", "freecad-am: window", 1))
     return again or (FAILED if failed else 0), told
 
 
@@ -165,51 +181,54 @@ def in_window(freecad: str, arguments: list[str]) -> tuple[int, str, list[str]]:
         if status and not any(counts(text).values()):
             at = last.read_text(encoding="utf-8") if last.exists() else "the beginning"
             why = f"was stopped after {WINDOW_TIMEOUT} s" if status == TOO_LONG else f"ended with status {status}"
-            print(f"\nfreecad-am: FreeCAD {why} at {at}", flush=True)
+            say(f"freecad-am: FreeCAD {why} at {at}")
         return status, text, list(dict.fromkeys(failures))
 
 
-class OtherVersion:
-    """The tests in another version of FreeCAD, run beside those here and told after them."""
+def run_in_version(version: str, arguments: Sequence[str]) -> tuple[int, str]:
+    """Tests in another version of FreeCAD; status 0 where this machine cannot run them, which is told."""
+    say(f"freecad-am: tests in FreeCAD {version}")
+    status, text = watched([str(ROOT / "tests" / "versions" / "run.sh"), version, *arguments], dict(os.environ))
+    return (0 if status == UNABLE else status), text
 
-    def __init__(self, version: str) -> None:
-        self.version = version
-        self.result: tuple[int, str] = (1, "")
-        self.thread = threading.Thread(target=self._run)
-        self.thread.start()
 
-    def _run(self) -> None:
-        command = [str(ROOT / "tests" / "versions" / "run.sh"), self.version, *OF_VERSION]
-        done = subprocess.run(
-            command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            errors="replace", check=False,
-        )
-        self.result = done.returncode, done.stdout
+def provide_version(version: str) -> None:
+    """Make the system with that FreeCAD, beside the first tests: it takes minutes, and waits for the network mostly."""
+    command = [str(ROOT / "tests" / "versions" / "run.sh"), version, "--make"]
+    threading.Thread(
+        target=lambda: subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False), daemon=True
+    ).start()
 
-    def wait(self) -> tuple[int, str]:
-        """Status and output; status 0 where this machine cannot run them, which is told."""
-        print(f"freecad-am: tests in FreeCAD {self.version}", flush=True)
-        self.thread.join()
-        status, text = self.result
-        print(text.replace("total: ", f"FreeCAD {self.version}: "), end="", flush=True)
-        return (0 if status == UNABLE else status), text
+
+def all_parts(arguments: list[str]) -> list[Part]:
+    """What is to be run, in the order in which the parts begin: what takes longest first, and the rest of all last."""
+    version, in_version = "", []
+    if arguments[:1] == ["--with-freecad"] and len(arguments) > 1:
+        version, arguments = arguments[1], arguments[2:]
+        provide_version(version)
+        options = [word for word in arguments if word == LONG]
+        in_version = [
+            Part(f"{version} {name}", partial(run_in_version, version, [*options, *places]))
+            for name, places in (("window", WINDOW_OF_VERSION), ("headless", HEADLESS_OF_VERSION))
+        ]
+    headless, window = apart(arguments)
+    parts = [] if window is None else [Part("window", lambda: run_window_tests(window))]
+    others = [] if headless is None else headless_parts(headless)
+    return [*parts, *others[:1], *in_version, *others[1:]]
 
 
 def main() -> int:
-    arguments = sys.argv[1:]
-    other = None
-    if arguments[:1] == ["--with-freecad"] and len(arguments) > 1:
-        other = OtherVersion(arguments[1])
-        arguments = arguments[2:]
-    headless, window = apart(arguments)
-    results = [] if headless is None else [run_headless(headless)]
-    if window is not None:
-        results.append(run_window_tests(window))
-    if other is not None:
-        results.append(other.wait())
-    total = [counts(text) for _, text in results]
+    parts = all_parts(sys.argv[1:])
+    began = time.monotonic()
+    with tempfile.NamedTemporaryFile(prefix="freecad-am-times-") as times:
+        os.environ["TEST_TIMES"] = os.environ.get("TEST_TIMES", times.name)
+        run_parts(parts)
+        written = Path(os.environ["TEST_TIMES"])
+        tests = written.read_text(encoding="utf-8") if written.exists() else ""
+    tell_times(parts, time.monotonic() - began, tests)
+    total = [counts(part.text) for part in parts]
     summed = {word: sum(part[word] for part in total) for word in ("passed", "failed", "skipped")}
-    silent = sum(status not in (0, NO_TESTS) and not part["failed"] for (status, _), part in zip(results, total))
+    silent = sum(part.status not in (0, NO_TESTS) and not told["failed"] for part, told in zip(parts, total))
     failed = summed["failed"] + silent
     print(f"total: {summed['passed']} passed, {failed} failed, {summed['skipped']} skipped", flush=True)
     return 0 if failed == 0 and summed["passed"] else 1

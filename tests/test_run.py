@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The runner itself: what it makes of tests of the window that fail, and of a FreeCAD that crashes."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -8,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import run
+from tests import run, run_parts
 
 ENDED = "{} failed, {} passed in 9.00s\n"
 CRASHED = "Fatal Python error: Segmentation fault\n"
@@ -106,7 +107,7 @@ def test_long_ones_run_where_they_are_asked_for(tmp_path, words, ran):
     (tmp_path / "test_it.py").write_text(LONG, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=tmp_path, capture_output=True, text=True,
-        check=False,
+        check=False, env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
     )
     assert done.returncode == 0 and ran in done.stdout.splitlines()[-1], done.stdout
 
@@ -129,3 +130,57 @@ def test_an_end_without_a_summary_is_told_with_the_test_at_hand(monkeypatch, cap
     monkeypatch.setattr(run, "watched", watched)
     assert run.in_window("freecad", ["tests/gui"]) == (status, text, [])
     assert capsys.readouterr().out.strip().removeprefix("freecad-am: ") == told
+
+
+@pytest.fixture
+def parts(monkeypatch):
+    """Runs the runner with parts of its own: (status, text) each; its exit status."""
+    def ran(*ends):
+        made = [run_parts.Part(f"part {number}", lambda end=end: end) for number, end in enumerate(ends)]
+        monkeypatch.setattr(run, "all_parts", lambda arguments: made)
+        return run.main()
+
+    return ran
+
+
+@pytest.mark.parametrize(
+    ("ends", "status", "total"),
+    [
+        ([(0, "3 passed in 1.00s"), (0, "2 passed, 1 skipped in 2.00s")], 0, "5 passed, 0 failed, 1 skipped"),
+        ([(1, "1 failed, 3 passed in 1.00s"), (0, "2 passed in 2.00s")], 1, "5 passed, 1 failed, 0 skipped"),
+        ([(0, "3 passed in 1.00s"), (139, CRASHED)], 1, "3 passed, 1 failed, 0 skipped"),
+        ([(run.TOO_LONG, "...."), (0, "3 passed in 1.00s")], 1, "3 passed, 1 failed, 0 skipped"),
+        ([(0, "3 passed in 1.00s"), (run.NO_TESTS, "4 deselected in 1.00s")], 0, "3 passed, 0 failed, 0 skipped"),
+        ([(run.NO_TESTS, ""), (run.NO_TESTS, "")], 1, "0 passed, 0 failed, 0 skipped"),
+    ],
+    ids=["sound", "failed", "crash", "too long", "none in one", "none"],
+)
+def test_the_last_line_sums_up_all_parts(parts, capsys, ends, status, total):
+    assert parts(*ends) == status
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1] == f"total: {total}"
+    assert [line.split("s  ")[-1] for line in lines if "  part " in line] == ["part 0", "part 1"]
+
+
+def test_a_part_that_cannot_run_is_no_sound_end(parts):
+    def broken():
+        raise OSError("no such program")
+
+    with pytest.raises(OSError, match="no such program"):
+        run_parts.run_parts([run_parts.Part("one", broken), run_parts.Part("two", lambda: (0, ""))])
+
+
+def test_the_parts_have_every_file_of_tests_once(monkeypatch):
+    asked = []
+    monkeypatch.setattr(run, "run_headless", lambda words: asked.append(words) or (0, ""))
+    monkeypatch.setattr("tests.posts.interpreters.provide", lambda: None)
+    headless, window = run.apart([])
+    for part in run.headless_parts(headless):
+        part.run()
+    assert len(asked) == len(run.FOLDERS) + 1 and window == ["tests/gui"]
+    for file in (run.ROOT / "tests").rglob("test_*.py"):
+        around = [file, *file.parents]
+        left_out = [{run.ROOT / word.removeprefix("--ignore=") for word in words if "=" in word} for words in asked]
+        given = [{run.ROOT / word for word in words if "=" not in word} for words in asked]
+        takes = [bool(some & set(around)) and not less & set(around) for some, less in zip(given, left_out)]
+        assert takes.count(True) == (run.GUI not in around), (file, takes)

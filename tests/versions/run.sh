@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Runs the tests on another FreeCAD than this machine's:  run.sh VERSION [PYTEST ARGUMENTS]
+# or makes that FreeCAD alone:  run.sh VERSION --make
 # Each version is a small Debian in a folder, made the first time (3 GB, 2 minutes) and kept in FREECAD_AM_CHROOTS or
 # the cache folder of the user. The tests see a copy of this checkout and a temporary folder of their own, no network,
 # and end with their processes and mounts. ROBOTIC_AM_PICTURES names a folder that keeps the screenshots.
@@ -33,6 +34,7 @@ chroots=${FREECAD_AM_CHROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/freecad-am/chroots
 case "$chroots" in /*) ;; *) chroots=$PWD/$chroots ;; esac
 folder=$chroots/$suite
 "$here/make_chroot.sh" "$suite" "$folder" || cannot "$suite of the Debian archive cannot be installed"
+[ "${1:-}" != --make ] || exit 0
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
