@@ -8042,7 +8042,7 @@
         <translation>il n&apos;y a pas de motif {0} ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
+        <location filename="../../freecad_am/objects/stored.py"/>
         <source>there is no result yet; recompute it</source>
         <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
     </message>
@@ -9082,7 +9082,7 @@
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>{0} points do not hold a part; measure {1} or more all over</source>
         <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
     </message>
