@@ -8,6 +8,7 @@ from typing import Any
 import FreeCAD  # noqa: F401  before Part, which crashes without
 import numpy as np
 import Part
+from numpy.typing import NDArray
 
 from ..core.geometry.profile import Array
 from .cylindrical import as_array, edge_points
@@ -28,22 +29,31 @@ def candidates(faces: list[Any]) -> list[Axis]:
     The axes of analytic and revolved surfaces weigh their area, those of circular edges less; last comes the axis that
     the surface normals point to, which needs no knowledge of the kind of surface.
     """
-    found: list[tuple[Axis, float]] = []
-    for face in faces:
-        for axis, weight in _of_face(face):
-            for i, (known, total) in enumerate(found):
-                if _same(known, axis):
-                    found[i] = (known, total + weight)
-                    break
-            else:
-                found.append((axis, weight))
-    ordered = [axis for axis, _ in sorted(found, key=lambda pair: -pair[1])][:6]
+    ordered = [axis for axis, _ in sorted(_weighed(faces), key=lambda pair: -pair[1])][:6]
     free = [face for face in faces if face.Surface.TypeId not in ANALYTIC]
     for group in [[face] for face in sorted(free, key=lambda face: -face.Area)[:3]] + [faces]:
         fitted = from_normals(group)
         if fitted is not None and not any(_same(fitted, axis) for axis in ordered):
             ordered.append(fitted)
     return ordered
+
+
+def _weighed(faces: list[Any]) -> list[tuple[Axis, float]]:
+    """Axes of faces and their edges, each once, with all that speaks for it."""
+    found: list[tuple[Axis, float]] = []
+    rows = np.zeros((64, 6))  # of those found, to be compared at once: a plate may have hundreds of holes
+    for face in faces:
+        for axis, weight in _of_face(face):
+            same = np.flatnonzero(_alike(rows[: len(found)], axis))
+            if len(same):
+                known, total = found[same[0]]
+                found[same[0]] = (known, total + weight)
+                continue
+            if len(found) == len(rows):
+                rows = np.vstack([rows, np.zeros_like(rows)])
+            rows[len(found)] = np.concatenate(axis)
+            found.append((axis, weight))
+    return found
 
 
 def _of_face(face: Any) -> list[tuple[Axis, float]]:
@@ -70,7 +80,7 @@ def _of_face(face: Any) -> list[tuple[Axis, float]]:
 def _circle_through(points: Array) -> Axis | None:
     """The axis of the circle that points (n, 3) lie on, None where they do not lie on one."""
     middle = points.mean(axis=0)
-    _, sizes, basis = np.linalg.svd(points - middle)
+    _, sizes, basis = np.linalg.svd(points - middle, full_matrices=False)
     if sizes[1] < 1e-6 * sizes[0] or sizes[2] > 1e-7 * sizes[0]:
         return None
     flat = (points - middle) @ basis[:2].T
@@ -88,9 +98,15 @@ def _axis(point: Any, direction: Any) -> Axis:
 
 
 def _same(one: Axis, other: Axis) -> bool:
-    apart = one[0] - other[0]
-    across = apart - (apart @ one[1]) * one[1]
-    return bool(np.linalg.norm(np.cross(one[1], other[1])) < SAME_ANGLE and np.linalg.norm(across) < SAME_LINE)
+    return bool(_alike(np.concatenate(one)[None], other)[0])
+
+
+def _alike(rows: Array, axis: Axis) -> NDArray[np.bool_]:
+    """Which of axes (n, 6), points and directions, are the same line as another."""
+    apart, along = rows[:, :3] - axis[0], rows[:, 3:]
+    across = apart - (apart * along).sum(axis=1)[:, None] * along
+    turned = np.linalg.norm(np.cross(along, axis[1]), axis=1)
+    return np.asarray((turned < SAME_ANGLE) & (np.linalg.norm(across, axis=1) < SAME_LINE))
 
 
 def from_normals(faces: list[Any]) -> Axis | None:
@@ -117,7 +133,7 @@ def from_normals(faces: list[Any]) -> Axis | None:
     middle = p.mean(axis=0)
     size = np.abs(p - middle).max()
     rows = np.hstack([np.cross((p - middle) / size, n), n])
-    values, vectors = np.linalg.svd(rows)[1:]
+    values, vectors = np.linalg.svd(rows, full_matrices=False)[1:]  # or it is as wide as the samples are many
     exact = int((values < 1e-6 * values[0]).sum())
     # a cylinder that is not quite round still slides along itself exactly: then the next best motion is asked for
     for count in (max(exact, 1), max(exact, 1) + 1):

@@ -17,9 +17,11 @@ from .cylindrical import AxisFrame, axis_frame
 from .lost_pole import has_lost_pole
 from .patch import Patch, patch_of, planar
 from .turn import common_turn, merged
+from .turning import normals_of, surely_off
 from .wire import pieces_of_edges
 
 SLIVER = 1e-3  # mm; faces narrower than this are ignored
+JUDGED = 24  # faces that are off an axis, looked at for the one to tell of
 
 Named = tuple[str, Any]
 
@@ -84,18 +86,8 @@ def _from_faces(
     lines = [axis] if axis is not None else list(candidates([face for _, face in wide]))
     if not lines:
         raise InputError("NO_WALL", label, "no axis was found that its faces turn about; give it, or name the faces")
-    best: tuple[float, AxisFrame, list[Patch]] | None = None
-    for point, direction in lines:
-        frame = axis_frame(point, direction)
-        patches = [patch_of(face, name, frame) for name, face in wide]
-        bad = sum(face.Area + SLIVER for (_, face), patch in zip(wide, patches, strict=True) if not patch.sound)
-        if best is None or bad < best[0]:
-            best = bad, frame, patches
-        if bad == 0.0:
-            break
-    assert best is not None
-    _, frame, patches = best
-    if best[0] > 0.0 and all(planar(face) for _, face in wide):
+    frame, patches = _about_best(wide, lines)
+    if not all(patch.sound for patch in patches) and all(planar(face) for _, face in wide):
         raise InputError("NO_WALL", label, "all its faces are flat; choose a part, or faces, of revolution")
     worst = max(patches, key=lambda patch: patch.deviation)
     if not worst.sound:
@@ -107,6 +99,31 @@ def _from_faces(
     if not pieces:
         raise InputError("NO_WALL", label, "it has no face that turns about the axis; name the faces of the wall")
     return _assembled(pieces, frame, wall, label, selected)
+
+
+def _about_best(wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]) -> tuple[AxisFrame, list[Patch]]:
+    """The axis about which all faces turn, and what they are about it; else the one that the least of their area is off, and
+    the largest of the faces that are."""
+    normals = normals_of([face for _, face in wide])
+    area = np.array([face.Area + SLIVER for _, face in wide])
+    large = np.argsort(-area, kind="stable").tolist()
+    least, frame, off = np.inf, None, []
+    for point, direction in lines:
+        about = axis_frame(point, direction)
+        leaning = surely_off(normals, about)
+        patches: list[Patch] = []
+        if not leaning.any():
+            for name, face in wide:
+                patches.append(patch_of(face, name, about))
+                if not patches[-1].sound:
+                    break
+            else:
+                return about, patches
+            leaning[len(patches) - 1] = True
+        if area[leaning].sum() < least:
+            least, frame, off = float(area[leaning].sum()), about, [k for k in large if leaning[k]]
+    assert frame is not None
+    return frame, [patch_of(wide[k][1], wide[k][0], frame) for k in off[:JUDGED]]
 
 
 def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str) -> RevolvedWall:

@@ -23,20 +23,23 @@ def merged(pieces: Sequence[Piece], label: str) -> list[Piece]:
     Raises InputError 'NOT_REVOLUTION' where they leave more than one opening around the axis.
     """
     groups: list[list[Piece]] = []
-    for piece in pieces:
-        for group in groups:
-            if _same_meridian(group[0], piece):
-                group.append(piece)
+    ends = np.array([piece.points[[0, -1]] for piece in pieces]).reshape(-1, 2, 2)
+    firsts: list[int] = []
+    for number, piece in enumerate(pieces):
+        known = ends[firsts]
+        apart = [np.abs(known - way).max(axis=(1, 2), initial=0.0) for way in (ends[number], ends[number, ::-1])]
+        for k in np.flatnonzero(np.minimum(*apart) <= SAME).tolist():
+            if _same_meridian(groups[k][0], piece):
+                groups[k].append(piece)
                 break
         else:
             groups.append([piece])
+            firsts.append(number)
     return [replace(group[0], turn=_union([piece.turn for piece in group], group, label)) for group in groups]
 
 
 def _same_meridian(one: Piece, other: Piece) -> bool:
-    a, b = one.points[[0, -1]], other.points[[0, -1]]
-    if min(np.abs(a - b).max(), np.abs(a - b[::-1]).max()) > SAME:
-        return False
+    """Whether pieces with the same ends are one on the way, too."""
     middle = other.points[len(other.points) // 2]
     start, steps = one.points[:-1], np.diff(one.points, axis=0)
     share = np.clip(((middle - start) * steps).sum(1) / np.maximum((steps * steps).sum(1), 1e-30), 0.0, 1.0)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from .profile import Array, Meridian, arc_lengths, turning
 
@@ -56,19 +57,29 @@ def chains(pieces: Sequence[Piece]) -> tuple[list[Chain], float]:
     parts: list[Chain] = [[piece] for piece in pieces]
     widest = 0.0
     while len(parts) > 1:
-        gap, i, j, turn_i, turn_j = min(
-            (float(np.hypot(*(end - start))), i, j, turn_i, turn_j)
-            for i, one in enumerate(parts) for j, other in enumerate(parts) if i < j
-            for turn_i, end in enumerate(reversed(ends(one))) for turn_j, start in enumerate(ends(other))
-        )
-        if gap > BRIDGE:
+        near = _near(parts)
+        if not near:
             break
+        gap, i, j, turn_i, turn_j = min(near)
         one = _turned(parts[i]) if turn_i else parts[i]
         other = _turned(parts[j]) if turn_j else parts[j]
         parts[i] = one + other
         del parts[j]
         widest = max(widest, gap)
     return parts, widest
+
+
+def _near(parts: Sequence[Chain]) -> list[tuple[float, int, int, int, int]]:
+    """Gaps (mm) of no more than BRIDGE between the ends of two chains, the numbers of the two, and whether each is to be
+    turned for the first to run on into the second."""
+    tips = np.array([ends(part) for part in parts]).reshape(-1, 2)  # first and last by turns
+    pairs = cKDTree(tips).query_pairs(1.01 * BRIDGE, output_type="ndarray")
+    rows = np.sort(pairs, axis=1)
+    gaps = np.hypot(*(tips[rows[:, 0]] - tips[rows[:, 1]]).T)
+    return [
+        (gap, a // 2, b // 2, 1 - a % 2, b % 2)
+        for gap, (a, b) in zip(gaps.tolist(), rows.tolist(), strict=True) if a // 2 != b // 2 and gap <= BRIDGE
+    ]
 
 
 def _turned(chain: Chain) -> Chain:
