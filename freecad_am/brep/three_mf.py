@@ -69,7 +69,7 @@ class _Package:
         self.objects: dict[Key, _Object] = {}
         self.items: list[tuple[Key, Array]] = []
         self.read: dict[str, float] = {}  # files read, and their units in mm
-        self.count = self.placed = 0
+        self.count = self.placed = self.points = 0  # triangles, objects and points built so far
 
     def built(self) -> tuple[Array, Index]:
         start = self._start()
@@ -170,7 +170,8 @@ class _Package:
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
             raise _bad(self.where, f"object {key[1]} of {key[0]} is moved by a matrix that flattens it")
         points.append((own @ moved[:3] + moved[3]) * unit)
-        corners.append((some if turned > 0.0 else some[:, ::-1]) + sum(map(len, points[:-1])))
+        corners.append((some if turned > 0.0 else some[:, ::-1]) + self.points)
+        self.points += len(own)
 
 
 class _Model:
