@@ -13,15 +13,17 @@ from scipy.spatial import cKDTree
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.posts import staubli
+from tests.batch.conftest import Workshop
 
 NAME = "tube-on-pipe-staubli"
 TARGET, ORIGIN, PLATFORM = [550.0, 0.0, 800.0], [0.0, 0.0, 32.0], 60.0
 BEND, TUBE = 60.0, 15.0
 
 
-@pytest.fixture(params=["cartesian", "joint"])
-def made(workshop, root, request):
+@pytest.fixture(scope="module", params=["cartesian", "joint"])
+def made(tmp_path_factory, root, request):
     """The motion, the rows of waypoints.csv and the texts of the example."""
+    workshop = Workshop(tmp_path_factory.mktemp("staubli"), root / "freecad-am")
     folder = root / "resources" / "examples"
     for name in ("tube-on-pipe.step", "pipe.step"):
         shutil.copy(folder / name, workshop.folder)
