@@ -31,6 +31,7 @@ import FreeCAD as App
 from .core.issues import AmError, InputError, Issue
 from .core.kinematics import machine as machines
 from .core.kinematics.proposed_cell import cell_of
+from .core.one_thread import one_thread
 from .core.parameters.build_direction import BuildDirectionParameters
 from .core.parameters.cell import CellParameters
 from .core.parameters.inspection import InspectionParameters
@@ -159,6 +160,7 @@ def inspect(
     return _make(doc, Inspection, "Inspection", label, {"Planned": planned, "File": file}, [inspection], values)
 
 
+@one_thread()
 def make_all(
     doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", substrate: Any = None,
     further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", post: str = "",
@@ -269,6 +271,7 @@ def stages_of(doc: Any, kind: str = "") -> list[Any]:
     return [obj for obj in _in_order(doc.Objects) if kind in ("", obj.Proxy.kind)]
 
 
+@one_thread()
 def export(program: Any, folder: str) -> list[str]:
     """Write the files of a program, or the figures of an inspection, into a folder, which is made; the paths.
 
@@ -290,6 +293,7 @@ def export(program: Any, folder: str) -> list[str]:
     return paths
 
 
+@one_thread()
 def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     """Write beads, and the rapid moves if wanted, of a toolpath, joint path or program as wires into a STEP or DXF file.
 
@@ -298,6 +302,7 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     return interop.write_wires(obj, path, rapids)
 
 
+@one_thread()
 def make_cam_path(obj: Any) -> Any:
     """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not
     follow changes. `am.make_cam_path(doc.JointPath)`"""
@@ -305,6 +310,7 @@ def make_cam_path(obj: Any) -> Any:
         return interop.add_cam_path(obj)
 
 
+@one_thread()
 def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> Any:
     """The same as a trajectory of the Robot workbench, thinned: within `tolerance` mm and, for the tool axis, `turn` deg.
 

@@ -48,7 +48,9 @@ def run(words):
     if not os.access(HERE, os.W_OK):
         sys.dont_write_bytecode = True
     from freecad_am.batch import host
+    from freecad_am.core.one_thread import ENVIRONMENT
 
+    os.environ.update(ENVIRONMENT)  # before numpy is loaded, and for the processes that are started
     host.provide_home()
     missing = host.missing_modules()
     if missing:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
+from freecad_am.core.one_thread import one_thread
 from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters
 
 from . import outputs, paths
@@ -77,7 +78,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
 
     try:
         cell = check(job)
-        with outputs.Outputs(folder) as files:
+        with one_thread(), outputs.Outputs(folder) as files:
             document = FreeCAD.newDocument("Job")
             try:
                 document.Label, document.UndoMode = job.name, 0

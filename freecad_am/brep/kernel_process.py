@@ -28,6 +28,8 @@ from typing import Any, TypeVar
 import FreeCAD
 import Part
 
+from ..core.one_thread import ENVIRONMENT
+
 T = TypeVar("T")
 
 HOST = Path(__file__).with_name("kernel_host.py")
@@ -112,7 +114,7 @@ class _Process:
     def __init__(self, python: str) -> None:
         self.popen: Any = subprocess.Popen(
             [python, str(HOST)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            env={**os.environ, **ENVIRONMENT}, creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
         self.kill = weakref.finalize(self, _kill, self.popen)
         self.told: queue.Queue[Any] = queue.Queue()

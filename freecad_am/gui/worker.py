@@ -21,6 +21,7 @@ from typing import Any
 
 from PySide import QtCore
 
+from ..core import one_thread
 from ..objects.progress import Cancelled, told_to
 
 AGAIN = 200  # ms between two looks at the threads that go on
@@ -65,6 +66,7 @@ class Worker:
 
     def _run(self) -> None:
         try:
+            one_thread.here()
             try:
                 with told_to(self._tell):
                     self._value = self._work()
@@ -109,6 +111,7 @@ def _attend(worker: Worker) -> None:
     if not _going:
         _collecting = gc.isenabled()
         gc.disable()
+        one_thread.hold()
         QtCore.QTimer.singleShot(AGAIN, _look)
     _going.append(worker)
 
@@ -120,5 +123,7 @@ def _look() -> None:
         gc.collect(YOUNG)
     if _going:
         QtCore.QTimer.singleShot(AGAIN, _look)
-    elif _collecting:
+        return
+    one_thread.release()
+    if _collecting:
         gc.enable()

@@ -20,6 +20,7 @@ from typing import Any, ClassVar
 import FreeCAD as App
 
 from ..core.issues import ERROR, AmError, InfeasibleError, InputError, Issue, has_errors
+from ..core.one_thread import one_thread
 from . import expressions, faults, hooks, progress, properties, staleness, store
 from .findings import as_text, first_message, issues_of, say
 from .properties import HIDDEN, OUTPUT, READ_ONLY
@@ -151,7 +152,7 @@ class Stage(Stored):
         if hooks.carrying():
             raise InputError("BUSY", obj.Label, "something else is being computed; wait until that is done, or cancel it")
         try:
-            with faults.kernel(obj):
+            with one_thread(), faults.kernel(obj):
                 key = self.key(obj)
                 outdated = (force or key != obj.Key) and self._compute(obj, key)
             found = issues_of(obj)
