@@ -30,6 +30,10 @@ OURS = {
     "core/simulation": {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/kinematics", "core/motion",
     },
+    "core/preflight": {
+        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
+        "core/simulation",
+    },
     "posts": {"core/issues", "core/program"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "kdl"},

@@ -40,6 +40,8 @@ _MOTION_PER_AXIS = (
     ("speed_ratio_max", "largest share of the speed limit"),
     ("acceleration_max_deg_s2", "largest acceleration, deg/s\u00b2"), ("jerk_max_deg_s3", "largest jerk, deg/s\u00b3"),
 )
+# how a promise is marked: what was not checked is never green
+_MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
 STYLE = """
 :root{--ink:#1d2430;--soft:#667085;--line:#dfe3ea;--paper:#fff;--ground:#f3f5f8;--good:#1a7f4b;--bad:#b8322a;--warn:#9a6700}
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ef;--soft:#98a2b3;--line:#323a47;--paper:#1a202b;--ground:#11151c;
@@ -60,6 +62,7 @@ table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:ta
 th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
 tr:first-child>*{border-top:0}th{color:var(--soft);font-weight:500}th:first-child,td:first-child{text-align:left}
 td.text,td.place{text-align:left}td.text{white-space:normal}
+.good{color:var(--good);font-weight:600}.unknown{color:var(--soft);font-style:italic}
 .error{color:var(--bad);font-weight:600}.warning{color:var(--warn);font-weight:600}
 svg{width:100%;height:auto;display:block}svg text{fill:var(--soft);font:11px system-ui,sans-serif}
 svg .title{fill:var(--ink);font-size:13px;font-weight:600}
@@ -103,6 +106,7 @@ def render(content: Content) -> str:
     sections = [
         f'<header><h1>{name}</h1><span class="status {status}">{status}</span></header>'
         f'<p class="sub">{escape(_subtitle(content))}</p>{_cards(report)}{_issues(report["issues"])}',
+        _preflight(report["preflight"]),
         "" if pictures.modules else f'<p class="sub">{MISSING}</p>',
         f'<figure>{view.picture(content.toolpath, content.platform_diameter)}<figcaption>The beads, coloured by layer; '
         "short strokes show the build direction.</figcaption></figure>",
@@ -292,6 +296,26 @@ def _issues(issues: list[dict[str, Any]]) -> str:
         )
     more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
     return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}<h2>Path</h2>'
+
+
+def _preflight(promises: list[dict[str, Any]]) -> str:
+    """Every promise with its mark: kept, broken, or not checked."""
+    if not promises:
+        return ""
+    rows = []
+    for one in promises:
+        mark, word = _MARKS[one["ok"]]
+        place = one["place"] or {}
+        where = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place.get(word) is not None)
+        worst = "" if one["worst"] is None else f"{_figure(one['worst'])} {one['unit']}".strip()
+        sign = "\u2265" if one["at_least"] else "\u2264"
+        bound = "" if one["bound"] is None else f"{sign} {_figure(one['bound'])} {one['unit']}".strip()
+        rows.append(
+            f'<tr><td class="{mark}">{word}</td><td class="text">{escape(one["promise"])}</td><td>{worst}</td>'
+            f'<td>{bound}</td><td class="place">{where}</td><td class="text">{escape(one["how"])}</td></tr>'
+        )
+    head = "".join(f"<th>{word}</th>" for word in ("", "promise", "worst", "allowed", "place", "how it was checked"))
+    return f'<h2>Preflight</h2><div class="table"><table><tr>{head}</tr>{"".join(rows)}</table></div>'
 
 
 def _programs(programs: list[str]) -> str:

@@ -45,6 +45,7 @@ def build(
         "totals": totals.as_dict(sums),
         "spacing_mm": spread(spacing),
         "joints": None,
+        "preflight": [],
         "comparison": [],
         "spacing_comparison": [],
         "process": _process(process),

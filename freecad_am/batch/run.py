@@ -219,6 +219,8 @@ def _write(
             report.add_joints(content, planned.joint_path, cell, job.joints, stages.joint_path.Seconds)
     with stages.timed("spacing_comparison", session):
         compared = _compare_spacings(job, stages, content, toolpath, distances, planned, cell, session)
+    with stages.timed("preflight", session):
+        content["preflight"] = [one.as_dict() for one in _preflight(stages)]
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])
@@ -229,6 +231,13 @@ def _write(
             files.write(outputs.PAGE, [page_text])
     written = files.publish(outputs.earlier_outputs(files.folder))
     return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
+
+
+def _preflight(stages: Stages) -> Any:
+    """The promises of the stages as far as they got."""
+    from freecad_am.objects import preflight
+
+    return preflight.of_stages(stages.toolpath, stages.joint_path, stages.program)
 
 
 def _compare_spacings(

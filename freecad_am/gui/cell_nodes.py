@@ -20,8 +20,8 @@ from ..core.simulation.link_rods import Mesh
 from ..core.simulation.placing import at_rest, placing
 from ..core.simulation.solids import capsule
 from ..core.toolpath import Toolpath
+from ..objects.link_meshes import meshes_of
 from .lines import Array, placed, turned
-from .link_meshes import meshes_of
 from .machine_links import Links, MachineNodes, of_solid, plain_links
 from .wall_nodes import unpickable
 

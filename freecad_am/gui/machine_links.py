@@ -7,18 +7,21 @@ from collections.abc import Sequence
 from itertools import zip_longest
 from typing import Any
 
+import FreeCAD as App
 import numpy as np
 from numpy.typing import NDArray
 from pivy import coin
 
+from ..core.issues import InputError
 from ..core.kinematics.link_shape import LinkShape
 from ..core.kinematics.machine import Machine
 from ..core.simulation import robot_links, table_links
 from ..core.simulation.link_rods import Mesh
 from ..core.simulation.solids import BRIGHT, DARK, Solid
 from ..objects import preferences
+from ..objects.link_meshes import mesh_of
 from .lines import fill
-from .link_meshes import drawn_mesh
+from .texts import error_line
 
 Array = NDArray[np.float64]
 
@@ -64,7 +67,7 @@ class MachineNodes:
     def _add(self, shape: LinkShape | None, mesh: Mesh | None, plain: Sequence[Solid]) -> None:
         link, transform, materials = coin.SoSeparator(), coin.SoMatrixTransform(), []
         link.addChild(transform)
-        mesh = mesh if mesh is not None or shape is None else drawn_mesh(shape)
+        mesh = mesh if mesh is not None or shape is None else _drawn_mesh(shape)
         own = None if mesh is None else _of_mesh(mesh)
         parts = [(own, _SHAPE if shape is None or shape.colour is None else shape.colour)] if own is not None else [
             (of_solid(solid), TONES.get(solid.tone)) for solid in plain
@@ -117,6 +120,16 @@ def of_solid(solid: Solid) -> Any:
     fill(shape.coordIndex, _corners(solid.triangles))
     shape.vertexProperty = values
     return shape
+
+
+def _drawn_mesh(shape: LinkShape) -> Mesh | None:
+    """The mesh of a user's file that is to be drawn; None when it cannot be read, which is told on the report view."""
+    try:
+        return mesh_of(shape)
+    except InputError as error:
+        told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
+        App.Console.PrintError(error_line(told))
+        return None
 
 
 def _of_mesh(mesh: Mesh) -> Any:

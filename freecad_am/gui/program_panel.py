@@ -11,13 +11,19 @@ import FreeCAD as App
 
 from .. import api
 from ..core.issues import AmError
+from ..core.parameters.program import ProgramParameters
+from ..core.preflight.promise import Place, Promise
 from ..core.simulation.timeline import timeline
 from ..core.simulation.totals import Totals, totals
+from ..objects import preflight
 from ..objects.program import Job, Program, Written, posted
 from ..objects.stage import Outcome
+from ..objects.staleness import UP_TO_DATE
 from ..posts import catalogue
 from . import inputs, suggestions
 from .listing import listing
+from .path import dock
+from .preflight_list import PreflightList, summary
 from .preview import Draft
 from .preview_panel import PreviewPanel, told_stale
 from .selection import meant
@@ -33,7 +39,7 @@ POST, START, START_LAYER = "program_post", "program.start_at", "program_start_at
 @dataclass(frozen=True)
 class Beginning:
     """How a program begins. name: of its main file; text: the first lines. lines, files: in all. stale: labels of the inputs
-    that were out of date when it was begun."""
+    that were out of date when it was begun. promises: of its preflight."""
 
     name: str
     text: str
@@ -42,10 +48,12 @@ class Beginning:
     sums: Totals
     dry: bool
     stale: tuple[str, ...]
+    promises: tuple[Promise, ...]
 
 
 class ProgramPanel(PreviewPanel):
-    """Makes a program, or changes one. Its preview is written as the program will be, but not read back."""
+    """Makes a program, or changes one. Its preview is written as the program will be; it is read back with OK, and until
+    then its preflight says so."""
 
     stage, draft = Program, "Program"
 
@@ -70,6 +78,15 @@ class ProgramPanel(PreviewPanel):
         self.text.setWhatsThis(help)
         self.text.hide()
         self.column.insertWidget(self.column.indexOf(self.state) + 1, self.text)
+        self.preflight = PreflightList(self._go)
+        self.preflight.widget.hide()
+        self.column.insertWidget(self.column.indexOf(self.text) + 1, self.preflight.widget)
+
+    def _go(self, place: Place) -> None:
+        """A promise was clicked: the path is shown up to where it is worst."""
+        path = self._links()["JointPath"]
+        if path is not None:
+            dock.go_to(path, *place)
 
     def _links(self) -> dict[str, Any]:
         path = next(choice for choice in self.choices if choice is not self.name)
@@ -77,11 +94,22 @@ class ProgramPanel(PreviewPanel):
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Beginning | None]]:
         job, stale = draft.stage.job(draft.obj), self._stale_inputs()
+        path = draft.obj.JointPath
+        read = self._read_back(job, path)
+        promised = preflight.prepared(path.Toolpath, path, job.parameters, read)
 
         def work() -> tuple[Outcome, Beginning | None]:
-            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job, stale)
+            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job, stale, promised)
 
         return work
+
+    def _read_back(self, job: Job, path: Any) -> Any:
+        """The `Verification` of the program, where it is up to date and what is entered is what it was made of."""
+        obj = self.obj
+        if obj is None or obj.Status != UP_TO_DATE or obj.JointPath is not path or obj.ProgramName != job.name:
+            return None
+        same = obj.Proxy.parameters(obj, ProgramParameters) == job.parameters
+        return preflight.read_back_of(obj) if same else None
 
     def _draw(self, made: Outcome, drawing: Beginning | None) -> str:
         if drawing is None:
@@ -90,9 +118,12 @@ class ProgramPanel(PreviewPanel):
         self.text.show()
         if self.text.toPlainText() != drawing.text:
             self.text.setPlainText(drawing.text)
-        return "\n".join([*_told(drawing), *told_stale(drawing.stale)])
+        self.preflight.widget.show()
+        self.preflight.show(drawing.promises)
+        return "\n".join([*_told(drawing), summary(drawing.promises), *told_stale(drawing.stale)])
 
     def _draw_without(self) -> None:
+        self.preflight.clear()
         self.text.clear()  # once seen it keeps its room: a field that is typed into stays in place
 
     def _show_own(self, visible: bool) -> None:
@@ -103,7 +134,7 @@ class ProgramPanel(PreviewPanel):
         return (START_LAYER, translated(error.message)) if error.where == START else super()._placed(error)
 
 
-def _begun(job: Job, stale: tuple[str, ...]) -> Beginning:
+def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginning:
     """The program of a joint path. Raises what writing it raises."""
     made = posted(job)
     main = catalogue.main_file(made.files)
@@ -112,6 +143,7 @@ def _begun(job: Job, stale: tuple[str, ...]) -> Beginning:
     return Beginning(
         main, "\n".join(lines), sum(content.count(b"\n") for content in made.files.values()), len(made.files),
         totals(made.motion, times, job.process, made.toolpath.layer_height), job.parameters.dry_run, stale,
+        promised(),
     )
 
 

@@ -13,9 +13,11 @@ from . import fanuc, linuxcnc, siemens, staubli
 
 
 class Post(Protocol):
-    """What a post module offers. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where they can."""
+    """What a post module offers. NO_WIRE: why programs cannot tell the speed of the wire along a bead, '' where they can.
+    ON_CONTROLLER: what only the controller can show."""
 
     NO_WIRE: str
+    ON_CONTROLLER: tuple[str, ...]
 
     def program_name(self, name: str, where: str) -> str:
         """The program's name on the controller; raises InputError PROGRAM_NAME, at `where`, for one it refuses."""

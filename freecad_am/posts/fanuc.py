@@ -30,6 +30,7 @@ from . import fanuc_listing as text
 from . import fanuc_numbers as numbers
 from .fanuc_read import read
 from .names import Naming
+from .on_controller import on_controller
 from .parts import Piece, Run, grouped, packed
 from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
 
@@ -40,6 +41,13 @@ Array = NDArray[np.float64]
 LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
+ON_CONTROLLER = on_controller(
+    "UFRAME and UTOOL of the numbers in the program are those of the cell",
+    "Joint values mean what the machine file says, J3 above all",
+    "An axis without limits has the Continuous Turn option",
+    "Payload is set and the override is 100 %",
+    "The deposit output switches the process",
+)
 AXES = 6
 MOST_LINES = 9999
 

@@ -34,6 +34,7 @@ from . import nc_numbers as numbers
 from . import nc_parts as common
 from .linuxcnc_read import read
 from .names import Naming
+from .on_controller import on_controller
 from .parts import Piece, Run, grouped, packed
 from .refusals import refuse_cooling
 
@@ -44,6 +45,12 @@ Array = NDArray[np.float64]
 NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
+ON_CONTROLLER = on_controller(
+    "The tool table has the torch's length, and the kinematics has the machine file's offsets",
+    "M428 and M429 switch the kinematics, and the work offset is that of the remarks",
+    "The digital and analogue pins are connected to the process",
+    "The feed override is 100 %",
+)
 # pins motion.digital-out, -in and analog-out, counted from 0 there
 LAST_PIN = 64
 # the work offset that this program sets to zero, for moves of the axes themselves

@@ -32,6 +32,7 @@ from ..core.program import (
 from . import nc_numbers as numbers
 from . import nc_parts as common
 from .names import Naming
+from .on_controller import on_controller
 from .parts import Piece, Run, grouped, packed
 from .refusals import refuse_cooling
 from .siemens_read import read
@@ -42,6 +43,12 @@ Array = NDArray[np.float64]
 
 _NO_END = 10**9
 NO_WIRE = ""  # the speed of the wire can follow that of the torch
+ON_CONTROLLER = on_controller(
+    "The tool offset has the torch's length, and G500 is the machine's zero",
+    "TRAORI and the work offset are those of the machine file and of the remarks",
+    "The words that switch the deposit and the inputs are taken up in the PLC",
+    "The feed override is 100 %",
+)
 # an endless axis goes the shorter way
 LARGEST_TURN = 180.0 - 0.001
 # address extensions of H words, numbers of inputs the controller reads itself, and of analogue inputs and outputs

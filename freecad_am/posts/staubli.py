@@ -32,6 +32,7 @@ from ..core.program import (
 from . import staubli_numbers as numbers
 from . import staubli_text as text
 from .names import Naming
+from .on_controller import on_controller
 from .parts import Piece, Run, grouped, packed, size
 from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
 from .staubli_read import read
@@ -43,6 +44,12 @@ Array = NDArray[np.float64]
 NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
 # why the speed of the wire cannot follow that of the torch
 NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
+ON_CONTROLLER = on_controller(
+    "The controller's world is the robot's base, and joint speeds are its nominal ones",
+    "The outputs and inputs are linked to the process",
+    "Loaded parts and tools that stand on other tools have been tried with a dry run",
+    "Payload is set and the monitor speed is 100 %",
+)
 AXES = 6
 SETUPS = ("part-on-robot", "tool-on-robot")
 PART = "prog"  # alias of the part that is loaded

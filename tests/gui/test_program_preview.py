@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The panel of a program shows how it begins and what it is in all, and what the controller refuses as it is typed."""
 
+import re
 import threading
 
 import pytest
@@ -129,3 +130,37 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
     assert note.isVisible() and "JointPath is missing" in note.text() and "Error" not in state.text() + note.text()
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(person, hand, joint_path):
+    document = joint_path.Document
+    program = api.make_program(document, joint_path, name="CUP", post="fanuc")
+    stage_panel.edit(program)
+    panel = person.panel(PANEL)
+    told(person, panel, "Preflight: ")
+    promises = person.field(panel, "Preflight")
+    lines = [promises.item(row) for row in range(promises.count())]
+    marks = [line.text()[0] for line in lines]
+    kept, broken, unchecked = map(marks.count, "✓✗?")
+    assert kept + broken + unchecked == len(marks)
+    assert told(person, panel, f"Preflight: {kept} kept, {broken} broken, {unchecked} not checked")
+    text = next(line for line in lines if "The text takes the tool" in line.text())
+    assert text.text().startswith("✓") and "mm" in text.text()
+    speed = next(line for line in lines if "largest speed" in line.text())
+    layer = int(re.search(r"layer (\d+)", speed.text()).group(1))
+    person.until(lambda: promises.isVisible(), "the preflight")
+    hand.reveal(promises)
+    promises.scrollToItem(speed)
+    person.idle()
+    centre = promises.viewport().mapToGlobal(promises.visualItemRect(speed).center())
+    hand.at((centre.x(), centre.y()))
+    person.until(lambda: joint_path.ViewObject.Proxy.shown is not None, "the path up to the place")
+    assert joint_path.ViewObject.Proxy.shown[1] == layer
+    person.screenshot("preflight")
+    # what is entered otherwise has not been read back
+    hand.enter(panel, "MaxPoints", "300")
+    person.until(
+        lambda: any(
+            promises.item(row).text().startswith("? The text takes the tool") for row in range(promises.count())
+        ), "a text that was not read back", 20,
+    )

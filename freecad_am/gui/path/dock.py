@@ -8,6 +8,7 @@ from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+import numpy as np
 from PySide import QtGui
 
 from .. import docks, preference_watch, redraw
@@ -239,6 +240,19 @@ class PathDock(Follower):
         first = layer if self.single.isChecked() else begin
         self._show(view, (first, layer, row + 1 - rows.of_layers(layer, layer)[0]))
 
+    def go_to(self, obj: Any, layer: int, bead: int | None, point: int | None) -> None:
+        """Open, and show a path up to a point of a bead of a layer, counted from 0; the layer alone where these are None."""
+        self.open(obj)
+        rows = obj.ViewObject.Proxy.rows
+        if rows is None or not 0 <= layer < rows.layer_count:
+            return
+        beads = np.flatnonzero(rows.layers == layer)
+        row = rows.of_layers(layer, layer)[1] - 1
+        if bead is not None and bead < len(beads):
+            start, end = rows.starts[beads[bead]], rows.starts[beads[bead] + 1]
+            row = int(min(start + (point or 0), end - 1))
+        self._picked(obj.ViewObject.Proxy, row)
+
     def _set(self, name: str, value: Any) -> None:
         view = self.view()
         if view is not None:
@@ -278,10 +292,19 @@ _dock: PathDock | None = None
 
 def show(obj: Any = None) -> None:
     """Open the dock, of a path or of what is to be seen."""
+    _made().open(obj)
+
+
+def go_to(obj: Any, layer: int, bead: int | None, point: int | None) -> None:
+    """Open the dock, and show a path up to a place, counted from 0."""
+    _made().go_to(obj, layer, bead, point)
+
+
+def _made() -> PathDock:
     global _dock
     if _dock is None:
         _dock = PathDock()
-    _dock.open(obj)
+    return _dock
 
 
 def add_action(menu: Any, obj: Any) -> None:

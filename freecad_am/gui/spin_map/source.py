@@ -25,9 +25,9 @@ from ...core.simulation.link_rods import Mesh
 from ...core.toolpath import Bead, Toolpath
 from ...objects import user_machines
 from ...objects.joint_path import planned_of
+from ...objects.link_meshes import meshes_of
 from ...objects.stage import stage_of
 from ..lines import Array
-from ..link_meshes import meshes_of
 
 
 @dataclass(frozen=True)

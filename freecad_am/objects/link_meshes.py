@@ -3,14 +3,11 @@
 
 from __future__ import annotations
 
-import FreeCAD as App
-
 from ..brep import looks
 from ..core.issues import InputError
 from ..core.kinematics.link_shape import LinkShape
 from ..core.kinematics.machine import Machine
 from ..core.simulation.link_rods import Mesh
-from .texts import error_line
 
 
 def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
@@ -23,16 +20,6 @@ def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
         except InputError:
             found.append(None)
     return tuple(found)
-
-
-def drawn_mesh(shape: LinkShape) -> Mesh | None:
-    """The mesh of a user's file that is to be drawn; None when it cannot be read, which is told on the report view."""
-    try:
-        return mesh_of(shape)
-    except InputError as error:
-        told = InputError(error.code, shape.where, f"{error.message}; the link has its plain solid for now")
-        App.Console.PrintError(error_line(told))
-        return None
 
 
 def mesh_of(shape: LinkShape) -> Mesh:

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The preflight: every promise of a job in the order in which a process engineer reads them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import Issue
+from ..kinematics.cell import Cell
+from ..motion import Motion
+from ..parameters.build_direction import BuildDirectionParameters
+from ..simulation.arm import ArmTouches
+from ..toolpath import Toolpath
+from . import clearance, deposit, joints, written
+from .promise import Promise
+from .written import ReadBack
+
+Array = NDArray[np.float64]
+
+OF_MOTION = (
+    "Every axis stays within its limits", "The joints bring the tool to every point",
+    "No axis is asked for more than its largest speed", "The tool keeps away from singularities while it deposits",
+    "The nozzle stays clear on the rapids", "The arm stays clear of part, deposit, platform and nozzle",
+)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a preflight looks at. toolpath: as it is run. issues: of all stages. motion: as the program runs it, None without
+    a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by
+    shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
+    the controller can show."""
+
+    toolpath: Toolpath
+    build: BuildDirectionParameters
+    issues: tuple[Issue, ...]
+    cell: Cell | None = None
+    motion: Motion | None = None
+    condition: Array | None = None
+    threshold: Array | None = None
+    arm: ArmTouches | None = None
+    true_shapes: bool = False
+    read: ReadBack | None = None
+    on_controller: tuple[str, ...] = ()
+
+
+def promises(evidence: Evidence) -> tuple[Promise, ...]:
+    """All promises, those about the deposit first."""
+    issues = evidence.issues
+    return (
+        deposit.layers(evidence.toolpath, issues),
+        clearance.nozzle(issues, evidence.build),
+        *_of_motion(evidence),
+        *written.promises(evidence.read, evidence.on_controller),
+    )
+
+
+def _of_motion(evidence: Evidence) -> list[Promise]:
+    cell, motion = evidence.cell, evidence.motion
+    if cell is None or motion is None or evidence.condition is None or evidence.threshold is None:
+        return [Promise(what, "not checked: there is no joint path", None) for what in OF_MOTION]
+    return [
+        *joints.promises(motion, cell, evidence.condition, evidence.threshold),
+        clearance.rapids(evidence.issues), clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
+    ]

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the nozzle and the links of the arm keep clear of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..issues import Issue
+from ..kinematics.arm_contact import NONE
+from ..kinematics.cell import Cell
+from ..motion import Motion
+from ..parameters.build_direction import BuildDirectionParameters
+from ..simulation.arm import ArmTouches
+from .promise import Place, Promise, issue_place, number, of_codes, row_place
+
+DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")
+RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")
+
+
+def nozzle(issues: Sequence[Issue], build: BuildDirectionParameters) -> Promise:
+    """While depositing."""
+    what = "The nozzle stays clear of deposit, part and platform while it deposits"
+    if build.clearance == "none":
+        return Promise(what, "not checked: build_direction.clearance is none", None)
+    found = of_codes(issues, DEPOSITING)
+    how = "the nozzle as a cone, at every point and halfway between, against what is there by then"
+    return Promise(what, how, not found, place=issue_place(found))
+
+
+def rapids(issues: Sequence[Issue]) -> Promise:
+    """On the way between beads."""
+    found = of_codes(issues, RAPIDS)
+    return Promise(
+        "The nozzle stays clear on the rapids", "retract, travel and approach driven in small steps as they are written",
+        not found, place=issue_place(found),
+    )
+
+
+def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:
+    """Of the links. Plain ones, drawn from the kinematics alone, can neither keep the promise nor break it."""
+    what = "The arm stays clear of part, deposit, platform and nozzle"
+    if touches is None:
+        return Promise(what, "not checked: the machine file tells no shapes of its links", None)
+    rows, met = np.flatnonzero(touches.link != NONE), "nothing"
+    place: Place | None = None
+    if len(rows):
+        place = row_place(motion, int(rows[0]))
+        link, other = touches.link[rows[0]], touches.names[touches.what[rows[0]]]
+        met = f"{other} with {('base', *cell.machine.axes)[link]}"
+    step = number(math.degrees(touches.step))
+    if not true_shapes:
+        how = (
+            f"not checked: without the manufacturer's shapes, links drawn from the kinematics touch {met}, looked at every "
+            f"{step} deg"
+        )
+        return Promise(what, how, None, float(len(rows)), "points", None, place)
+    how = (
+        f"shapes of all links, every {step} deg of the whole motion: they touch {met}; links against each other are not "
+        "checked"
+    )
+    return Promise(what, how, not len(rows), float(len(rows)), "points", 0.0, place)

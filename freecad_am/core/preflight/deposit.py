@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is deposited against the part, by the issues and figures that planning it has found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..issues import WARNING, Issue
+from ..process import spacing
+from ..toolpath import Toolpath
+from .promise import Promise, issue_place, of_codes
+
+
+def layers(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
+    """Of the distance between layers; what families allow of it they have said themselves."""
+    what = "Layers lie one layer height apart"
+    distances = [values for values in spacing.between_layers(toolpath) if len(values)]
+    if not distances:
+        return Promise(what, "there is one layer alone", None)
+    height = toolpath.layer_height
+    extremes = [(float(np.nanmin(values)), float(np.nanmax(values))) for values in distances]
+    low, high = min(low for low, _ in extremes), max(high for _, high in extremes)
+    worst = low if height - low > high - height else high
+    wide = of_codes(issues, ("SPACING",), WARNING)
+    how = "distance in space of each point to the layer below, against what the strategy allows"
+    return Promise(what, how, not wide, worst, "mm", place=issue_place(wide))

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Limits, reach, speeds and singularities along a motion, rapids included."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kinematics.cell import Cell
+from ..motion import Motion
+from ..simulation.margins import speed_ratios
+from ..simulation.watch import shown_margins
+from .promise import Promise, row_place
+
+Array = NDArray[np.float64]
+
+ROUNDING = 1e-7  # deg or mm beyond a limit, and share of a speed, that are rounding
+COMPUTED_MM = 1e-6  # mm by which two computations of one pose may differ
+PERCENT = 100.0
+
+
+def promises(motion: Motion, cell: Cell, condition: Array, threshold: Array) -> list[Promise]:
+    """The promises about the joints of a motion. condition, threshold: (n,) of its rows, NaN where not known."""
+    return [
+        _limits(motion, cell), _reach(motion, cell), _speeds(motion, cell), _singularities(motion, condition, threshold),
+    ]
+
+
+def _limits(motion: Motion, cell: Cell) -> Promise:
+    what, how = "Every axis stays within its limits", "every point of the motion, rapids included, against the machine file"
+    margins = shown_margins(cell, motion.joints)
+    if not np.isfinite(margins).any():
+        return Promise(what, "no axis has limits, or no point is reached", None)
+    row, limit = np.unravel_index(int(np.nanargmin(margins)), margins.shape)
+    worst = float(margins[row, limit])
+    units = cell.machine.units
+    return Promise(
+        what, how, bool(worst >= -ROUNDING), worst, units[limit] if limit < len(units) else "deg", 0.0,
+        row_place(motion, int(row)), at_least=True,
+    )
+
+
+def _reach(motion: Motion, cell: Cell) -> Promise:
+    what = "The joints bring the tool to every point"
+    lost = np.flatnonzero(~motion.reachable)
+    if len(lost):
+        place = row_place(motion, int(lost[0]))
+        return Promise(what, "closed-form inverse", False, float(len(lost)), "points", 0.0, place)
+    tip, _ = cell.tip_in_part(cell.machine.chain.forward(motion.joints))
+    laid = np.flatnonzero(motion.deposit)
+    away = np.linalg.norm(tip[laid] - motion.position[laid], axis=1)
+    row = int(laid[int(away.argmax())])
+    how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
+    worst = float(away.max())
+    return Promise(what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row))
+
+
+def _speeds(motion: Motion, cell: Cell) -> Promise:
+    what = "No axis is asked for more than its largest speed"
+    if not np.isfinite(cell.machine.max_speed).any():
+        return Promise(what, "the machine file tells no largest speeds", None)
+    ratios = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed).max(axis=1)
+    if not np.isfinite(ratios).any():
+        return Promise(what, "no point is reached", None)
+    row = int(np.nanargmax(ratios))
+    worst = PERCENT * float(ratios[row])
+    how = "mean speed of each axis on each move, rapids included, against the machine file"
+    return Promise(what, how, bool(worst <= PERCENT * (1.0 + ROUNDING)), worst, "%", PERCENT, row_place(motion, row))
+
+
+def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promise:
+    what = "The tool keeps away from singularities while it deposits"
+    known = np.isfinite(condition) & np.isfinite(threshold)
+    if not known.any():
+        return Promise(what, "not known of this machine", None)
+    spare = np.where(known, condition - threshold, np.inf)
+    row = int(spare.argmin())
+    how = "inverse condition number of the Jacobian at the points of the deposit, against the least one allowed"
+    return Promise(
+        what, how, bool(spare[row] >= -ROUNDING), float(condition[row]), "", float(threshold[row]), row_place(motion, row),
+        at_least=True,
+    )

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is promised of a job before it is started, how it was checked, and its worst value with its place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..issues import ERROR, Issue
+from ..motion import Motion
+
+Array = NDArray[np.float64]
+
+
+class Place(NamedTuple):
+    """Where a worst value is, counted from 0; None for no such place."""
+
+    layer: int
+    bead: int | None
+    point: int | None
+
+
+@dataclass(frozen=True)
+class Promise:
+    """One line of the preflight. ok: None where it was not checked, and `how` says why.
+
+    promise: what holds. how: how it was checked. worst: its worst value, in `unit`, None where there is no figure. bound:
+    what `worst` is compared with, in the same unit: the most it may be, or with at_least the least. place: where the worst
+    value is.
+    """
+
+    promise: str
+    how: str
+    ok: bool | None
+    worst: float | None = None
+    unit: str = ""
+    bound: float | None = None
+    place: Place | None = None
+    at_least: bool = False
+
+    def as_dict(self) -> dict[str, Any]:
+        """The form used in report.json."""
+        return {
+            "promise": self.promise, "how": self.how, "worst": self.worst, "unit": self.unit, "bound": self.bound,
+            "at_least": self.at_least, "place": None if self.place is None else self.place._asdict(), "ok": self.ok,
+        }
+
+    @property
+    def figure(self) -> str:
+        """The worst value with its unit and its bound, '' without one."""
+        if self.worst is None:
+            return ""
+        value = " ".join(filter(None, (number(self.worst), self.unit)))
+        return value if self.bound is None else f"{value} ({'≥' if self.at_least else '≤'} {number(self.bound)})"
+
+
+def number(value: float) -> str:
+    """A figure with four digits; what rounding leaves is 0."""
+    if not math.isfinite(value):
+        return "∞" if value > 0.0 else "-∞"
+    return "0" if abs(value) < 1e-12 else f"{value:.4g}"
+
+
+def row_place(motion: Motion, row: int) -> Place:
+    """The place of a row of a motion."""
+    return Place(int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
+
+
+def issue_place(issues: Sequence[Issue]) -> Place | None:
+    """The place of the first issue that has one."""
+    return next((Place(one.layer, one.bead, one.point) for one in issues if one.layer is not None), None)
+
+
+def of_codes(issues: Sequence[Issue], codes: Collection[str], level: str = ERROR) -> list[Issue]:
+    """The issues of a level that have one of the codes."""
+    return [issue for issue in issues if issue.level == level and issue.code in codes]

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The motion of a joint path as it is run: all of it, or the rows of a program, and what the arm meets on the way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import Issue
+from ..core.kinematics.arm_contact import ArmContact
+from ..core.kinematics.cell import PART_ON_ROBOT, Cell
+from ..core.motion import Motion
+from ..core.parameters.process import ProcessParameters
+from ..core.parameters.program import ProgramParameters
+from ..core.planning import moving_tool
+from ..core.planning import program as programs
+from ..core.simulation import link_rods
+from ..core.simulation.arm import MOST, ArmTouches, arm_touches, laid
+from ..core.simulation.link_rods import Mesh
+from ..core.simulation.margins import on_deposit
+from ..core.toolpath import Toolpath
+from .joint_path import Planned
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AsRun:
+    """A motion of n rows. condition, threshold: (n,), NaN where not known. issues: by its points."""
+
+    motion: Motion
+    condition: Array
+    threshold: Array
+    issues: tuple[Issue, ...]
+
+
+def as_run(
+    planned: Planned, cell: Cell, chord_error: float, settings: ProgramParameters | None, issues: tuple[Issue, ...]
+) -> AsRun:
+    """All of a joint path without `settings`; of a program with the points that moves in a line get, and only from where it
+    starts."""
+    motion = planned.motion
+    condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
+    if settings is None:
+        return AsRun(motion, condition, threshold, issues)
+    if settings.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
+        origin = moving_tool.origins(motion, cell, chord_error)
+        beads = [path.bead for path in planned.joint_path.beads]
+        motion = moving_tool.kept_straight(motion, cell, chord_error, beads)
+        condition, threshold = condition[origin], threshold[origin]
+        issues = tuple(_renumbered(issue, planned.motion, motion, origin) for issue in issues)
+    rows = programs.rows_from(motion, settings.start_at)
+    motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
+    return AsRun(motion, condition[rows], threshold[rows], issues)
+
+
+def arm_of(
+    motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...],
+    most: int = MOST,
+) -> ArmTouches | None:
+    """What the links of a robot touch, looked at in so many places at most; None for machines with rotary axes, of whose
+    links no file tells enough."""
+    if cell.machine.is_table:
+        return None
+    rods = link_rods.of_robot(cell.machine.chain, shapes)
+    deposited = laid(motion, process.bead_width, toolpath.layer_height)
+    return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited), most)
+
+
+def _renumbered(issue: Issue, before: Motion, after: Motion, origin: NDArray[np.int64]) -> Issue:
+    """A finding by the number that its point has among added ones."""
+    here = before.deposit & (before.layer == issue.layer) & (before.bead == issue.bead) & (before.point == issue.point)
+    if issue.point is None or not here.any():
+        return issue
+    row = int(np.searchsorted(origin, int(np.argmax(here)), side="right")) - 1
+    return replace(issue, point=int(after.point[row]))

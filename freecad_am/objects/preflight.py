@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The preflight of a document's stages: what is promised of them, read from their results."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from ..core.issues import Issue, has_errors
+from ..core.kinematics import cell as cells
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.cell import CellParameters
+from ..core.parameters.process import ProcessParameters
+from ..core.parameters.program import ProgramParameters
+from ..core.preflight.checks import Evidence, promises
+from ..core.preflight.promise import Promise
+from ..core.preflight.written import ReadBack
+from ..core.toolpath import Toolpath
+from ..posts import catalogue
+from ..verify import Verification
+from . import user_machines
+from .as_run import arm_of, as_run
+from .findings import issues_of
+from .joint_path import Planned
+from .link_meshes import meshes_of
+
+ARM_PLACES = 6_000  # at which the arm is looked at: a tenth of the time that planning takes, at most
+
+Work = Callable[[], tuple[Promise, ...]]
+
+
+def of_stages(toolpath: Any, path: Any = None, program: Any = None) -> tuple[Promise, ...]:
+    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). Raises
+    InputError 'NO_RESULT' where one has no result."""
+    if program is None:
+        return prepared(toolpath, path)()
+    settings = program.Proxy.parameters(program, ProgramParameters)
+    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)))()
+
+
+def read_back_of(program: Any) -> Verification | None:
+    """How a program object was read back, None where it was not."""
+    found: Verification | None = program.Proxy.value(program).verification if program.Key else None
+    return found
+
+
+def prepared(
+    toolpath: Any, path: Any = None, settings: ProgramParameters | None = None, read: Verification | None = None,
+    more: tuple[Issue, ...] = (),
+) -> Work:
+    """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
+    is read now. settings: of the program that is written of it; read: how that was read back; more: its findings. Raises
+    InputError 'NO_RESULT' where one has no result."""
+    feature = toolpath.Feature
+    build = feature.Proxy.parameters(feature, BuildDirectionParameters)
+    stages = [stage for stage in (feature, toolpath, path) if stage is not None]
+    issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
+    planned = toolpath.Proxy.reader(toolpath)
+    if path is None:
+        return lambda: promises(Evidence(planned(), build, issues))
+    joints, looks = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
+    process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+    folders = tuple(user_machines.folders())
+    return lambda: of_motion(planned(), joints(), looks, folders, build, process, settings, issues, read)
+
+
+def of_motion(
+    toolpath: Toolpath, planned: Planned, looks: CellParameters, folders: tuple[str, ...], build: BuildDirectionParameters,
+    process: ProcessParameters, settings: ProgramParameters | None, issues: tuple[Issue, ...], read: Verification | None,
+) -> tuple[Promise, ...]:
+    """The preflight of a joint path, or of the program that is written of it with `settings`. read: None where that was not
+    read back."""
+    cell = cells.resolve(looks, toolpath.frame, toolpath.family, folders)
+    settings = None if settings is None or settings.post == "none" else settings
+    shapes = meshes_of(cell.machine)
+    run = as_run(planned, cell, toolpath.chord_error, settings, issues)
+    return promises(Evidence(
+        planned.joint_path.toolpath(toolpath), build, run.issues, cell, run.motion, run.condition, run.threshold,
+        arm_of(run.motion, cell, toolpath, process, shapes, ARM_PLACES), bool(shapes) and None not in shapes,
+        None if read is None else _read_back(read, toolpath.chord_error),
+        () if settings is None else catalogue.load(settings.post).ON_CONTROLLER,
+    ))
+
+
+def _read_back(read: Verification, chord_error: float) -> ReadBack:
+    return ReadBack(
+        not has_errors(read.issues), read.at_points_mm, read.between_mm, read.bound_mm,
+        chord_error + read.bound_mm if math.isfinite(read.bound_mm) else math.inf, len(read.solvers),
+    )

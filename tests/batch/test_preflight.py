@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The preflight of a report: its figures against the waypoints and the machine file, computed here alone."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+LIMITS, SPEEDS = "Every axis stays within its limits", "No axis is asked for more than its largest speed"
+TEXT, NOZZLE = "The text takes the tool to the planned points", (
+    "The nozzle stays clear of deposit, part and platform while it deposits"
+)
+
+
+def planned(workshop, text=None):
+    """Exit status, report and the rows of waypoints.csv of the job, or of a text of it."""
+    workshop.write_job(text or workshop.text)
+    ended = workshop.run("plan", workshop.job)
+    files = workshop.files()
+    report = json.loads(files["report.json"])
+    rows = list(csv.DictReader(io.StringIO(files["waypoints.csv"].decode())))
+    promises = {entry["promise"]: entry for entry in report["preflight"]}
+    assert len(promises) == len(report["preflight"])
+    keys = {"promise", "how", "worst", "unit", "bound", "at_least", "place", "ok"}
+    assert all(set(entry) == keys for entry in promises.values())
+    return ended.status, promises, rows, files
+
+
+def joints(rows):
+    return np.array([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
+
+
+def test_the_figures_are_those_of_the_waypoints(workshop, root):
+    status, promises, rows, files = planned(workshop)
+    assert status == 0
+    assert not [entry for entry in promises.values() if entry["ok"] is False]
+    values = joints(rows)
+    worst = promises[LIMITS]
+    # the least distance of any row to any limit, rapids included
+    machine = json.loads((root / "freecad_am/machines/fanuc-arcmate120ic.json").read_text())
+    low, high = limits_of(machine, "paper")
+    margin = np.minimum(values - low, high - values)
+    assert worst["ok"] is True and worst["unit"] == "deg"
+    assert worst["worst"] == pytest.approx(np.nanmin(np.where(np.isfinite(margin), margin, np.nan)), abs=1e-5)
+    row = rows[int(np.nanargmin(np.where(np.isfinite(margin), margin, np.nan)) // 6)]
+    assert {key: int(row[key]) for key in ("layer", "bead", "point")} == worst["place"]
+    # the text is nowhere farther from the plan than its digits explain
+    assert promises[TEXT]["ok"] is True and 0.0 < promises[TEXT]["worst"] <= promises[TEXT]["bound"] < 0.1
+    assert "PyKDL" in promises[TEXT]["how"]
+    # nothing green stands for what nobody has looked at
+    unchecked = [entry for entry in promises.values() if entry["ok"] is None]
+    assert any("UFRAME" in entry["promise"] for entry in unchecked)
+    assert all(entry["how"].startswith("not checked") for entry in unchecked)
+    page = files["report.html"].decode()
+    assert page.count('<td class="good">kept') == sum(entry["ok"] is True for entry in promises.values())
+    assert page.count('<td class="unknown">not checked') == len(unchecked)
+    assert page.count('<td class="error">broken') == 0
+
+
+def limits_of(machine, name):
+    """(6,) lower and upper limits of a set, deg; infinite for none. Coupled ones are left out."""
+    pairs = [(-np.inf, np.inf) if pair is None else pair for pair in machine["limits"][name]["axes"]]
+    low, high = zip(*pairs, strict=True)
+    return np.array(low, float), np.array(high, float)
+
+
+def test_what_was_not_looked_at_is_never_green(workshop):
+    text = workshop.text.replace("cell:\n", "build_direction: {clearance: none}\ncell:\n")
+    status, promises, _, _ = planned(workshop, text)
+    assert status == 0
+    assert promises[NOZZLE]["ok"] is None and "build_direction.clearance" in promises[NOZZLE]["how"]
+
+
+def test_a_job_without_a_cell_promises_nothing_of_joints(workshop):
+    head, _, rest = workshop.text.partition("cell:\n")
+    status, promises, _, _ = planned(workshop, head + rest[rest.index("process:") : rest.index("program:")])
+    assert status == 0
+    assert promises[LIMITS]["ok"] is None and promises[SPEEDS]["ok"] is None and promises[TEXT]["ok"] is None
+
+
+@pytest.mark.parametrize(
+    ("change", "broken"),
+    [
+        ("joints: {min_condition: 0.9}\n", {"The tool keeps away from singularities while it deposits"}),
+        ("deposition_point: [1900, -900, 653, 0, 0, 0]", {"The joints bring the tool to every point"}),
+    ],
+)
+def test_a_job_that_cannot_be_done_says_which_promise_is_broken(workshop, change, broken):
+    text = workshop.text
+    text = text.replace("process:\n", f"{change}process:\n") if change.startswith("joints") else (
+        text.replace("  limits: paper\n", f"  limits: paper\n  {change}\n")
+    )
+    status, promises, rows, _ = planned(workshop, text)
+    assert status == 3
+    assert {name for name, entry in promises.items() if entry["ok"] is False} >= broken
+    for name in broken:
+        place = promises[name]["place"]
+        assert any(all(int(row[key]) == place[key] for key in place) for row in rows)
+    assert promises[TEXT]["ok"] is None
