@@ -1182,6 +1182,11 @@
         <translation>Le long du temps du travail, ou le long de sa trajectoire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>An axis without limits has the Continuous Turn option</source>
+        <translation>Un axe sans limites a l’option Continuous Turn</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Analogue output that tells the speed of the wire where it follows the travel speed.</source>
         <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
@@ -1315,6 +1320,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Below</source>
         <translation>Au-dessous de</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>Between its points the text keeps to the planned path</source>
+        <translation>Entre ses points, le texte suit la trajectoire planifiée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1862,6 +1872,11 @@
         <translation>Éq. 17</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>Every axis stays within its limits</source>
+        <translation>Chaque axe reste dans ses limites</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Export Path…</source>
         <translation>Exporter la trajectoire…</translation>
@@ -2382,6 +2397,11 @@
         <translation>Vitesses articulaires pendant le dépôt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>Joint values mean what the machine file says, J3 above all</source>
+        <translation>Les valeurs articulaires ont le sens que dit le fichier machine, J3 surtout</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Joints</source>
         <translation>Articulations</translation>
@@ -2485,6 +2505,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Layers equally spaced along the wall (arc-length) or along the axis (iso-height).</source>
         <translation>Couches également espacées le long de la paroi (arc-length) ou le long de l&apos;axe (iso-height).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>Layers lie one layer height apart</source>
+        <translation>Les couches sont distantes d’une hauteur de couche</translation>
     </message>
     <message>
         <location filename="../../InitGui.py"/>
@@ -2622,6 +2647,11 @@
         <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>Loaded parts and tools that stand on other tools have been tried with a dry run</source>
+        <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Lock</source>
         <translation>Blocage</translation>
@@ -2670,6 +2700,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.</source>
         <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>M428 and M429 switch the kinematics, and the work offset is that of the remarks</source>
+        <translation>M428 et M429 commutent la cinématique, et l’origine pièce est celle des remarques</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -2917,6 +2952,11 @@
         <translation>Remarque suivante</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>No axis is asked for more than its largest speed</source>
+        <translation>Aucun axe ne doit dépasser sa vitesse maximale</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/cell_panel.py"/>
         <source>No choice for {}: the part lies on its table</source>
         <translation>Pas de choix pour {} : la pièce repose sur sa table</translation>
@@ -3162,6 +3202,16 @@
         <translation>Trajectoire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>Payload is set and the monitor speed is 100 %</source>
+        <translation>La charge est réglée et la vitesse moniteur est de 100 %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>Payload is set and the override is 100 %</source>
+        <translation>La charge est réglée et la correction de vitesse est de 100 %</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/pick_field.py"/>
         <source>Pick</source>
         <translation>Choisir</translation>
@@ -3330,6 +3380,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>Predicted widths and speeds</source>
         <translation>Largeurs et vitesses prévues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preflight_list.py"/>
+        <source>Preflight: {} kept, {} broken, {} not checked</source>
+        <translation>Contrôle avant départ : {} tenues, {} non tenues, {} non vérifiées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
@@ -3887,6 +3942,11 @@
         <translation>Commuter la cinématique</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>TRAORI and the work offset are those of the machine file and of the remarks</source>
+        <translation>TRAORI et l’origine pièce sont ceux du fichier machine et des remarques</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/toolpath_panel.py"/>
         <source>Tables</source>
         <translation>Tableaux</translation>
@@ -3932,6 +3992,11 @@
         <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The arm stays clear of part, deposit, platform and nozzle</source>
+        <translation>Le bras reste dégagé de la pièce, du dépôt, du plateau et de la buse</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>The bead whose polynomial is shown; a click on the map chooses one</source>
         <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
@@ -3957,6 +4022,11 @@
         <translation>Les fichiers de la commande ; double-cliquez pour les lire et les exporter.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>The controller&apos;s world is the robot&apos;s base, and joint speeds are its nominal ones</source>
+        <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
         <source>The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.</source>
         <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
@@ -3965,6 +4035,16 @@
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>The cylinders and cones of the hub to grow on; found when left out.</source>
         <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>The deposit output switches the process</source>
+        <translation>La sortie de dépôt commute le procédé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>The digital and analogue pins are connected to the process</source>
+        <translation>Les broches numériques et analogiques sont reliées au procédé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
@@ -3995,6 +4075,11 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>The feature, toolpath, or object with a shape or mesh that was measured.</source>
         <translation>L&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>The feed override is 100 %</source>
+        <translation>La correction d’avance est de 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
@@ -4045,6 +4130,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>The joint path to write.</source>
         <translation>La trajectoire articulaire à écrire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The joints bring the tool to every point</source>
+        <translation>Les articulations amènent l’outil à chaque point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/figures.py"/>
@@ -4147,6 +4237,21 @@
         <translation>La page suivante compare ceci à des poses de votre commande, et dit ce qui est probablement faux : laissez tel quel ce que vous ne savez pas.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>The nozzle stays clear of deposit, part and platform while it deposits</source>
+        <translation>La buse reste dégagée du dépôt, de la pièce et du plateau pendant le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The nozzle stays clear on the rapids</source>
+        <translation>La buse reste dégagée pendant les rapides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli.py"/>
+        <source>The outputs and inputs are linked to the process</source>
+        <translation>Les sorties et entrées sont liées au procédé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>The pendant&apos;s tool frame on the flange (mm, deg); zeros for the flange itself</source>
         <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
@@ -4197,9 +4302,29 @@
         <translation>Les surfaces sur lesquelles reposent les solides.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>The text takes the tool to the planned points</source>
+        <translation>Le texte amène l’outil aux points planifiés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>The time of the job</source>
         <translation>Le temps du travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The tool keeps away from singularities while it deposits</source>
+        <translation>L’outil reste loin des singularités pendant le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>The tool offset has the torch&apos;s length, and G500 is the machine&apos;s zero</source>
+        <translation>Le correcteur d’outil a la longueur de la torche, et G500 est le zéro machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc.py"/>
+        <source>The tool table has the torch&apos;s length, and the kinematics has the machine file&apos;s offsets</source>
+        <translation>La table d’outils a la longueur de la torche, et la cinématique a les décalages du fichier machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
@@ -4230,6 +4355,11 @@
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>The whole job</source>
         <translation>Tout le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens.py"/>
+        <source>The words that switch the deposit and the inputs are taken up in the PLC</source>
+        <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/pick_field.py"/>
@@ -4422,6 +4552,11 @@
         <translation>Torsion autour de x, deg</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>UFRAME and UTOOL of the numbers in the program are those of the cell</source>
+        <translation>UFRAME et UTOOL aux numéros du programme sont ceux de la cellule</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>URDF file</source>
         <translation>Fichier URDF</translation>
@@ -4555,6 +4690,11 @@
         <location filename="../../freecad_am/gui/export_panel.py"/>
         <source>What is made of the path</source>
         <translation>Ce qui est fait de la trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/preflight_list.py"/>
+        <source>What is promised of this program, how it was checked and where it is worst; a click goes there</source>
+        <translation>Ce qui est promis de ce programme, comment cela a été vérifié et où c’est le pire ; un clic y mène</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -5447,6 +5587,11 @@
         <translation>fermée, {:.1f} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>closed-form inverse</source>
+        <translation>inverse sous forme close</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>closes a gap</source>
         <translation>comble un jour</translation>
@@ -5587,6 +5732,11 @@
         <translation>déplacement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>distance in space of each point to the layer below, against what the strategy allows</source>
+        <translation>distance dans l’espace de chaque point à la couche du dessous, comparée à ce que permet la stratégie</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>drift</source>
         <translation>dérive</translation>
@@ -5610,6 +5760,11 @@
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>error</source>
         <translation>erreur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>every point of the motion, rapids included, against the machine file</source>
+        <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh.py"/>
@@ -5810,6 +5965,11 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>inspection</source>
         <translation>contrôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
+        <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -6652,6 +6812,11 @@
         <translation>moyenne</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>mean speed of each axis on each move, rapids included, against the machine file</source>
+        <translation>vitesse moyenne de chaque axe sur chaque déplacement, rapides compris, comparée au fichier machine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/surface.py"/>
         <source>measuring {0} layers</source>
         <translation>mesure de {0} couches</translation>
@@ -6710,6 +6875,11 @@
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>no access</source>
         <translation>pas d&apos;accès</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>no axis has limits, or no point is reached</source>
+        <translation>aucun axe n’a de limites, ou aucun point n’est atteint</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
@@ -6777,6 +6947,11 @@
         <translation>aucun corps n&apos;est porté par {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>no point is reached</source>
+        <translation>aucun point n’est atteint</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/constant_distance.py"/>
         <source>no point of the wall at v = {0} lies {1} mm from the layer below: the layer height must stay below the wall&apos;s smallest radius of curvature</source>
         <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous : la hauteur de couche doit rester au-dessous du plus petit rayon de courbure de la paroi</translation>
@@ -6815,6 +6990,46 @@
         <location filename="../../freecad_am/gui/spin_map/painting.py"/>
         <source>not allowed, or touching</source>
         <translation>non permis, ou contact</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: build_direction.clearance is none</source>
+        <translation>non vérifié : build_direction.clearance vaut none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>not checked: only the controller can show it</source>
+        <translation>non vérifié : seule la commande peut le montrer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: the machine file tells no shapes of its links</source>
+        <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>not checked: there is no joint path</source>
+        <translation>non vérifié : il n’y a pas de trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>not checked: there is no program that was read back</source>
+        <translation>non vérifié : il n’y a pas de programme relu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch nothing, looked at every {0} deg</source>
+        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne touchent rien, regardés tous les {0} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch {0} with {1}, looked at every {2} deg</source>
+        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>not known of this machine</source>
+        <translation>inconnu de cette machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -6982,6 +7197,11 @@
         <translation>position</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>planned joints of the deposit driven through the joint-frame chain, which planning does not use</source>
+        <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>point {} (0 to {}) at {:.2f}, {:.2f}, {:.2f} mm</source>
         <translation>point {} (0 à {}) en {:.2f}, {:.2f}, {:.2f} mm</translation>
@@ -7052,6 +7272,16 @@
         <translation>débit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>read back by a reader of its own and driven through the joint-frame chain and PyKDL</source>
+        <translation>relu par un lecteur à part et mené par la chaîne des repères et PyKDL</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>read back by a reader of its own and driven through the joint-frame chain; PyKDL is not installed</source>
+        <translation>relu par un lecteur à part et mené par la chaîne des repères ; PyKDL n’est pas installé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>reading back and checking</source>
         <translation>relecture et vérification</translation>
@@ -7085,6 +7315,11 @@
         <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
         <source>repair the mesh (Mesh, Analyze)</source>
         <translation>réparez le maillage (Mesh, Analyser)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>retract, travel and approach driven in small steps as they are written</source>
+        <translation>retrait, transfert et approche menés à petits pas tels qu’ils sont écrits</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
@@ -7150,6 +7385,16 @@
         <location filename="../../freecad_am/gui/guess.py"/>
         <source>several objects are selected; they grow on the one with faces picked, else on the last one</source>
         <translation>plusieurs objets sont sélectionnés ; ils croissent sur celui dont des faces sont choisies, sinon sur le dernier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>shapes of all links, every {0} deg of the whole motion: they touch nothing; links against each other are not checked</source>
+        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils ne touchent rien ; les corps entre eux ne sont pas vérifiés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>shapes of all links, every {0} deg of the whole motion: they touch {1} with {2}; links against each other are not checked</source>
+        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2} ; les corps entre eux ne sont pas vérifiés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -7587,6 +7832,11 @@
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/joints.py"/>
+        <source>the machine file tells no largest speeds</source>
+        <translation>le fichier machine ne donne pas de vitesses maximales</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
         <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no solid is returned to sooner than after {4} s</source>
         <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
@@ -7647,6 +7897,11 @@
         <translation>la buse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>the nozzle as a cone, at every point and halfway between, against what is there by then</source>
+        <translation>la buse comme un cône, à chaque point et à mi-chemin, face à ce qui est là à ce moment</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/readout.py"/>
         <source>the nozzle touches platform or part</source>
         <translation>la buse touche le plateau ou la pièce</translation>
@@ -7665,6 +7920,11 @@
         <location filename="../../freecad_am/verify.py"/>
         <source>the path between two points leaves the straight line by {0} mm, more than the chord error</source>
         <translation>la trajectoire entre deux points quitte la droite de {0} mm, plus que l&apos;erreur de corde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/written.py"/>
+        <source>the path of the text between its points, as the controller interpolates it</source>
+        <translation>la trajectoire du texte entre ses points, comme la commande l’interpole</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/normal_layers.py"/>
@@ -8080,6 +8340,11 @@
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>there is nothing to grow on; choose a substrate, or the edges to start from</source>
         <translation>il n&apos;y a rien sur quoi croître ; choisissez un substrat, ou les arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>there is one layer alone</source>
+        <translation>il n’y a qu’une couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
@@ -9267,7 +9532,7 @@
         <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/link_meshes.py"/>
+        <location filename="../../freecad_am/gui/machine_links.py"/>
         <source>{0}; the link has its plain solid for now</source>
         <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
     </message>
