@@ -3384,7 +3384,7 @@
     <message>
         <location filename="../../freecad_am/gui/preflight_list.py"/>
         <source>Preflight: {} kept, {} broken, {} not checked</source>
-        <translation>Contrôle avant départ : {} tenues, {} non tenues, {} non vérifiées</translation>
+        <translation>Contrôle avant départ : {} tenues, {} non tenues, {} non vérifiées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
@@ -4694,7 +4694,7 @@
     <message>
         <location filename="../../freecad_am/gui/preflight_list.py"/>
         <source>What is promised of this program, how it was checked and where it is worst; a click goes there</source>
-        <translation>Ce qui est promis de ce programme, comment cela a été vérifié et où c’est le pire ; un clic y mène</translation>
+        <translation>Ce qui est promis de ce programme, comment cela a été vérifié et où c’est le pire ; un clic y mène</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -6994,37 +6994,37 @@
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: build_direction.clearance is none</source>
-        <translation>non vérifié : build_direction.clearance vaut none</translation>
+        <translation>non vérifié : build_direction.clearance vaut none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>not checked: only the controller can show it</source>
-        <translation>non vérifié : seule la commande peut le montrer</translation>
+        <translation>non vérifié : seule la commande peut le montrer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: the machine file tells no shapes of its links</source>
-        <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
+        <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: there is no joint path</source>
-        <translation>non vérifié : il n’y a pas de trajectoire articulaire</translation>
+        <translation>non vérifié : il n’y a pas de trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>not checked: there is no program that was read back</source>
-        <translation>non vérifié : il n’y a pas de programme relu</translation>
+        <translation>non vérifié : il n’y a pas de programme relu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch nothing, looked at every {0} deg</source>
-        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne touchent rien, regardés tous les {0} deg</translation>
+        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne touchent rien, regardés tous les {0} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch {0} with {1}, looked at every {2} deg</source>
-        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
+        <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
@@ -7279,7 +7279,7 @@
     <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>read back by a reader of its own and driven through the joint-frame chain; PyKDL is not installed</source>
-        <translation>relu par un lecteur à part et mené par la chaîne des repères ; PyKDL n’est pas installé</translation>
+        <translation>relu par un lecteur à part et mené par la chaîne des repères ; PyKDL n’est pas installé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -7389,12 +7389,12 @@
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>shapes of all links, every {0} deg of the whole motion: they touch nothing; links against each other are not checked</source>
-        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils ne touchent rien ; les corps entre eux ne sont pas vérifiés</translation>
+        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils ne touchent rien ; les corps entre eux ne sont pas vérifiés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>shapes of all links, every {0} deg of the whole motion: they touch {1} with {2}; links against each other are not checked</source>
-        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2} ; les corps entre eux ne sont pas vérifiés</translation>
+        <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2} ; les corps entre eux ne sont pas vérifiés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
