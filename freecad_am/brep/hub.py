@@ -62,7 +62,7 @@ def _meshed(solid: Any, chord_error: float, label: str) -> SolidMesh:
     vertices, corners = beside(tessellated, solid.copy(), SHARE * chord_error)[:2]
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
-    mesh.refuse_unsound(label)
+    mesh.refuse_unsound(label, of_shape=True)
     mesh.refuse_crossing(label, CROSSED * chord_error)
     return mesh
 

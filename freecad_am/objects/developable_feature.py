@@ -111,7 +111,8 @@ def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
     bases, hub = _bases(of, solid, strategy)
     rest = [body for body in solid if body is not hub]
     named = "" if of.substrate is None else of.substrate.label
-    solids = on_hub(rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named)
+    meshes = [body for one, own in zip(of.objects, found, strict=True) if one.shape is None for body in own.bodies]
+    solids = on_hub(rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named, meshes)
     return solids if hub is None else dataclasses.replace(solids, surroundings=(hub,))
 
 
@@ -130,7 +131,8 @@ def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) 
     owned = [_faces(one, solid) for one in of.objects for solid in _parts(one)]
     if len(solids) < 2 or len(owned) != len(solids):
         raise InputError(
-            "NO_HUB", of.label, "the hub is not known; choose it as substrate, choose faces of it, or give strategy.base"
+            "NO_HUB", of.label, "the hub is not known; solids are built up on a cylinder or cone, not yet on a flat base: "
+            "choose the hub as substrate, choose faces of it, or give strategy.base"
         )
     own = [seats(some, False) for some in owned]
     hub = hub_among(solids, own, SHARE * strategy.chord_error, of.label)

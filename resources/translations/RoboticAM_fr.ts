@@ -5737,6 +5737,11 @@
         <translation>distance dans l’espace de chaque point à la couche du dessous, comparée à ce que permet la stratégie</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>draw it apart there, or let it overlap there and fuse it (Part, Boolean)</source>
+        <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>drift</source>
         <translation>dérive</translation>
@@ -6968,8 +6973,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/standing.py"/>
-        <source>none of its solids stands on a cylinder or cone of another; name the hub as substrate, choose a face of it, or give strategy.base</source>
-        <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre ; nommez le moyeu comme substrat, choisissez une de ses faces, ou donnez strategy.base</translation>
+        <source>none of its solids stands on a cylinder or cone of another; solids are built up on those alone, not yet on a flat base: name the hub as substrate, choose a face of it, or give strategy.base</source>
+        <translation>aucun de ses solides ne repose sur un cylindre ou un cône d&apos;un autre ; les solides ne se construisent que sur ceux-ci, pas encore sur une base plane : nommez le moyeu comme substrat, choisissez une face de celui-ci, ou donnez strategy.base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
@@ -7728,8 +7733,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>the hub is not known; choose it as substrate, choose faces of it, or give strategy.base</source>
-        <translation>le moyeu n&apos;est pas connu ; choisissez-le comme substrat, choisissez ses faces, ou donnez strategy.base</translation>
+        <source>the hub is not known; solids are built up on a cylinder or cone, not yet on a flat base: choose the hub as substrate, choose faces of it, or give strategy.base</source>
+        <translation>le moyeu est inconnu ; les solides se construisent sur un cylindre ou un cône, pas encore sur une base plane : choisissez le moyeu comme substrat, choisissez-en des faces, ou donnez strategy.base</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
@@ -8055,6 +8060,11 @@
         <location filename="../../freecad_am/core/strategies/hub_layers.py"/>
         <source>the solid reaches over the end of the hub&apos;s axis, at {0}, where equidistant surfaces have an apex or an end; let it end beside the axis</source>
         <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>the solid touches itself along an edge, so that its inside is not known</source>
+        <translation>le solide se touche lui-même le long d’une arête, si bien que son intérieur est inconnu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>

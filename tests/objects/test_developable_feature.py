@@ -191,6 +191,24 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
         assert caught.value.code in ("BAD_VALUE", "BAD_UNIT")
 
 
+def test_solids_from_exact_shapes_are_told_what_to_do_with_shapes(thruster):
+    doc, hub, blades = thruster
+    far = blades.Shape.copy().transformGeometry(App.Matrix(*(np.diag([1.0, 1.0, 1.0, 25.4]) / 25.4).ravel()))
+    small = add(doc, far, "Small")
+    boxes = [Part.makeBox(10, 10, 30, App.Vector(*at)) for at in ((40, 0, 5), (50, 10, 5))]
+    touching = add(doc, Part.makeSolid(Part.makeShell([*boxes[0].Faces, *boxes[1].Faces])), "Touching")
+    bracket = add(doc, Part.makeBox(50, 5, 40).fuse(Part.makeBox(5, 50, 40)).removeSplitter(), "Bracket")
+    for arguments, code, told, untold in (
+        ((small, hub), "NOT_ON_HUB", "does not stand on the hub", "unit"),
+        ((touching, hub), "NON_MANIFOLD", "touches itself along an edge", "mesh"),
+        ((bracket,), "NO_HUB", "on a cylinder or cone, not yet on a flat base", "mesh"),
+    ):
+        with pytest.raises(InputError) as caught:
+            api.make_developable_feature(doc, *arguments, **FAST)
+        assert caught.value.code == code, caught.value.line()
+        assert told in caught.value.message and untold not in caught.value.message
+
+
 def test_a_bead_width_that_a_macro_gives_is_meant(thruster):
     doc, hub, blades = thruster
     feature = api.make_developable_feature(doc, blades, hub, **FAST)

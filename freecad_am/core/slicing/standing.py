@@ -23,12 +23,12 @@ NEAR = 0.05  # mm past the ends of a face at which a solid still stands on it
 
 def on_hub(
     bodies: Sequence[Body], seats: Sequence[Seat], chord_error: float, label: str, issues: tuple[Issue, ...] = (),
-    hub: str = "",
+    hub: str = "", unitless: Sequence[Body] = (),
 ) -> SolidsOnHub:
     """Bodies grouped by the base that each stands on with the longest contour; groups up the first base's axis.
 
-    hub: the name of what has the seats, for errors, where it is not that of the bodies. InputError NOT_ON_HUB for a solid
-    that stands on none, NO_BASE where there is no base, OVERLAP.
+    hub: the name of what has the seats, for errors, where it is not that of the bodies. unitless: bodies of files without a
+    unit of their own. InputError NOT_ON_HUB for a solid that stands on none, NO_BASE where there is no base, OVERLAP.
     """
     if not seats:
         raise InputError(
@@ -37,7 +37,7 @@ def on_hub(
         )
     standing: dict[int, list[Body]] = {}
     for body in bodies:
-        standing.setdefault(_seat_of(body, seats, chord_error), []).append(body)
+        standing.setdefault(_seat_of(body, seats, chord_error, any(body is one for one in unitless)), []).append(body)
     axis = seats[min(standing)].base.frame[:3, 2]
     axis = -axis if downwards(axis) else axis
     groups = [
@@ -49,7 +49,7 @@ def on_hub(
     return SolidsOnHub(label, tuple(groups), chord_error, (), issues)
 
 
-def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float) -> int:
+def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bool = False) -> int:
     contact, beside = np.zeros(len(seats)), np.zeros(len(seats))
     away = np.zeros((len(seats), 2))
     for k, seat in enumerate(seats):
@@ -72,9 +72,8 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float) -> int:
         told = f"it begins {away[nearest, 0]:.4g} mm outside of {seats[nearest].base.name}, at {where}"
     else:
         told = f"it passes {seats[nearest].base.name} beside the face, near {where}"
-    raise InputError(
-        "NOT_ON_HUB", body.name, f"it does not stand on the hub: {told}; move it, or choose its base{_of_units(body, seats)}"
-    )
+    hint = _of_units(body, seats) if unitless else ""
+    raise InputError("NOT_ON_HUB", body.name, f"it does not stand on the hub: {told}; move it, or choose its base{hint}")
 
 
 def _of_units(body: Body, seats: Sequence[Seat]) -> str:
@@ -114,7 +113,7 @@ def hub_among(bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_err
             votes[k] += 1
     if not votes.any():
         raise InputError(
-            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another; name the hub as substrate, choose "
-            "a face of it, or give strategy.base",
+            "NO_HUB", label, "none of its solids stands on a cylinder or cone of another; solids are built up on those "
+            "alone, not yet on a flat base: name the hub as substrate, choose a face of it, or give strategy.base",
         )
     return int(np.argmax(votes))

@@ -80,11 +80,15 @@ def test_solids_beside_the_hub_are_refused():
 @pytest.mark.parametrize("factor, unit", [(25.4, "inches"), (10.0, "cm"), (1000.0, "m")])
 def test_solids_in_another_unit_are_told_so(factor, unit):
     body = sector(49.0, 70.0, 20.0, 60.0)
+    small = Body("small", body.vertices / factor, body.triangles)
+    with pytest.raises(InputError) as caught:  # a STEP file tells its unit
+        on_hub([small], SEATS, 0.01, "part")
+    assert "Times" not in caught.value.message and "file" not in caught.value.message
     with pytest.raises(InputError) as caught:
-        on_hub([Body("small", body.vertices / factor, body.triangles)], SEATS, 0.01, "part")
+        on_hub([small], SEATS, 0.01, "part", unitless=[small])
     assert f"Times {factor:g} it would reach Face1: is its file in {unit}?" in caught.value.message
     with pytest.raises(InputError) as caught:
-        on_hub([sector(60.0, 70.0, 20.0, 60.0)], SEATS, 0.01, "part")
+        on_hub([body := sector(60.0, 70.0, 20.0, 60.0)], SEATS, 0.01, "part", unitless=[body])
     assert "Times" not in caught.value.message
 
 
