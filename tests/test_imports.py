@@ -20,15 +20,19 @@ OURS = {
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
+    "core/collision": {"core/geometry"},
     "core/strategies": {
-        "core/issues", "core/parameters", "core/geometry", "core/filling", "core/toolpath", "core/slicing", "core/process",
+        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/filling", "core/toolpath", "core/slicing",
+        "core/process",
     },
-    "core/kinematics": {"core/issues", "core/parameters", "core/geometry"},
+    "core/kinematics": {"core/issues", "core/parameters", "core/geometry", "core/collision"},
     "core/planning": {
-        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/kinematics", "core/motion", "core/program",
+        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
+        "core/motion", "core/program",
     },
     "core/simulation": {
-        "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/kinematics", "core/motion",
+        "core/issues", "core/parameters", "core/geometry", "core/collision", "core/toolpath", "core/kinematics",
+        "core/motion",
     },
     "core/preflight": {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",

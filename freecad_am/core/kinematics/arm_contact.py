@@ -16,9 +16,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..collision.bodies import of_bodies
+from ..collision.frustum import Frustum
+from ..collision.obstacles import Obstacles
+from ..collision.scene import Scene
+from ..collision.tolerances import ABOUT_FACES
 from ..geometry import frames
-from ..geometry.frustum import Frustum
-from ..geometry.obstacles import Obstacles, of_bodies
 from ..geometry.rods import Rod
 from ..geometry.surroundings import Body, disc
 from .cell import PART_ON_ROBOT, Cell
@@ -30,7 +33,6 @@ Mask = NDArray[np.bool_]
 NOZZLE, PLATFORM, DEPOSIT = "nozzle", "platform", "deposit"
 NONE = -1
 PIECE = 4096  # joint vectors done together
-ROUGH = 0.2  # mm that triangles of bodies may be off their true faces
 MOST, FINEST = 10_000, 2.0  # points of a deposit, and mm between them
 SIDES = 24  # of a nozzle
 
@@ -80,7 +82,7 @@ class _Group:
     """What links (numbers) are looked at against, within a ball, seen from the part or from the nozzle. room: mm added to
     every rod."""
 
-    obstacles: Obstacles
+    scene: Scene
     links: range
     centre: Array
     radius: float
@@ -112,8 +114,9 @@ class ArmContact:
         names = [NOZZLE, *(body.name for body in around)]
         if self.deposit is not None:
             names.append(DEPOSIT)
-            laid = Obstacles(self.deposit.points[:, None], self.deposit.since)
-            groups.append(_Group(laid, part, *_ball(self.deposit.points), self.deposit.room))
+            points = self.deposit.points
+            laid = Scene(of_bodies([], points, 0.0), Obstacles(points[:, None], self.deposit.since))
+            groups.append(_Group(laid, part, *_ball(points), self.deposit.room))
         object.__setattr__(self, "names", tuple(names))
         object.__setattr__(self, "_groups", tuple(groups))
         object.__setattr__(self, "_balls", tuple(_about(link) for link in self.rods))
@@ -176,7 +179,7 @@ def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index) -> Ma
         within = group.radius + rod.radius + 2.0 * group.room
         near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
         solid = Frustum(rod.radius + group.room, 0.0, -group.room, rod.length + group.room)
-        met[left[near]] = group.obstacles.touched(solid, start[near], axis[near], moment[left[near]])
+        met[left[near]] = group.scene.touched(solid, start[near], axis[near], moment[left[near]])
     return met
 
 
@@ -205,7 +208,7 @@ def _nozzle(cell: Cell) -> Body:
 
 
 def _of_body(body: Body, links: range, by_nozzle: bool = False) -> _Group:
-    return _Group(of_bodies([body], body.vertices, 0.0), links, *_ball(body.vertices), ROUGH, by_nozzle)
+    return _Group(Scene(of_bodies([body], body.vertices, 0.0)), links, *_ball(body.vertices), ABOUT_FACES, by_nozzle)
 
 
 def _about(link: Sequence[Rod]) -> tuple[Array, float]:

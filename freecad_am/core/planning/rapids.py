@@ -13,8 +13,9 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.frustum import Frustum
-from ..geometry.obstacles import Obstacles, of_bodies
+from ..collision.bodies import of_bodies
+from ..collision.frustum import Frustum
+from ..collision.obstacles import Obstacles
 from ..geometry.surroundings import Body
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell

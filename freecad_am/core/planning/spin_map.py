@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision import nozzle as nozzles
+from ..collision.scene import scene
 from ..geometry import frames
-from ..geometry.frustum import Frustum, beside_tip
-from ..geometry.obstacles import of_bodies
 from ..geometry.surroundings import Body, disc
 from ..kinematics.arm_contact import ArmContact
 from ..kinematics.cell import Cell
@@ -32,7 +32,6 @@ Mask = NDArray[np.bool_]
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MOST = 181, 300
-COARSE = 0.2  # mm of height left out more over bodies: their triangles are off the true faces by half of that
 LEAST = 12  # points of a bead, fewer of which would not show what a curve does
 
 
@@ -244,7 +243,6 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
         around.append(disc(cell.platform_diameter, cell.mount))
     if not around:
         return np.zeros(len(points), dtype=bool)
-    radius, slope = 0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle))
-    solid = Frustum(radius, slope, beside_tip(radius, slope) + COARSE, cell.nozzle.length)
-    touched: Mask = of_bodies(around, points.position, solid.reach).touched(solid, points.position, points.tool)
-    return touched
+    slope = float(np.tan(cell.nozzle.half_angle))
+    nozzle = nozzles.depositing(0.5 * cell.nozzle.diameter, slope, cell.nozzle.length, 0.0)
+    return scene(around, points.position, nozzle.reach).touched(nozzle, points.position, points.tool)

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.bodies import of_bodies
+from ..collision.frustum import Frustum, beside_tip
+from ..collision.obstacles import Obstacles
 from ..geometry.columns import columns
-from ..geometry.frustum import Frustum, beside_tip
-from ..geometry.obstacles import Obstacles, of_bodies
 from ..geometry.surroundings import Body
 from ..parameters.cell import NozzleParameters
 from ..toolpath import Bead, Toolpath

@@ -20,9 +20,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.bodies import of_bodies
+from ..collision.frustum import Frustum
 from ..geometry import frames
-from ..geometry.frustum import Frustum
-from ..geometry.obstacles import of_bodies
 from ..geometry.surface import dot
 from ..geometry.surroundings import Body
 from ..geometry.ties import first_least

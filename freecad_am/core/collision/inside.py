@@ -9,20 +9,15 @@ body whose triangles leave an opening has no inside.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from .surroundings import Body
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from ..geometry.surroundings import Body
+from . import tree
+from .frustum import Array, Mask
 
 # of all rays; along no edge or face that anyone draws, so that none runs through an edge but by chance
 RAY = np.array([0.5423261, 0.3190717, 0.7772039])
-SAME = 1e-6  # mm; vertices that lie closer are one
-BRANCH = 8
-AT_ONCE = 16384
+MERGED = 1e-6  # mm; vertices that lie closer are one
+QUERIES = 16384  # worked on at once
 
 
 class Inside:
@@ -30,7 +25,7 @@ class Inside:
 
     def __init__(self, body: Body, faces_one_way: bool) -> None:
         corners = body.corners()
-        corners = corners[cKDTree(corners.mean(axis=1), leafsize=BRANCH).indices]
+        corners = corners[tree.packed(corners.mean(axis=1))]
         self.low, self.high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         self._faces_one_way = faces_one_way
         # as seen along the ray: across it (m, 3, 2), and along it (m, 3)
@@ -39,9 +34,7 @@ class Inside:
         one /= np.linalg.norm(one)
         self._frame = np.stack([one, np.cross(ray, one), ray])
         self._seen = corners @ self._frame.T
-        self._levels = [self._boxes(1)]
-        while len(self._levels[-1][0]) > 2 * BRANCH:
-            self._levels.append(self._boxes(BRANCH ** len(self._levels)))
+        self._levels = [self._boxes(size) for size in tree.sizes(len(corners))]
 
     def _boxes(self, size: int) -> tuple[Array, Array]:
         """Lowest and highest places (k, 3), as seen along the ray, of so many triangles each."""
@@ -54,7 +47,7 @@ class Inside:
         """Whether points (n, 3) are inside; on the surface itself it may be either."""
         found = np.zeros(len(points), dtype=bool)
         some = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
-        for part in np.split(some, np.arange(AT_ONCE, len(some), AT_ONCE)):
+        for part in np.split(some, np.arange(QUERIES, len(some), QUERIES)):
             found[part] = self._held(points[part] @ self._frame.T)
         return found
 
@@ -67,10 +60,7 @@ class Inside:
             near = (at <= high[node]).all(axis=1) & (at[:, :2] >= low[node, :2]).all(axis=1)
             query, node = query[near], node[near]
             if depth:
-                node = (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()
-                query = np.repeat(query, BRANCH)
-                real = node < len(self._levels[depth - 1][0])
-                query, node = query[real], node[real]
+                query, node = tree.below(query, node, len(self._levels[depth - 1][0]))
         offset = self._seen[node] - seen[query, None]
         after = np.roll(offset, -1, axis=1)
         # twice the areas of the ray's end with each edge, against the edge's opposite corner: the shares of the corners
@@ -89,7 +79,7 @@ def inside_of(body: Body) -> Inside | None:
     """The inside of a body; None where its triangles leave an opening, or are none."""
     if not len(body.triangles):
         return None
-    _, first = np.unique(np.round(body.vertices / SAME).astype(np.int64), axis=0, return_inverse=True)
+    _, first = np.unique(np.round(body.vertices / MERGED).astype(np.int64), axis=0, return_inverse=True)
     corners = first.ravel()[body.triangles]
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     edges = edges[edges[:, 0] != edges[:, 1]]

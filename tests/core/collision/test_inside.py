@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.frustum import Frustum
-from freecad_am.core.geometry.inside import inside_of
-from freecad_am.core.geometry.obstacles import of_bodies
+from freecad_am.core.collision.bodies import of_bodies
+from freecad_am.core.collision.frustum import Frustum
+from freecad_am.core.collision.inside import inside_of
 from freecad_am.core.geometry.surroundings import Body, disc
 
 NOZZLE = Frustum(0.5, 0.36, 0.87, 60.0)

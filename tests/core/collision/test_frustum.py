@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.frustum import Frustum
-from freecad_am.core.geometry.obstacles import Obstacles, of_bodies
+from freecad_am.core.collision.bodies import of_bodies
+from freecad_am.core.collision.frustum import Frustum
+from freecad_am.core.collision.obstacles import Obstacles
 from freecad_am.core.geometry.surroundings import Body
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The nozzle as a convex solid, and whether straight segments and triangles reach into it. Exact.
+"""Nozzles and links as convex solids of revolution, and whether points, segments and triangles reach into them. Exact.
 
 A frustum about the tool axis t: at the height x over the tip plane its radius is a + k x, from x = low to x = high. The
 function |y| - k x - a, y being the part of a point's offset across the axis, is convex: along a segment its least value
@@ -9,15 +9,16 @@ solid is inside the triangle, so one point of the section decides.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from .tolerances import ALONG, ROUNDING
 
-ROUNDING = 1e-9  # mm of depth that is rounding
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 
 def beside_tip(radius: float, slope: float) -> float:
@@ -28,20 +29,24 @@ def beside_tip(radius: float, slope: float) -> float:
 
 @dataclass(frozen=True)
 class Frustum:
-    """radius: a, mm, at the tip plane; slope: k; low, high: mm over the tip plane.
+    """radius: a, mm, at the tip plane; slope: k; low, high: mm over the tip plane, low of all or (k,) of each row.
 
     All methods take offsets from the tip and unit tool axes (k, 3), row by row.
     """
 
     radius: float
     slope: float
-    low: float
+    low: float | Array
     high: float
 
     @property
     def reach(self) -> float:
         """Largest distance of a point of the solid from the tip, mm."""
         return float(np.hypot(self.high, self.radius + self.slope * self.high))
+
+    def rows(self, index: Index) -> Frustum:
+        """The solids of some of the rows."""
+        return self if np.ndim(self.low) == 0 else replace(self, low=np.asarray(self.low)[index])
 
     def near(self, offset: Array, axis: Array, size: Array) -> Mask:
         """False where a ball of the radius `size` (k,) surely misses the solid."""
@@ -50,6 +55,49 @@ class Frustum:
         lean = np.sqrt(1.0 + self.slope**2)
         near: Mask = (side - self.radius - self.slope * x < size * lean) & (x > self.low - size) & (x < self.high + size)
         return near
+
+    def nearest(self, offset: Array, axis: Array) -> Array:
+        """The points (k, 3) of the solid nearest to points; these themselves where they are inside."""
+        x = np.einsum("ij,ij->i", offset, axis)
+        across = offset - x[:, None] * axis
+        side = np.sqrt(np.einsum("ij,ij->i", across, across))
+        low = np.broadcast_to(np.asarray(self.low, dtype=float), x.shape)
+        least, most = self.radius + self.slope * low, self.radius + self.slope * self.high
+        inside = (x >= low) & (x <= self.high) & (side <= self.radius + self.slope * x)
+        # in the half plane of height and distance from the axis: on the side, the lower disc, the upper disc
+        tall, wide = self.high - low, most - least
+        along = np.clip(((x - low) * tall + (side - least) * wide) / (tall * tall + wide * wide), 0.0, 1.0)
+        places = [
+            (low + along * tall, least + along * wide),
+            (low, np.minimum(side, least)), (np.full(x.shape, self.high), np.minimum(side, most)),
+        ]
+        away = np.stack([(x - height) ** 2 + (side - out) ** 2 for height, out in places])
+        which = away.argmin(axis=0)
+        height = np.where(inside, x, np.choose(which, [place[0] for place in places]))
+        out = np.where(inside, side, np.choose(which, [place[1] for place in places]))
+        found: Array = height[:, None] * axis + (out / np.where(side > 0.0, side, 1.0))[:, None] * across
+        return found
+
+    def gap(self, offset: Array, axis: Array) -> Array:
+        """Distances (k,) mm of points from the solid, 0 inside."""
+        gap: Array = np.linalg.norm(self.nearest(offset, axis) - offset, axis=1)
+        return gap
+
+    def farthest(self, direction: Array, axis: Array) -> Array:
+        """The points (k, 3) of the solid that lie farthest along directions (k, 3)."""
+        rise = np.einsum("ij,ij->i", direction, axis)
+        across = direction - rise[:, None] * axis
+        size = np.sqrt(np.einsum("ij,ij->i", across, across))
+        low = np.asarray(self.low, dtype=float)
+        up = rise * self.high + size * (self.radius + self.slope * self.high) > rise * low + size * (
+            self.radius + self.slope * low
+        )
+        height = np.where(up, self.high, low)
+        # along the axis every point of a disc is as far: what is left across is rounding
+        leaning = size > ALONG * np.abs(rise)
+        out = np.where(leaning, self.radius + self.slope * height, 0.0) / np.where(leaning, size, 1.0)
+        found: Array = height[:, None] * axis + out[:, None] * across
+        return found
 
     def crossed(self, normal: Array, level: Array, axis: Array) -> Mask:
         """Whether planes, unit normals (k, 3) and heights (k,) over the tip, cut the solid."""
@@ -101,9 +149,9 @@ class Frustum:
         meets = self.meets_segments(a, b, axis)
         for start, end in ((b, c), (c, a)):
             rest = np.flatnonzero(~meets)
-            meets[rest] = self.meets_segments(start[rest], end[rest], axis[rest])
+            meets[rest] = self.rows(rest).meets_segments(start[rest], end[rest], axis[rest])
         rest = np.flatnonzero(~meets)
-        meets[rest] = self._section_inside(corners[rest], axis[rest])
+        meets[rest] = self.rows(rest)._section_inside(corners[rest], axis[rest])
         return meets
 
     def _section_inside(self, corners: Array, axis: Array) -> Mask:
@@ -120,8 +168,9 @@ class Frustum:
         size = np.linalg.norm(lean, axis=1)
         lean = lean / np.where(size > 0.0, size, 1.0)[:, None]
         inside: Mask = np.zeros(len(corners), dtype=bool)
-        lines = [(self.low * axis, (self.high - self.low) * axis)]
-        for height in (self.low, self.high):
+        base_height = np.broadcast_to(np.asarray(self.low, dtype=float), size.shape)[:, None]
+        lines = [(base_height * axis, (self.high - base_height) * axis)]
+        for height in (base_height, self.high):
             room = self.radius + self.slope * height
             lines.append((height * axis - room * lean, 2.0 * room * lean))
         for start, step in lines:

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Bodies as obstacles: their triangles, cut up where they are large, and the inside of those that are closed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.surroundings import Body
+from .frustum import Array, Frustum, Index, Mask
+from .inside import Inside, inside_of
+from .obstacles import Obstacles
+
+PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
+MOST_PIECES = 60_000  # of all bodies; where there would be more, the pieces are longer
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Triangles, and closed bodies as far as solids reach that are looked at; always there."""
+
+    triangles: Obstacles
+    solids: tuple[Inside, ...]
+
+    def touched(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
+        """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet a triangle or are inside a closed body.
+
+        One that meets no triangle of a closed body is inside it as a whole or not at all: a point of its axis says.
+        """
+        found = self.triangles.touched(solid, tip, axis)
+        rows = np.flatnonzero(~found)
+        found[rows] = self._inside(solid.rows(rows), tip[rows], axis[rows])
+        return found
+
+    def distance(self, solid: Frustum, tip: Array, axis: Array, reach: float) -> Array:
+        """(k,) mm from solids to the nearest body, 0 where they meet one or are inside it, at most `reach`."""
+        found = self.triangles.distance(solid, tip, axis, reach=reach)
+        rows = np.flatnonzero(found > 0.0)
+        found[rows[self._inside(solid.rows(rows), tip[rows], axis[rows])]] = 0.0
+        return found
+
+    def _inside(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
+        found = np.zeros(len(tip), dtype=bool)
+        if not np.any(solid.high > solid.low):
+            return found
+        low = np.broadcast_to(solid.low, len(tip))[:, None]
+        ends = [tip + height * axis for height in (low, solid.high)]
+        for body in self.solids:
+            boxed = [((end > body.low) & (end < body.high)).all(axis=1) for end in ends]
+            rows = np.flatnonzero(~found & boxed[0] & boxed[1])
+            found[rows] = body.holds(0.5 * (ends[0][rows] + ends[1][rows]))
+        return found
+
+
+def of_bodies(bodies: Sequence[Body], around: Array, reach: float) -> Bodies:
+    """The triangles of bodies no farther than `reach` (mm) from the box about the points `around` (n, 3), and the inside of
+    those that are closed; a body with an opening counts by its triangles alone."""
+    low, high = around.min(axis=0) - reach, around.max(axis=0) + reach
+    corners = np.concatenate([np.zeros((0, 3, 3)), *(body.corners() for body in bodies)])
+    whole = len(corners)
+    while True:
+        corners = corners[((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)]
+        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        # halves of the longest edges first, so that where there is no room for more the largest are cut
+        longest = edges.max(axis=1, initial=0.0)
+        long = longest > max(PIECE, 0.5 * float(longest.max(initial=0.0)))
+        if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * whole):
+            break
+        corners = np.concatenate([corners[~long], _halves(corners[long], edges[long].argmax(axis=1))])
+    # only a body whose box reaches as far has room for a whole nozzle about one of the points
+    near = [body for body in bodies if len(body.vertices) and (body.vertices.min(axis=0) <= high).all()
+            and (body.vertices.max(axis=0) >= low).all()]
+    return Bodies(Obstacles(corners), tuple(solid for solid in map(inside_of, near) if solid is not None))
+
+
+def _halves(corners: Array, edge: Index) -> Array:
+    """Triangles cut in two through the middle of an edge each."""
+    row = np.arange(len(corners))
+    a, b, c = (corners[row, (edge + k) % 3] for k in range(3))
+    middle = 0.5 * (a + b)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])

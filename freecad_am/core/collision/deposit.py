@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The deposit as a solid: beads with their width and height, from the moment at which each piece of them is laid.
+
+A bead stands on its points along the build direction: its section is a stadium, as wide as the bead and as high, round by
+half of the smaller of the two. Between two points it is the hull of both sections; at corners the outer side is filled.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .frustum import Array, Index, Mask
+from .obstacles import Obstacles
+
+CORNER = np.cos(np.radians(10.0))  # of the turn from one segment to the next, beyond which the outer side is filled
+
+
+def of_beads(
+    points: Array, build: Array, width: Array | float, height: Array | float, starts: Mask | Index,
+    moments: Index | None = None, grain: float = 0.0,
+) -> Obstacles:
+    """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
+
+    width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
+    which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
+    this. A piece is there from the moment of the point at its end.
+    """
+    n = len(points)
+    first = np.zeros(n, dtype=bool)
+    first[starts] = True
+    first[:1] = True
+    kept = np.arange(n)
+    if grain > 0.0 and n:
+        last = np.append(first[1:], True)
+        step = np.where(first, 0.0, np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1))
+        kept = np.flatnonzero(first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0))
+    moment = np.arange(n) if moments is None else moments
+    wide, tall = (np.broadcast_to(np.asarray(each, dtype=float), n)[kept] for each in (width, height))
+    points, build, moment, first = points[kept], build[kept], moment[kept], first[kept]
+    end = np.flatnonzero(~first)
+    along = points[end] - points[end - 1]
+    size = np.linalg.norm(along, axis=1)
+    end, along, size = end[size > 0.0], along[size > 0.0], size[size > 0.0]
+    begin = end - 1
+    along /= size[:, None]
+    wide, tall = 0.5 * (wide[begin] + wide[end]), 0.5 * (tall[begin] + tall[end])
+    round_ = 0.5 * np.minimum(wide, tall)
+    sideways = [_unit(np.cross(build[each], along)) for each in (begin, end)]
+    corners = []
+    for at, side in zip((begin, end), sideways):
+        middle = points[at] + (0.5 * tall)[:, None] * build[at]
+        # the flat of the section: across a bead that is wider than high, else upright
+        flat = (0.5 * (wide - tall))[:, None] * side if (wide >= tall).all() else np.where(
+            (wide >= tall)[:, None], (0.5 * (wide - tall))[:, None] * side, (0.5 * (tall - wide))[:, None] * build[at]
+        )
+        corners += [middle - flat, middle + flat]
+    hull = np.stack(corners, axis=1)
+    line = np.stack([points[begin], points[end]], axis=1)
+    since = moment[end]
+    turned = np.flatnonzero((end[:-1] == begin[1:]) & (np.einsum("ij,ij->i", along[:-1], along[1:]) < CORNER))
+    wedge = np.concatenate([hull[turned][:, 2:], hull[turned + 1][:, :2]], axis=1)
+    return Obstacles(
+        np.concatenate([hull, wedge]), np.concatenate([since, since[turned + 1]]),
+        np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
+        np.concatenate([line, line[turned + 1]]), np.concatenate([wide, wide[turned]]),
+    )
+
+
+def _unit(vectors: Array) -> Array:
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    unit: Array = vectors / np.where(size > 0.0, size, 1.0)
+    return unit

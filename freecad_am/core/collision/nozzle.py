@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The nozzle as it is looked at against bodies and against deposit: while it deposits, and on rapids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .frustum import Array, Frustum, Index, beside_tip
+from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
+
+
+@dataclass(frozen=True)
+class Nozzle:
+    """The same nozzle less what touches where it deposits, and less what bodies and beads are off their true places."""
+
+    bodies: Frustum
+    deposit: Frustum
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of a point of it from the tip, mm."""
+        return max(self.bodies.reach, self.deposit.reach)
+
+    def rows(self, index: Index) -> Nozzle:
+        """The nozzles of some of the rows, where they differ."""
+        return Nozzle(self.bodies.rows(index), self.deposit.rows(index))
+
+    def halfway(self) -> Nozzle:
+        """The nozzle as it is looked at halfway between points at which it is clear."""
+        return Nozzle(*(
+            replace(solid, radius=solid.radius - HALFWAY * np.hypot(1.0, solid.slope), high=solid.high - HALFWAY)
+            for solid in (self.bodies, self.deposit)
+        ))
+
+
+def exempt_height(radius: float, slope: float, bead_height: float) -> float:
+    """Height (mm) over the tip plane below which deposit is not looked at.
+
+    The tip stands on the deposit in the bead that is being laid, and beads beside it overlap it by intention: up to the
+    height of the bead they are about the nozzle rightly. At the least it is the height at which the nozzle's side is one of
+    its diameters from the tip.
+    """
+    return max(beside_tip(radius, slope), bead_height)
+
+
+def depositing(radius: float, slope: float, length: float, bead_height: float) -> Nozzle:
+    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle, and the height mm of
+    the highest bead. Bodies are left out only as far as the nozzle touches what it stands on."""
+    return Nozzle(
+        Frustum(radius, slope, beside_tip(radius, slope) + ABOVE_FACES, length),
+        Frustum(radius, slope, exempt_height(radius, slope, bead_height), length),
+    )
+
+
+def travelling(radius: float, slope: float, length: float, exempt: float | Array = 0.0) -> Nozzle:
+    """The nozzle on a rapid. exempt: mm over the tip that are not looked at, of all looks or (k,) of each: on retract and
+    approach what is left of `exempt_height` at the deposit point less the distance of the tip from it."""
+    return Nozzle(
+        Frustum(max(radius - FACES, 0.0), slope, np.maximum(exempt, FACES), length),
+        Frustum(max(radius - CHORD, 0.0), slope, np.maximum(exempt, CHORD), length),
+    )

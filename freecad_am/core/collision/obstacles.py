@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points, segments, triangles and pieces of beads in a tree of balls: which solids they reach into, and how far off
+they are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import separation, tree
+from .frustum import Array, Frustum, Index, Mask
+
+QUERIES = 16384  # worked on at once
+ALWAYS, NEVER = -1, np.iinfo(np.intp).max
+
+
+class Obstacles:
+    """Convex things (m, c, 3), the hulls of c points each, in an order of their own: points, segments, triangles, or pieces
+    of beads, the hulls of four points with a rounding of `radius` (m,) mm about them.
+
+    since: (m,) the moment from which each is there; none, then always. line: (m, 2, 3) the segments along which the pieces
+    of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `beside`
+    (m,) mm.
+    """
+
+    def __init__(
+        self, corners: Array, since: Index | None = None, radius: Array | None = None, line: Array | None = None,
+        beside: Array | None = None,
+    ) -> None:
+        order = tree.packed(corners.mean(axis=1))
+        self.corners = corners[order]
+        self.since = np.full(len(corners), ALWAYS, dtype=np.intp) if since is None else since[order]
+        self.radius = None if radius is None else radius[order]
+        self.line = None if line is None else line[order]
+        self.beside = None if beside is None else beside[order]
+        self._sizes = tree.sizes(len(corners))
+        self._levels = [self._balls(size) for size in self._sizes]
+        if corners.shape[1] == 3:
+            normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
+            size = np.linalg.norm(normal, axis=1)
+            self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
+
+    def _balls(self, size: int) -> tuple[Array, Array, Index]:
+        """Centres, radii and earliest moments of the balls about so many obstacles each."""
+        starts = np.arange(0, len(self.corners), size)
+        if not len(starts):
+            return np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
+        low = np.minimum.reduceat(self.corners.min(axis=1), starts)
+        high = np.maximum.reduceat(self.corners.max(axis=1), starts)
+        centre = 0.5 * (low + high)
+        away = np.linalg.norm(self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None], axis=2).max(axis=1)
+        if self.radius is not None:
+            away = away + self.radius
+        return centre, np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
+
+    def touched(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
+    ) -> Mask:
+        """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,).
+
+        own: (k,) the moment at which the layer being laid began.
+        """
+        found = np.zeros(len(tip), dtype=bool)
+        if not len(self.corners) or not np.any(solid.high > solid.low):
+            return found
+        for first in range(0, len(tip), QUERIES):
+            rows = np.arange(first, min(first + QUERIES, len(tip)))
+            when = np.zeros(len(rows), dtype=np.intp) if moment is None else moment[rows]
+            layer = np.full(len(rows), NEVER) if own is None else own[rows]
+            found[rows] = self._touched(solid.rows(rows), tip[rows], axis[rows], when, layer)
+        return found
+
+    def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
+        found = np.zeros(len(tip), dtype=bool)
+        top = len(self._levels[-1][1])
+        waiting = [(len(self._levels) - 1, np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip)))]
+        while waiting:
+            depth, query, node = waiting.pop()
+            left = ~found[query]
+            query, node = query[left], node[left]
+            centre, radius, since = self._levels[depth]
+            near = since[node] < moment[query]
+            query, node = query[near], node[near]
+            near = solid.rows(query).near(centre[node] - tip[query], axis[query], radius[node])
+            query, node = query[near], node[near]
+            # one corner inside settles the matter without looking at all the rest
+            sample = node * self._sizes[depth]
+            inside = solid.rows(query).holds(self.corners[sample, 0] - tip[query], axis[query])
+            inside &= (self.since[sample] < moment[query]) & (self.since[sample] < own[query])
+            found[query[inside]] = True
+            left = ~found[query]
+            query, node = query[left], node[left]
+            if depth:
+                query, node = tree.below(query, node, len(self._levels[depth - 1][1]))
+                waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
+                continue
+            for q, n in tree.parts(query, node):
+                left = ~found[q]
+                q, n = q[left], n[left]
+                meets = self._meets(solid.rows(q), tip[q], axis[q], n, own[q])
+                found[q[meets]] = True
+        return found
+
+    def _meets(self, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index) -> Mask:
+        """Whether obstacles (k,) reach into solids."""
+        kind = self.corners.shape[1]
+        offset = self.corners[node] - tip[:, None]
+        if kind == 1:
+            return solid.holds(offset[:, 0], axis)
+        if kind == 2:
+            return solid.meets_segments(offset[:, 0], offset[:, 1], axis)
+        meets = np.zeros(len(node), dtype=bool)
+        if kind == 3:
+            normal = self._normal[node]
+            cut = np.flatnonzero(solid.crossed(normal, np.einsum("ij,ij->i", normal, offset[:, 0]), axis))
+            meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
+            return meets
+        assert self.radius is not None and self.line is not None and self.beside is not None
+        line = self.line[node] - tip[:, None]
+        same = (self.since[node] >= own) & (_from_origin(line) < self.beside[node])
+        rows = np.flatnonzero(same)
+        meets[rows] = solid.rows(rows).meets_segments(line[rows, 0], line[rows, 1], axis[rows])
+        rows = np.flatnonzero(~same)
+        meets[rows] = separation.within(solid.rows(rows), axis[rows], offset[rows], self.radius[node[rows]])
+        return meets
+
+    def distance(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, reach: float = np.inf
+    ) -> Array:
+        """(k,) mm from solids to the nearest obstacle there before the moment (k,), 0 where they meet, at most `reach`; no
+        more than the true distance, and less by no more than what tolerances.CONVERGED says."""
+        found = np.full(len(tip), reach)
+        for first in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):
+            rows = np.arange(first, min(first + QUERIES // 8, len(tip)))
+            when = np.zeros(len(rows), dtype=np.intp) if moment is None else moment[rows]
+            found[rows] = self._distance(solid.rows(rows), tip[rows], axis[rows], when, reach)
+        return found
+
+    def _distance(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> Array:
+        low, best = np.full(len(tip), reach), np.full(len(tip), reach)  # bounds of the least distance yet
+        top = len(self._levels[-1][1])
+        query, node = np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip))
+        for depth in range(len(self._levels) - 1, -1, -1):
+            centre, radius, since = self._levels[depth]
+            kept = []
+            for q, n in tree.parts(query, node):
+                there = since[n] < moment[q]
+                q, n = q[there], n[there]
+                least = solid.rows(q).gap(centre[n] - tip[q], axis[q]) - radius[n]
+                near = least < best[q]
+                q, n, least = q[near], n[near], least[near]
+                sample = n * self._sizes[depth]
+                known = self.since[sample] < moment[q]
+                a, b = q[known], sample[known]
+                most = solid.rows(a).gap(self.corners[b, 0] - tip[a], axis[a])
+                np.minimum.at(best, a, most if self.radius is None else np.maximum(most - self.radius[b], 0.0))
+                kept.append((q, n, least))
+            query, node, away = (np.concatenate([some[i] for some in kept]) for i in range(3)) if kept else (query, node, [])
+            near = away < np.maximum(best[query], separation.CONVERGED)
+            query, node, away = query[near], node[near], away[near]
+            if depth:
+                query, node = tree.below(query, node, len(self._levels[depth - 1][1]))
+        # the nearest by their balls first: most of the others are then known to be farther
+        order = np.lexsort((away, query))
+        query, node, away = query[order], node[order], away[order]
+        share = 1
+        while len(query):
+            rank = np.arange(len(query)) - np.searchsorted(query, query)
+            now = rank < share
+            self._bring_nearer(solid, tip, axis, query[now], node[now], low, best)
+            left = ~now & (away < best[query])
+            query, node, away, share = query[left], node[left], away[left], 4 * share
+        return np.where(best <= separation.CONVERGED, 0.0, np.minimum(low, best))
+
+    def _bring_nearer(
+        self, solid: Frustum, tip: Array, axis: Array, query: Index, node: Index, low: Array, best: Array
+    ) -> None:
+        """Lower the bounds of queries (n,) by their obstacles."""
+        for q, n in tree.parts(query, node):
+            round_ = np.zeros(len(n)) if self.radius is None else self.radius[n]
+            points = self.corners[n] - tip[q, None]
+            bottom, top = separation.bounds(solid.rows(q), axis[q], points, round_, best[q] + round_)
+            bottom, top = np.maximum(bottom - round_, 0.0), np.maximum(top - round_, 0.0)
+            np.minimum.at(low, q, np.where(top > separation.CONVERGED, bottom, 0.0))
+            np.minimum.at(best, q, top)
+
+
+def _from_origin(segment: Array) -> Array:
+    """Distances (k,) mm of segments (k, 2, 3) from the origin."""
+    start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
+    square = np.einsum("ij,ij->i", along, along)
+    share = np.clip(-np.einsum("ij,ij->i", start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    away: Array = np.linalg.norm(start + share[:, None] * along, axis=1)
+    return away

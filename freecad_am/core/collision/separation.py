@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Distances between solids of revolution and the convex hulls of few points, many pairs at once.
+
+After Gilbert, Johnson and Keerthi (1988): the set of differences of both solids' points is convex, and its point nearest
+to the origin is approached by simplices of its extreme points. With each comes a lower bound, so that a pair that is
+farther apart, or nearer, than matters is done at once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .frustum import Array, Frustum, Mask
+from .tolerances import CONVERGED
+
+MOST = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
+
+
+def bounds(
+    solid: Frustum, axis: Array, points: Array, nearer: Array | float = 0.0, farther: Array | float = np.inf
+) -> tuple[Array, Array]:
+    """Lower and upper bounds (k,) mm of the distance between solids about unit axes (k, 3) and the hulls of points
+    (k, c, 3), seen from the tips; they agree within CONVERGED, unless the distance is surely below `nearer`, or above
+    `farther`, both (k,) mm. 0 where the two meet."""
+    count = len(points)
+    low, high = np.zeros(count), np.zeros(count)
+    nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
+    middle = points.mean(axis=1)
+    place = solid.nearest(middle, axis) - middle
+    high[:] = np.sqrt(_dot(place, place))
+    rows = np.flatnonzero(high > np.maximum(nearer, CONVERGED))
+    place, simplex = place[rows], np.repeat(place[rows, None], 3, axis=1)
+    solid, axis, points = solid.rows(rows), axis[rows], points[rows]
+    for _ in range(MOST):
+        if not len(rows):
+            break
+        own = np.einsum("kcj,kj->kc", points, place).argmax(axis=1)
+        newest = solid.farthest(-place, axis) - points[np.arange(len(rows)), own]
+        size = high[rows]
+        low[rows] = np.maximum(low[rows], _dot(place, newest) / size)
+        going = np.flatnonzero(low[rows] < np.minimum(farther[rows], size - CONVERGED))
+        rows, simplex, newest = rows[going], simplex[going], newest[going]
+        solid, axis, points, size = solid.rows(going), axis[going], points[going], size[going]
+        place, simplex = _nearest(simplex, newest)
+        now = np.sqrt(_dot(place, place))
+        # no nearer than before: rounding has the last word
+        high[rows] = np.minimum(now, size)
+        going = np.flatnonzero((now > np.maximum(nearer[rows], CONVERGED)) & (now < size))
+        met = now <= CONVERGED
+        high[rows[met]] = 0.0
+        low[rows[met]] = 0.0
+        rows, simplex, place = rows[going], simplex[going], place[going]
+        solid, axis, points = solid.rows(going), axis[going], points[going]
+    return np.minimum(low, high), high
+
+
+def within(solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
+    """(k,) whether hulls of points (k, c, 3) with a rounding of the radius (k,) mm about them reach into solids."""
+    deep = np.maximum(radius - CONVERGED, 0.0)
+    _, high = bounds(solid, axis, points, deep, deep)
+    found: Mask = (high < deep) | (high == 0.0)
+    return found
+
+
+def _dot(one: Array, other: Array) -> Array:
+    product: Array = np.einsum("ij,ij->i", one, other)
+    return product
+
+
+def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
+    """The point (k, 3) nearest to the origin of the hulls of three points (k, 3, 3), of which some may be one, and a fourth
+    (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have."""
+    edge = [simplex[:, i] - newest for i in range(3)]
+    square = {(i, j): _dot(edge[i], edge[j]) for i in range(3) for j in range(i, 3)}
+    pull = [-_dot(newest, each) for each in edge]
+    own = _dot(newest, newest)
+    k = len(newest)
+    best, share = own, np.zeros((k, 3))
+
+    def better(value: Array, shares: dict[int, Array], holds: Mask | None = None) -> None:
+        nonlocal best
+        rows = np.flatnonzero((value < best) if holds is None else (holds & (value < best)))
+        best = np.where(value < best, value, best) if holds is None else np.where(holds & (value < best), value, best)
+        share[rows] = 0.0
+        for i, part in shares.items():
+            share[rows, i] = part[rows]
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for i in range(3):
+            part = np.clip(np.where(square[i, i] > 0.0, pull[i] / square[i, i], 0.0), 0.0, 1.0)
+            better(own - 2.0 * part * pull[i] + part * part * square[i, i], {i: part})
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            a, b, c = square[i, i], square[i, j], square[j, j]
+            wide = a * c - b * b
+            one, two = (pull[i] * c - pull[j] * b) / wide, (pull[j] * a - pull[i] * b) / wide
+            holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)
+            better(own - one * pull[i] - two * pull[j], {i: one, j: two}, holds)
+        normal = np.cross(edge[1], edge[2])
+        volume = _dot(edge[0], normal)
+        parts = [
+            -_dot(newest, normal) / volume, -_dot(newest, np.cross(edge[2], edge[0])) / volume,
+            -_dot(newest, np.cross(edge[0], edge[1])) / volume,
+        ]
+        inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0, 0] * square[1, 1] * square[2, 2])) & (sum(parts) < 1.0)
+        for part in parts:
+            inside &= part > 0.0
+    place = newest + np.einsum("ki,kij->kj", share, np.stack(edge, axis=1))
+    place[inside] = 0.0
+    kept = np.concatenate([simplex, newest[:, None]], axis=1)
+    weight = np.concatenate([share, 1.0 - share.sum(axis=1, keepdims=True)], axis=1)
+    # what has a share comes first, what has none becomes another of those that have
+    order = np.argsort(weight <= 0.0, axis=1, kind="stable")[:, :3]
+    order = np.where(np.take_along_axis(weight, order, axis=1) > 0.0, order, order[:, :1])
+    return place, np.take_along_axis(kept, order[:, :, None], axis=1)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A tree of bounding volumes over things in space: things in an order in which neighbours follow each other, so many of
+which make a node, so many nodes a node of the next level."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from .frustum import Array, Index
+
+BRANCH = 8
+PAIRS = 200_000  # of queries and nodes looked at together: memory does not grow with either
+
+
+def packed(points: Array) -> Index:
+    """An order of points (n, 3) in which every node of the tree holds neighbours: halves along the longest side of their
+    box again and again, cut between whole nodes."""
+    order = np.arange(len(points))
+    waiting = [(0, len(points), BRANCH ** int(np.log(max(len(points), 1)) / np.log(BRANCH) + 1))]
+    while waiting:
+        low, high, ball = waiting.pop()
+        if high - low <= BRANCH:
+            continue
+        while ball >= high - low:
+            ball //= BRANCH
+        mine = order[low:high]
+        some = points[mine]
+        cut = -(-(high - low) // ball) // 2 * ball
+        order[low:high] = mine[np.argpartition(some[:, np.argmax(np.ptp(some, axis=0))], cut)]
+        waiting += [(low, low + cut, ball), (low + cut, high, ball)]
+    return order
+
+
+def sizes(count: int) -> list[int]:
+    """How many things a node holds, level by level from the single ones up, of so many things in all."""
+    found = [1]
+    while -(-count // found[-1]) > 2 * BRANCH:
+        found.append(BRANCH * found[-1])
+    return found
+
+
+def below(query: Index, node: Index, count: int) -> tuple[Index, Index]:
+    """Queries and nodes of the next level down, of which there are `count`."""
+    query, node = np.repeat(query, BRANCH), (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()
+    real = node < count
+    return query[real], node[real]
+
+
+def parts(query: Index, node: Index) -> Iterator[tuple[Index, Index]]:
+    """Pairs, so many at a time."""
+    for first in range(0, len(query), PAIRS):
+        yield query[first : first + PAIRS], node[first : first + PAIRS]

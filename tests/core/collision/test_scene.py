@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Touching and distances against what points sampled in both solids say, and against a minimisation by scipy."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.spatial import cKDTree
+
+from freecad_am.core.collision import deposit, separation
+from freecad_am.core.collision.frustum import Frustum
+from freecad_am.core.collision.nozzle import depositing, exempt_height, travelling
+from freecad_am.core.collision.scene import scene
+from freecad_am.core.geometry.surroundings import Body
+
+SLOPE = np.tan(np.radians(20.0))
+NOZZLE = Frustum(0.5, SLOPE, 1.0, 60.0)
+
+
+def units(rng, count):
+    found = rng.normal(size=(count, 3))
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+
+def skin(solid, tip, axis, count=45):
+    """Points (n, 3) of the surface of a frustum."""
+    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    one /= np.linalg.norm(one)
+    two = np.cross(axis, one)
+    turn = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    around = np.cos(turn)[:, None] * one + np.sin(turn)[:, None] * two
+    height = np.linspace(solid.low, solid.high, count)
+    side = height[:, None, None] * axis + (solid.radius + solid.slope * height)[:, None, None] * around
+    discs = [
+        end * axis + share * (solid.radius + solid.slope * end) * around
+        for end in (solid.low, solid.high) for share in np.linspace(0.0, 1.0, 16)
+    ]
+    return tip + np.concatenate([side.reshape(-1, 3), *discs])
+
+
+def in_frustum(solid, tip, axis, points, deep):
+    """Whether points (n, 3) are inside, `deep` mm below the surface."""
+    offset = points - tip
+    up = offset @ axis
+    side = np.linalg.norm(offset - up[:, None] * axis, axis=1)
+    lean = np.hypot(1.0, solid.slope)
+    return (up > solid.low + deep) & (up < solid.high - deep) & ((solid.radius + solid.slope * up - side) / lean > deep)
+
+
+def stadium(points, build, width, height, count=7):
+    """Points (n, 3) all through beads with a stadium for a section, and a ball at their ends; by sweeping the section."""
+    found = []
+    for a, b in zip(points[:-1], points[1:]):
+        along = (b - a) / np.linalg.norm(b - a)
+        side = np.cross(build, along)
+        side /= np.linalg.norm(side)
+        way = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(b - a) / 0.6))
+        u, v = np.meshgrid(np.linspace(-0.5, 0.5, 2 * count) * width, np.linspace(0.0, 1.0, count) * height)
+        u, v = u.ravel(), v.ravel()
+        round_ = 0.5 * height
+        kept = np.hypot(np.maximum(np.abs(u) - (0.5 * width - round_), 0.0), v - round_) <= round_
+        section = u[kept, None] * side + v[kept, None] * build
+        found.append((a + way[:, None, None] * (b - a) + section).reshape(-1, 3))
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("corners", [1, 2, 3, 4])
+def test_distances_are_those_that_a_minimisation_finds(corners):
+    rng = np.random.default_rng(corners)
+    axis, points = units(rng, 40), rng.uniform(-50, 50, (40, 1, 3)) + rng.uniform(-6, 6, (40, corners, 3))
+    low, high = separation.bounds(NOZZLE, axis, points)
+    assert (high - low).max() < 1e-4
+
+    def up(values, k):
+        return values[:3] @ axis[k]
+
+    def across(values, k):
+        return np.sqrt(np.sum((values[:3] - up(values, k) * axis[k]) ** 2) + 1e-12)
+
+    for k in range(40):  # a point of the nozzle, and the shares of the corners in one of the hull
+        limits = [
+            {"type": "ineq", "fun": lambda v, k=k: NOZZLE.radius + NOZZLE.slope * up(v, k) - across(v, k)},
+            {"type": "ineq", "fun": lambda v, k=k: up(v, k) - NOZZLE.low},
+            {"type": "ineq", "fun": lambda v, k=k: NOZZLE.high - up(v, k)},
+            {"type": "eq", "fun": lambda v: v[3:].sum() - 1.0},
+        ]
+        start = np.r_[20.0 * axis[k], np.full(corners, 1.0 / corners)]
+        found = minimize(
+            lambda v, k=k: np.sum((v[:3] - v[3:] @ points[k]) ** 2), start, method="SLSQP", constraints=limits,
+            bounds=[(None, None)] * 3 + [(0.0, 1.0)] * corners, options={"maxiter": 300, "ftol": 1e-12},
+        )
+        assert abs(np.sqrt(max(found.fun, 0.0)) - high[k]) < 2e-3 + 1e-3 * (high[k] == 0.0), k
+
+
+def test_what_touches_is_what_points_of_beads_inside_of_the_nozzle_say():
+    rng = np.random.default_rng(7)
+    points = np.stack([np.linspace(-30, 30, 13), 6 * np.sin(np.linspace(0, 5, 13)), np.linspace(0, 4, 13)], axis=1)
+    up, width, height = np.array([0.0, 0.0, 1.0]), 8.0, 2.0
+    laid = deposit.of_beads(points, np.tile(up, (13, 1)), width, height, [0])
+    there = scene([], points, 100.0, laid)
+    axis, tip = units(rng, 400), rng.uniform(-45, 45, (400, 3))
+    found, away = there.touched(NOZZLE, tip, axis), there.distance(NOZZLE, tip, axis)
+    solid = stadium(points, up, width, height)
+    tree = cKDTree(solid)
+    assert 60 < found.sum() < 340 and ((away == 0.0) == found).all()
+    for k in range(70):
+        if in_frustum(NOZZLE, tip[k], axis[k], solid, 1e-3).any():
+            assert found[k], k
+        elif found[k]:  # within what the grain of the sample may miss
+            assert in_frustum(NOZZLE, tip[k], axis[k], solid, -0.5).any(), k
+        else:
+            sampled = tree.query(skin(NOZZLE, tip[k], axis[k]))[0].min()
+            assert away[k] - 1e-6 <= sampled <= away[k] + 1.0, k
+    near = there.distance(NOZZLE, tip, axis, reach=5.0)
+    assert np.abs(near - np.minimum(away, 5.0)).max() < 1e-4
+
+
+def test_distances_from_bodies_are_those_of_their_sampled_faces_and_none_inside():
+    rng = np.random.default_rng(3)
+    size = 30.0
+    x = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]) * size
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    box = Body("box", x, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
+    short = Frustum(0.5, SLOPE, 0.2, 12.0)
+    tip, axis = rng.uniform(-70, 70, (500, 3)), units(rng, 500)
+    tip[0], axis[0] = 0.0, [0.0, 0.0, 1.0]
+    there = scene([box], tip, short.reach)
+    away, found = there.distance(short, tip, axis), there.touched(short, tip, axis)
+    assert found[0] and away[0] == 0.0 and found.sum() > 30 and ((away == 0.0) == found).all()
+    for k in np.flatnonzero(~found):
+        places = skin(short, tip[k], axis[k])
+        sampled = np.linalg.norm(np.maximum(np.abs(places) - size, 0.0), axis=1).min()
+        assert away[k] - 1e-6 <= sampled <= away[k] + 0.15, k
+
+
+def test_a_piece_is_there_from_its_moment_on_and_a_corner_has_its_outer_side():
+    points = np.array([[0.0, 0, 0], [20, 0, 0], [20, 20, 0], [20, 40, 0]])
+    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (4, 1)), 8.0, 2.0, [0], np.array([10, 11, 12, 13]))
+    there = scene([], points, 100.0, laid)
+    probe = Frustum(0.05, 0.0, 0.0, 0.5)
+    tip = np.array([[10.0, 3, 0.5], [20, 30, 0.5], [22.2, -2.2, 0.8]])
+    up = np.tile([0.0, 0.0, 1.0], (3, 1))
+    for moment, wanted in ((11, [0, 0, 0]), (12, [1, 0, 0]), (13, [1, 0, 1]), (14, [1, 1, 1])):
+        assert there.touched(probe, tip, up, np.full(3, moment)).tolist() == [bool(each) for each in wanted], moment
+
+
+def test_the_bead_being_laid_and_its_neighbours_are_not_touched_but_a_finished_one_is():
+    """Two beads of one layer overlap by a quarter; one of an earlier layer stands in the way."""
+    line = np.stack([np.linspace(0, 40, 41), np.zeros(41), np.zeros(41)], axis=1)
+    points = np.concatenate([line, line + [0, 6.0, 0]])
+    laid = deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (82, 1)), 8.0, 2.0, [0, 41])
+    there = scene([], points, 100.0, laid)
+    nozzle = depositing(0.5, SLOPE, 60.0, 2.0)
+    lean = np.array([[np.sin(0.6), 0.0, np.cos(0.6)], [0.0, -np.sin(0.6), np.cos(0.6)]])
+    tip, moment = points[[60, 60]], np.array([61, 61])
+    assert there.touched(nozzle, tip, lean, moment).tolist() == [False, True]
+    assert not there.touched(nozzle, tip, lean, moment, own=np.array([0, 0])).any()
+    assert exempt_height(0.5, SLOPE, 2.0) == 2.0 and exempt_height(2.0, SLOPE, 0.5) > 0.5
+
+
+def test_what_is_exempt_may_differ_from_look_to_look():
+    points = np.array([[-20.0, 0, 0], [20, 0, 0]])
+    there = scene([], points, 100.0, deposit.of_beads(points, np.tile([0.0, 0.0, 1.0], (2, 1)), 8.0, 2.0, [0]))
+    tip, up = np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1))
+    tip[:, 2] = [0.0, 1.0, 1.0]
+    solid = travelling(0.5, SLOPE, 60.0, np.array([2.0, 1.0, 0.0]))
+    assert there.touched(solid, tip, up).tolist() == [False, False, True]
+    assert there.distance(solid, tip, up)[2] == 0.0
+
+
+def test_memory_is_linear():
+    def peak(count):
+        s = np.linspace(0, 400, count)
+        points = np.stack([s, np.zeros(count), np.zeros(count)], axis=1)
+        there = scene([], points, 0.0, deposit.of_beads(points, np.tile([0.0, 0, 1.0], (count, 1)), 8.0, 1.0, [0]))
+        tip = points + [0.0, 9.0, 0.0]
+        tracemalloc.start()
+        there.touched(NOZZLE, tip, np.tile([0.0, 0, 1.0], (count, 1)))
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return most
+
+    assert peak(12_000) < 200e6
