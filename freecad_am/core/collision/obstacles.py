@@ -8,6 +8,7 @@ import numpy as np
 
 from . import separation, tree
 from .frustum import Array, Frustum, Index, Mask
+from .tolerances import CONVERGED
 
 QUERIES = 16384  # worked on at once
 ALWAYS, NEVER = -1, np.iinfo(np.intp).max
@@ -141,7 +142,7 @@ class Obstacles:
         query, node = np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip))
         for depth in range(len(self._levels) - 1, -1, -1):
             centre, radius, since = self._levels[depth]
-            kept = []
+            kept: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
             for q, n in tree.parts(query, node):
                 there = since[n] < moment[q]
                 q, n = q[there], n[there]
@@ -154,8 +155,9 @@ class Obstacles:
                 most = solid.rows(a).gap(self.corners[b, 0] - tip[a], axis[a])
                 np.minimum.at(best, a, most if self.radius is None else np.maximum(most - self.radius[b], 0.0))
                 kept.append((q, n, least))
-            query, node, away = (np.concatenate([some[i] for some in kept]) for i in range(3)) if kept else (query, node, [])
-            near = away < np.maximum(best[query], separation.CONVERGED)
+            query, node = (np.concatenate([some[i] for some in kept]) for i in range(2))
+            away = np.concatenate([some[2] for some in kept])
+            near = away < np.maximum(best[query], CONVERGED)
             query, node, away = query[near], node[near], away[near]
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1][1]))
@@ -169,7 +171,7 @@ class Obstacles:
             self._bring_nearer(solid, tip, axis, query[now], node[now], low, best)
             left = ~now & (away < best[query])
             query, node, away, share = query[left], node[left], away[left], 4 * share
-        return np.where(best <= separation.CONVERGED, 0.0, np.minimum(low, best))
+        return np.where(best <= CONVERGED, 0.0, np.minimum(low, best))
 
     def _bring_nearer(
         self, solid: Frustum, tip: Array, axis: Array, query: Index, node: Index, low: Array, best: Array
@@ -180,7 +182,7 @@ class Obstacles:
             points = self.corners[n] - tip[q, None]
             bottom, top = separation.bounds(solid.rows(q), axis[q], points, round_, best[q] + round_)
             bottom, top = np.maximum(bottom - round_, 0.0), np.maximum(top - round_, 0.0)
-            np.minimum.at(low, q, np.where(top > separation.CONVERGED, bottom, 0.0))
+            np.minimum.at(low, q, np.where(top > CONVERGED, bottom, 0.0))
             np.minimum.at(best, q, top)
 
 

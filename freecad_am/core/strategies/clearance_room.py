@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.bodies import of_bodies
+from ..collision.bodies import Bodies, of_bodies
 from ..collision.frustum import Frustum, beside_tip
 from ..collision.obstacles import Obstacles
 from ..geometry.columns import columns
@@ -36,7 +36,7 @@ class Room:
     """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit."""
 
     points: Array
-    bodies: Obstacles
+    bodies: Bodies
     deposit: Obstacles
     above_bodies: Frustum
     above_deposit: Frustum
