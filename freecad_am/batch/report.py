@@ -44,6 +44,7 @@ def build(
         "duration_s": sums.time,
         "totals": totals.as_dict(sums),
         "spacing_mm": spread(spacing),
+        "unsupported_mm": toolpath.unsupported,
         "joints": None,
         "preflight": [],
         "comparison": [],

@@ -251,7 +251,8 @@ class Toolpath:
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error and
     layer_height: mm. overlap: how far closed beads run on past their seam, mm. issues: findings made on the way
     (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle is kept clear of. law: what a
-    bead model knows of beads at other speeds than theirs, None without one.
+    bead model knows of beads at other speeds than theirs, None without one. bead_width: mm that beads count
+    as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
     """
 
     layers: tuple[Layer, ...]
@@ -263,6 +264,8 @@ class Toolpath:
     family: str = field(default="revolution")
     surroundings: tuple[Body, ...] = ()
     law: SpeedLaw | None = None
+    bead_width: float | None = None
+    unsupported: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

@@ -17,7 +17,16 @@ from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
 from ..core.process import bead_table
-from ..core.strategies import developable, platform, revolution, surface, surface_directions, wall_clearance, wall_fronts
+from ..core.strategies import (
+    developable,
+    platform,
+    revolution,
+    support,
+    surface,
+    surface_directions,
+    wall_clearance,
+    wall_fronts,
+)
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
 from .developable_feature import DevelopableFeature
@@ -25,6 +34,7 @@ from .stage import Link, Outcome, Section, Stage, Work, stage_of
 from .surface_feature import SurfaceFeature
 
 STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
+CHECKED = 0.95  # and what is left into a last look
 
 
 class Toolpath(Stage):
@@ -83,7 +93,23 @@ def planned(
     wall: Any, strategy: RevolutionParameters | SurfaceParameters | DevelopableParameters,
     build: BuildDirectionParameters, process: ProcessParameters, cell: CellParameters | None,
 ) -> CoreToolpath:
-    """The toolpath of a wall or of solids, the result of a feature, cut by the strategy of its family."""
+    """The toolpath of a wall or of solids, the result of a feature, cut by the strategy of its family; what of it lies over
+    nothing is told."""
+    made = _made(wall, strategy, build, process, cell)
+    progress.report(CHECKED, "looking for beads over nothing")
+    has_platform = cell is not None and cell.platform_diameter > 0.0
+    stands = _mounted(cell, made) if cell is not None and has_platform else made.frame
+    if made.family == "revolution":
+        return support.told(made, (stands,), made.surroundings, ())
+    platforms = (disc(cell.platform_diameter, stands),) if cell is not None and has_platform else ()
+    bases = [group.base for group in wall.groups] if isinstance(wall, SolidsOnHub) else ()
+    return support.told(made, (), (*made.surroundings, *platforms), bases)
+
+
+def _made(
+    wall: Any, strategy: RevolutionParameters | SurfaceParameters | DevelopableParameters,
+    build: BuildDirectionParameters, process: ProcessParameters, cell: CellParameters | None,
+) -> CoreToolpath:
     if process.bead_model == "none" and process.wire.feed_mode != "constant":
         raise InputError(
             "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model the travel speed does not vary, and the wire "

@@ -47,7 +47,8 @@ def plan(
     strategy = spaced(strategy, process)
     width = None if strategy.bead_overlap is None else process.bead_width
     size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy, width)
-    pictures = Pictures(strategy, process, bead_width(strategy, process, model))
+    counted = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, counted)
     laid: list[Laid] = []
     made: list[Rolled] = []
     mended: list[Issue] = []
@@ -79,7 +80,7 @@ def plan(
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap, FAMILY,
-        solids.surroundings, None if model is None else model.law(process.acceleration),
+        solids.surroundings, None if model is None else model.law(process.acceleration), counted,
     )
 
 

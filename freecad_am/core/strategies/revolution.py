@@ -65,7 +65,10 @@ def plan(
         layers, found = _layers(wall, slices, strategy, process, tilting)
     progress(0.9, "checking")
     issues = [*wall.issues, *platform.overhanging(wall, under), *issues, *found]
-    return Toolpath(layers, wall.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap)
+    return Toolpath(
+        layers, wall.frame, strategy.layer_height, strategy.chord_error, tuple(issues), process.overlap,
+        bead_width=process.bead_width,
+    )
 
 
 def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:

@@ -51,7 +51,8 @@ def plan(
     progress(0.7, "build directions")
     layers, found = _layers(wall, surface, stretches, strategy, build, process, normal)
     return Toolpath(
-        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface"
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, (*issues, *notes, *found), process.overlap,
+        "surface", bead_width=process.bead_width,
     )
 
 

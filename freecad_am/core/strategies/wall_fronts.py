@@ -68,7 +68,10 @@ def plan(
     notes += _close(pieces, closing, full)
     progress(FINDING, "build directions")
     layers, found = _layers(wall, pieces, strategy, build, process, normal)
-    return Toolpath(layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface")
+    return Toolpath(
+        layers, np.eye(4), height, strategy.chord_error, (*issues, *notes, *found), process.overlap, "surface",
+        bead_width=process.bead_width,
+    )
 
 
 def _refuse(strategy: SurfaceParameters) -> None:

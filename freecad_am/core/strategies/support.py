@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What carries beads besides deposit: the platform or plane that a part stands on, the hub, the substrate, fixtures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.on_hub import Base
+from ..geometry.solid_mesh import Search, SolidMesh
+from ..geometry.surroundings import Body
+from ..process import support
+from ..toolpath import Array, Toolpath
+
+Mask = NDArray[np.bool_]
+
+STEPS = 7  # places on the way down at which a body is looked for
+ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
+FLUSH = 1e-6  # mm
+
+
+def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
+    """The toolpath with how much of it lies over nothing, and issues where.
+
+    planes: frames (4, 4) in part coordinates, what lies on the plane z = 0 of
+    one, or below it, is carried. bases: hubs, which count where most of the first layer is on none of the bodies: then the
+    hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
+    """
+    ground = _Ground(toolpath, planes, bodies, bases)
+    length, issues = support.carried(toolpath, ground, toolpath.family == "surface")
+    return replace(toolpath, unsupported=length, issues=(*toolpath.issues, *issues))
+
+
+class _Ground:
+    """Whether something other than deposit carries points (n, 3) with build directions (n, 3)."""
+
+    def __init__(
+        self, toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
+    ) -> None:
+        self._height, self._planes, self._bases = toolpath.layer_height, planes, bases
+        self._searches = [search for body in bodies if (search := _search(body, toolpath.layer_height)) is not None]
+        if bases and self._searches:
+            first = toolpath.layers[0].beads
+            points, build = (np.vstack([getattr(bead, name) for bead in first]) for name in ("points", "build"))
+            some = slice(None, None, max(1, len(points) // 1000))
+            if self._on_bodies(points[some], build[some]).mean() > 0.5:
+                self._bases = ()
+
+    def __call__(self, points: Array, build: Array) -> Mask:
+        reach = support.REACH * self._height * (1.0 + FLUSH)
+        found = np.zeros(len(points), dtype=bool)
+        for frame in self._planes:
+            found |= (points - frame[:3, 3]) @ frame[:3, 2] <= reach
+        for base in self._bases:
+            found |= base.surface.distance(base.inside(points)) <= reach
+        rest = np.flatnonzero(~found)
+        found[rest] = self._on_bodies(points[rest], build[rest])
+        return found
+
+    def _on_bodies(self, points: Array, build: Array) -> Mask:
+        found = np.zeros(len(points), dtype=bool)
+        if not len(points):
+            return found
+        reach, pace = support.REACH * self._height, support.REACH * self._height / (STEPS - 1)
+        for search in self._searches:
+            left = np.flatnonzero(~found)
+            away = search.signed(points[left])[0]
+            found[left[away <= ON * self._height]] = True
+            left = left[(away > ON * self._height) & (away <= reach + pace)]
+            for step in range(1, STEPS):
+                left = left[~found[left]]
+                if len(left):
+                    found[left] = search.signed(points[left] - step * pace * build[left])[0] <= 0.5 * pace
+        return found
+
+
+def _search(body: Body, height: float) -> Search | None:
+    """A body prepared for points a layer height apart; None without triangles that have an area."""
+    corner = body.corners()
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    if not (area > 1e-10).any():
+        return None
+    return SolidMesh(body.vertices, body.triangles).searched(height)
