@@ -6767,6 +6767,11 @@
         <translation>examen de la forme</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>looking for beads over nothing</source>
+        <translation>recherche de cordons au-dessus du vide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/speeds.py"/>
         <source>lower the travel speed to {0} mm/s</source>
         <translation>diminuez la vitesse d&apos;avance à {0} mm/s</translation>
@@ -9207,6 +9212,11 @@
         <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/support.py"/>
+        <source>{0} layers more have beads over nothing, {1} mm of them</source>
+        <translation>{0} autres couches ont des cordons au-dessus du vide, sur {1} mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/turn.py"/>
         <source>{0} leave more than one opening around the axis; choose one of them</source>
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez-en une</translation>
@@ -9260,6 +9270,11 @@
         <location filename="../../freecad_am/core/strategies/size.py"/>
         <source>{0} mm makes about {1} points, and more than {2} cannot be worked with; give at least {3} mm</source>
         <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/support.py"/>
+        <source>{0} mm of beads lie over nothing, {1} mm of them in a row from here: what is below is more than {2} mm away, or they overhang it by more than half of their width; deposit what carries them first, let the part grow from another side, or leave them out</source>
+        <translation>{0} mm de cordons sont au-dessus du vide, dont {1} mm à la suite à partir d&apos;ici : ce qui est dessous est à plus de {2} mm, ou ils le débordent de plus de la moitié de leur largeur ; déposez d&apos;abord ce qui les porte, faites croître la pièce d&apos;un autre côté, ou laissez-les de côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
