@@ -67,7 +67,7 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
     assert np.isfinite(api.result(doc.JointPath).motion.joints).all()
 
 
-def test_new_job_makes_all_stages_in_one_step_of_undo(person, hemisphere):
+def test_new_job_makes_all_stages_in_one_step_of_undo(person, hemisphere, coarse):
     doc = hemisphere.Document
     person.select(hemisphere, "Face1")
     person.click("RoboticAM_NewJob")
@@ -168,7 +168,7 @@ def test_a_double_click_changes_parameters_in_one_step_of_undo(person, hemispher
     assert (toolpath.Layers, toolpath.Status) == (fewer, "up to date")
 
 
-def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(person, hemisphere):
+def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(person, hemisphere, coarse):
     doc = hemisphere.Document
     stages = api.make_all(doc, hemisphere)
     steps, keys = doc.UndoCount, [obj.Key for obj in stages]
@@ -185,7 +185,7 @@ def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(per
     assert doc.UndoCount == steps and [obj.Key for obj in stages] == keys
 
 
-def test_deleting_an_input_is_told_by_what_follows(person, hemisphere):
+def test_deleting_an_input_is_told_by_what_follows(person, hemisphere, coarse):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     person.select(doc.Toolpath)
@@ -202,7 +202,7 @@ def test_deleting_an_input_is_told_by_what_follows(person, hemisphere):
     assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
 
 
-def test_inputs_and_the_name_can_be_changed_in_the_panel(person, hemisphere):
+def test_inputs_and_the_name_can_be_changed_in_the_panel(person, hemisphere, coarse):
     doc = hemisphere.Document
     _, feature, toolpath, _, program = api.make_all(doc, hemisphere, name="CUP")
     other = api.make_cell(doc, "Other cell", platform_diameter=100)
@@ -255,9 +255,11 @@ def test_errors_of_a_recompute_are_one_line_each_in_the_report_view(person, hemi
     assert [obj.Status for obj in api.stages_of(doc)] == ["up to date", "up to date"]
 
 
-def test_the_program_is_exported_from_its_window(person, hemisphere, tmp_path, monkeypatch):
+def test_the_program_is_exported_from_its_window(person, hemisphere, coarse, tmp_path, monkeypatch):
     doc = hemisphere.Document
     program = api.make_all(doc, hemisphere, name="CUP")[-1]
+    api.change(program, max_points=100)
+    assert len(program.Files) > 3
     folder = tmp_path / "Dossier d'été"
     monkeypatch.setattr(person.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(folder))
     person.double_click(program)
@@ -279,7 +281,7 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, tmp_path, m
     person.field(window, "close").click()
 
 
-def test_the_open_window_of_a_program_follows_it(person, hemisphere):
+def test_the_open_window_of_a_program_follows_it(person, hemisphere, coarse):
     doc = hemisphere.Document
     program = api.make_all(doc, hemisphere, name="CUP")[-1]
     person.double_click(program)
@@ -318,7 +320,7 @@ def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere):
     assert person.console().rstrip().endswith("Joint path is infeasible. Double-click a stage in the tree to change it.")
 
 
-def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere):
+def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere, coarse):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     person.double_click(doc.Cell)

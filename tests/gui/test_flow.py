@@ -150,7 +150,7 @@ def test_what_is_not_of_revolution_asks_for_what_it_grows_on(person):
     assert doc.UndoCount == 0 or api.stages_of(doc) == []
 
 
-def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere):
+def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere, coarse):
     doc = hemisphere.Document
     cell = api.make_cell(doc)
     sheet = doc.addObject("Spreadsheet::Sheet", "Table")
@@ -178,7 +178,7 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere):
     assert kinds(doc) == ["cell", "cell", "feature", "toolpath", "joint path", "program"]
 
 
-def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere):
+def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere, coarse):
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")

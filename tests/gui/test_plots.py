@@ -83,7 +83,7 @@ def test_every_picture_is_seen(person, planned, panel):
         np.testing.assert_allclose(drawn, motion.joints[:, axis], atol=1e-12)
 
 
-def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(person, planned, panel):
+def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(person, planned, coarse, panel):
     first, last = person.field(panel, "from"), person.field(panel, "to")
     last.setValue(1)
     first.setValue(1)

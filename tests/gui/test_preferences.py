@@ -100,7 +100,7 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(pers
     assert api.make_cell(hemisphere.Document).Machine == "fanuc-arcmate120ic"
 
 
-def test_a_new_job_takes_machine_process_and_post(person, clean, hemisphere):
+def test_a_new_job_takes_machine_process_and_post(person, clean, hemisphere, coarse):
     preferences.keep("Machine", "fanuc-arcmate120ic-10l")
     preferences.keep_process({"travel_speed": 9.0, "wire_diameter": 1.0})
     person.select(hemisphere)

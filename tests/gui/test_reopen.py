@@ -12,7 +12,7 @@ from freecad_am.gui.path.rows import Rows
 from freecad_am.objects import store
 
 HEADLESS = """
-import sys
+import functools, sys
 sys.path.insert(0, {root!r})
 from freecad_am.batch import host
 host.find_freecad()
@@ -21,6 +21,7 @@ from freecad_am import api
 document = App.newDocument("Made")
 part = document.addObject("Part::Feature", "Part")
 part.Shape = Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)
+api.make_feature = functools.partial(api.make_feature, layer_height=5.0, chord_error=0.1)
 stages = api.make_all(document, part)
 assert len(stages) == 5
 document.saveAs({path!r})
@@ -42,7 +43,7 @@ def assert_shown(person, document):
     assert blue > 200 and yellow > 100, (blue, yellow)
 
 
-def test_saved_closed_and_opened_again(person, hemisphere, tmp_path):
+def test_saved_closed_and_opened_again(person, hemisphere, coarse, tmp_path):
     document = hemisphere.Document
     api.make_all(document, hemisphere)
     document.Toolpath.ViewObject.ShowDirections = True
@@ -62,7 +63,7 @@ def test_saved_closed_and_opened_again(person, hemisphere, tmp_path):
         assert np.array_equal(one, other, equal_nan=True)
 
 
-def test_opening_reads_what_is_drawn_alone(person, hemisphere, tmp_path, monkeypatch):
+def test_opening_reads_what_is_drawn_alone(person, hemisphere, coarse, tmp_path, monkeypatch):
     document = hemisphere.Document
     api.make_all(document, hemisphere)
     path = str(tmp_path / "part.FCStd")

@@ -249,7 +249,7 @@ def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monke
     person.panel_closed()
 
 
-def test_a_machine_file_that_is_gone(person, hemisphere, tmp_path, monkeypatch):
+def test_a_machine_file_that_is_gone(person, hemisphere, coarse, tmp_path, monkeypatch):
     content = json.loads((machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
     content["id"] = "mine"
     from freecad_am.objects import user_machines
@@ -276,7 +276,7 @@ def test_a_machine_file_that_is_gone(person, hemisphere, tmp_path, monkeypatch):
     assert len(api.stages_of(doc)) == 5
 
 
-def test_two_documents_at_once(person, hemisphere):
+def test_two_documents_at_once(person, hemisphere, coarse):
     one, other = hemisphere.Document, App.newDocument("Other")
     ball = other.addObject("Part::Sphere", "Ball")
     ball.Angle1 = 0
@@ -306,7 +306,7 @@ def test_two_documents_at_once(person, hemisphere):
 
 
 @pytest.mark.parametrize("whole", [True, False])
-def test_a_job_copied_into_another_document(person, hemisphere, whole):
+def test_a_job_copied_into_another_document(person, hemisphere, coarse, whole):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     group = next(obj for obj in doc.Objects if is_group(obj))

@@ -89,7 +89,7 @@ def test_a_stage_deleted_under_open_docks(person, watched):
     assert set(statuses(watched)) == {"up to date"}
 
 
-def test_a_document_closed_under_open_docks(person, watched):
+def test_a_document_closed_under_open_docks(person, watched, coarse):
     other = App.newDocument("Other")
     App.closeDocument(watched.Name)
     person.idle(1.0)
