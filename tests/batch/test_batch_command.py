@@ -20,7 +20,7 @@ def test_one_plan_per_row(workshop, processes):
     (workshop.folder / "rows.csv").write_text(
         "strategy.layer_height,cell.branch,process.travel_speed\n"
         '4 mm,"[front, up, flip]",6 mm/s\n8,,360 mm/min\n10 mm,auto,\n', encoding="utf-8")
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "all", "-j", processes)
+    done = workshop.launch("batch", "rows.csv", "--job", "cup.yaml", "-o", "all", "-j", processes)
     assert done.status == 0, done.err
     rows = summary(done)
     assert [row["row"] for row in rows] == ["1", "2", "3"]
@@ -35,9 +35,9 @@ def test_one_plan_per_row(workshop, processes):
 
 def test_a_row_is_what_plan_makes_of_it(workshop):
     (workshop.folder / "rows.csv").write_text("strategy.layer_height\n6 mm\n")
-    assert workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows").status == 0
+    assert workshop.launch("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows").status == 0
     workshop.change("layer_height: 4 mm", "layer_height: 6 mm")
-    assert workshop.run("plan", "cup.yaml", "-o", "plan").status == 0
+    assert workshop.launch("plan", "cup.yaml", "-o", "plan").status == 0
     row, plan = workshop.files("rows/row-001"), workshop.files("plan")
     assert set(row) == set(plan)
     assert all(row[name] == plan[name] for name in row if name.startswith("program/") or name == "waypoints.csv")

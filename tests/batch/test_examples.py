@@ -26,7 +26,7 @@ def example(request, workshop, root):
     name, layers = request.param
     for ending in ("yaml", "step"):
         shutil.copy(root / "resources" / "examples" / f"{name}.{ending}", workshop.folder)
-    done = workshop.run("plan", f"{name}.yaml", "-o", "out")
+    done = workshop.launch("plan", f"{name}.yaml", "-o", "out")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:

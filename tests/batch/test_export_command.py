@@ -49,14 +49,14 @@ def script_of_another_freecad(tmp_path):
 
 def test_writes_all_programs(workshop, saved):
     before = saved.read_bytes()
-    done = workshop.run("export", saved)
+    done = workshop.launch("export", saved)
     assert done.status == 0, done.err
     files = workshop.files("out/Two Cups")
     assert set(files) == {"program/FIRST.LS", "program/SECOND.LS"}
     assert done.out.splitlines() == [str(workshop.folder / "out" / "Two Cups" / name) for name in sorted(files)]
     assert files["program/FIRST.LS"] != files["program/SECOND.LS"]
     assert saved.read_bytes() == before
-    again = workshop.run("export", saved, "-o", "again")
+    again = workshop.launch("export", saved, "-o", "again")
     assert again.status == 0 and workshop.files("again") == files
 
 

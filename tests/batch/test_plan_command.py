@@ -22,7 +22,7 @@ def deposit(text):
 
 
 def test_a_whole_job(workshop):
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.launch("plan", "cup.yaml")
     assert done.status == 0, done.err
     names = set(workshop.files())
     assert {"cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/CUP.LS"} <= names
@@ -106,8 +106,8 @@ def test_the_document_holds_every_stage(workshop):
 
 
 def test_the_same_job_gives_the_same_bytes(workshop):
-    assert workshop.run("plan", "cup.yaml", "-o", "one").status == 0
-    assert workshop.run("plan", "cup.yaml", "-o", "two").status == 0
+    assert workshop.launch("plan", "cup.yaml", "-o", "one").status == 0
+    assert workshop.launch("plan", "cup.yaml", "-o", "two").status == 0
     one, two = workshop.files("one"), workshop.files("two")
     assert set(one) == set(two)
     same = [name for name in one if name.startswith("program/") or name == "waypoints.csv"]
@@ -178,7 +178,7 @@ def test_a_run_of_another_name_takes_the_place_of_the_last(workshop):
 def test_spaces_and_accents(workshop):
     workshop.write_job(workshop.text[: workshop.text.index("program:")].replace("name: cup", "name: Käse Glocke n° 1"))
     folder = "mit Leerzeichen é"
-    done = workshop.run("plan", workshop.job, "-o", workshop.folder / folder)
+    done = workshop.launch("plan", workshop.job, "-o", workshop.folder / folder)
     assert done.status == 0, done.err
     assert "Käse Glocke n° 1.FCStd" in workshop.files(folder)
 
@@ -189,7 +189,7 @@ def test_through_a_link_and_from_elsewhere(workshop, tmp_path_factory):
     workshop.launcher = link
     job = workshop.folder / "cup.yaml"
     workshop.folder, home = tmp_path_factory.mktemp("elsewhere"), workshop.folder
-    done = workshop.run("plan", job)
+    done = workshop.launch("plan", job)
     assert done.status == 0, done.err
     assert (home / "out" / "cup" / "cup.FCStd").is_file()
 
@@ -262,14 +262,14 @@ def test_folders_in_the_place_of_files_leave_all_as_it_was(workshop):
     ],
 )
 def test_usage_errors(workshop, words, says):
-    done = workshop.run(*words)
+    done = workshop.launch(*words)
     assert done.status == 2
     assert says in done.err
     assert "Traceback" not in done.err
 
 
 def test_machines_lists_those_that_plan_accepts(workshop):
-    done = workshop.run("machines")
+    done = workshop.launch("machines")
     assert done.status == 0 and done.err == ""
     known = dict(line.split(None, 1) for line in done.out.splitlines())
     assert "FANUC" in known["fanuc-arcmate120ic"] and "kuka-kr16-2" in known and "staubli-rx60bl" in known
@@ -280,9 +280,9 @@ def test_machines_lists_those_that_plan_accepts(workshop):
     own = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
     own.update(id="my-robot", title="My own robot")
     (folder / "my-robot.json").write_text(json.dumps(own))
-    assert "my-robot" in workshop.run("machines").out
+    assert "my-robot" in workshop.launch("machines").out
     workshop.change("limits: paper", "limits: paper\n  machine: my-robot")
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.launch("plan", "cup.yaml")
     assert done.status == 0, done.err
     assert json.loads(workshop.files()["report.json"])["machine"]["id"] == "my-robot"
 

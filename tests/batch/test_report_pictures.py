@@ -20,7 +20,7 @@ def pictures(page):
 
 def test_the_report_has_them(workshop):
     workshop.write_job()
-    assert workshop.run("plan", "cup.yaml").status == 0
+    assert workshop.launch("plan", "cup.yaml").status == 0
     files = workshop.files()
     page = files["report.html"].decode()
     found = pictures(page)
@@ -28,7 +28,7 @@ def test_the_report_has_them(workshop):
     texts = {title: [node.text for node in picture.iter() if node.tag.endswith("text")] for title, picture in found.items()}
     assert "limits -185 to 185 deg" in texts["q1"]
     assert "layer 0" in texts["q1"] and json.loads(files["report.json"])["counts"]["layers"] > 5
-    assert workshop.run("plan", "cup.yaml", "-o", "again").status == 0
+    assert workshop.launch("plan", "cup.yaml", "-o", "again").status == 0
     again = pictures(workshop.files("again")["report.html"].decode())
     assert all(ElementTree.tostring(again[title]) == ElementTree.tostring(found[title]) for title in TITLES)
 
@@ -39,7 +39,7 @@ def test_without_matplotlib_the_report_says_so(workshop, monkeypatch):
     (missing / "__init__.py").write_text("raise ImportError('not installed')\n", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(missing.parent), os.environ.get("PYTHONPATH")))))
     workshop.write_job()
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.launch("plan", "cup.yaml")
     assert done.status == 0, done.err
     page = workshop.files()["report.html"].decode()
     assert page.count("matplotlib is not installed") == 1 and "largest share of the speed limit" in page
