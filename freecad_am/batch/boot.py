@@ -96,4 +96,5 @@ def main():
         os._exit(status)
 
 
-main()
+if __name__ in ("__main__", "boot"):  # as a script; freecadcmd imports scripts under their own name, without the package
+    main()

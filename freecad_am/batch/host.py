@@ -6,6 +6,7 @@ from __future__ import annotations
 import glob
 import importlib.util
 import os
+import stat
 import sys
 import tempfile
 
@@ -51,10 +52,33 @@ def _add_shims(folder: str) -> None:
 def provide_home() -> None:
     """Where the home folder is closed to this user (sudo keeps that of root), give FreeCAD another: it would abort."""
     home = os.path.expanduser("~")
-    if os.path.isdir(home) and not os.access(home, os.R_OK | os.W_OK | os.X_OK):
-        folder = os.path.join(tempfile.gettempdir(), f"freecad-am-{os.getuid()}")
-        os.makedirs(folder, mode=0o700, exist_ok=True)
-        os.environ.setdefault("FREECAD_USER_HOME", folder)
+    closed = os.path.isdir(home) and not os.access(home, os.R_OK | os.W_OK | os.X_OK)
+    if closed and not os.environ.get("FREECAD_USER_HOME"):
+        os.environ["FREECAD_USER_HOME"] = _private_folder(f"freecad-am-{os.getuid()}")
+
+
+def _private_folder(name: str) -> str:
+    """A folder of this user alone below the temporary one: of that name or, where somebody else has taken it, another.
+
+    FreeCAD runs the code that it finds in its home, and anybody may make a folder here.
+    """
+    top = tempfile.gettempdir()
+    path = os.path.join(top, name)
+    try:
+        os.mkdir(path, 0o700)
+    except FileExistsError:
+        known = (path, *sorted(glob.glob(os.path.join(glob.escape(top), f"{name}-*"))))
+        return next(filter(_is_private, known), None) or tempfile.mkdtemp(prefix=f"{name}-")
+    return path
+
+
+def _is_private(path: str) -> bool:
+    """True of a folder, no link, that nobody but this user can enter."""
+    try:
+        found = os.lstat(path)
+    except OSError:
+        return False
+    return stat.S_ISDIR(found.st_mode) and stat.S_IMODE(found.st_mode) == 0o700 and found.st_uid == os.getuid()
 
 
 def missing_modules() -> list[str]:
