@@ -55,7 +55,8 @@ def distances(beads):
 
 
 @pytest.mark.parametrize(
-    "tube, height, count, chord_error", [(TUBE, 5.0, 16, 2e-5), (TUBE, 1.0, 72, 5e-5), (WIDE, 5.0, None, 2e-5)]
+    "tube, height, count, chord_error",
+    [(TUBE, 5.0, 16, 2e-5), pytest.param(TUBE, 1.0, 72, 5e-5, marks=pytest.mark.long), (WIDE, 5.0, None, 2e-5)],
 )
 def test_corrected_layers(sliced, tube, height, count, chord_error):
     """Thousands of points around each layer, corners included."""
@@ -70,7 +71,9 @@ def test_corrected_layers(sliced, tube, height, count, chord_error):
     assert np.abs(rod(0.0, 0.0, PIPE)(beads[0].points)).max() <= 1e-5
 
 
-@pytest.mark.parametrize("height, count, chord_error", [(5.0, 19, 1e-4), (1.0, 87, 1e-2)])
+@pytest.mark.parametrize(
+    "height, count, chord_error", [(5.0, 19, 1e-4), pytest.param(1.0, 87, 1e-2, marks=pytest.mark.long)]
+)
 def test_layers_of_equation_2(sliced, height, count, chord_error):
     beads = sliced(TUBE, height, "iso-parameter", chord_error)
     assert len(beads) == count

@@ -69,7 +69,7 @@ def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
 @pytest.mark.parametrize(
     "how", ["body", "feature", "face in the part", "link", "face of a link", "the part", "twice nested"]
 )
-def test_a_part_of_revolution_however_it_is_selected(person, how):
+def test_a_part_of_revolution_however_it_is_selected(person, coarse, how):
     doc = App.newDocument("Cups")
     outer, body = cup(doc)
     link = doc.addObject("App::Link", "Link")
@@ -101,7 +101,7 @@ def load(doc, *names):
 
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
-def test_a_wall_on_a_part_is_told_from_its_faces(person, order):
+def test_a_wall_on_a_part_is_told_from_its_faces(person, coarse, order):
     doc = App.newDocument("Wall")
     parts = load(doc, "tube-on-pipe.step", "pipe.step")
     person.gui.Selection.clearSelection()
@@ -113,7 +113,7 @@ def test_a_wall_on_a_part_is_told_from_its_faces(person, order):
     assert doc.Cell.Machine == "kuka-kr16-2"
 
 
-def test_solids_on_a_hub_are_told_from_what_stands_on_what(person):
+def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
     doc = App.newDocument("Hub")
     hub = doc.addObject("Part::Feature", "Hub")
     hub.Shape = Part.makeCylinder(30, 60)

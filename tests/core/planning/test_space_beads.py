@@ -19,7 +19,8 @@ from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 FLIP = opw.branch_index(("front", "up", "flip"))
 TURN = 2.0 * np.pi
-POINTS, SEEDS = 48, (1, 2, 3)
+POINTS = 48
+SEEDS = (1, 2, pytest.param(3, marks=pytest.mark.long))
 
 
 def curve(seed, closed, count):
