@@ -10,7 +10,7 @@ they are asked for only: a view needs a third of them, and new memory is what ta
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ SHORTEST = 64  # numbers in a stretch worth leaving out
 EVERY = 32  # numbers from one place that may be found again to the next: half of SHORTEST, so that none is missed
 TABLE = 22  # bits
 MOST_TRIED = 300_000
+PIECE = 1 << 16  # places that are looked at together
 FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93], dtype=np.uint64)
 
 
@@ -31,14 +32,16 @@ def without_runs(numbers: Array) -> tuple[Array, Index]:
     """The numbers (n,) with one of each run of the same number, and of each such run (k, 2) where it is in what comes back
     and how often it stands there."""
     words = np.ascontiguousarray(numbers).view(np.uint64)
-    edges = np.concatenate([[0], np.flatnonzero(words[1:] != words[:-1]) + 1, [len(words)]])
-    count = np.diff(edges)
-    long = count >= SHORTEST
+    same = np.zeros(len(words) + 1, dtype=bool)  # as the one before
+    same[1:-1] = words[1:] == words[:-1]
+    start, end = np.flatnonzero(same[1:] != same[:-1]).reshape(-1, 2).T
+    count = end - start + 1
+    start, count = start[count >= SHORTEST], count[count >= SHORTEST]
     keep = np.ones(len(words), dtype=bool)
-    for start, size in zip(edges[:-1][long].tolist(), count[long].tolist()):
-        keep[start + 1 : start + size] = False
-    place = np.cumsum(keep) - 1
-    return numbers[keep], np.column_stack([place[edges[:-1][long]], count[long]]).astype(np.int64)
+    for first, size in zip(start.tolist(), count.tolist()):
+        keep[first + 1 : first + size] = False
+    place = start - np.cumsum(count - 1) + count - 1
+    return (numbers[keep] if len(start) else numbers), np.column_stack([place, count]).astype(np.int64)
 
 
 def folded(numbers: Array) -> tuple[Array, Index]:
@@ -162,25 +165,42 @@ def _candidates(words: Words) -> tuple[Index, Index]:
     count = len(words) - len(FACTORS) + 1
     if count < 2 * SHORTEST:
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    marks = words[:count] * FACTORS[0]
-    for k in range(1, len(FACTORS)):
-        marks += words[k : count + k] * FACTORS[k]
-    marks ^= marks >> np.uint64(29)
-    marks *= FACTORS[1]
     anchors = np.arange(0, count, EVERY)
     # runs of one number, which are left out elsewhere
     anchors = anchors[(words[anchors] != words[anchors + 1]) | (words[anchors + 1] != words[anchors + 2])]
-    known, first = np.unique(marks[anchors], return_index=True)
+    known, first = np.unique(_marks([words[anchors + k] for k in range(len(FACTORS))]), return_index=True)
     if not len(known):
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     shift = np.uint64(64 - TABLE)
     table = np.zeros(1 << TABLE, dtype=bool)
     table[(known >> shift).astype(np.intp)] = True
-    places = np.flatnonzero(table[(marks >> shift).astype(np.intp)])
-    at = np.minimum(np.searchsorted(known, marks[places]), len(known) - 1)
-    source = anchors[first[at]]
-    good = (known[at] == marks[places]) & (source + SHORTEST <= places)
-    return places[good].astype(np.int64), source[good].astype(np.int64)
+    found = []
+    for start in range(0, count, PIECE):
+        stop = min(start + PIECE, count)
+        marks = _marks([words[start + k : stop + k] for k in range(len(FACTORS))])
+        places = np.flatnonzero(table[(marks >> shift).astype(np.intp)])
+        at = np.minimum(np.searchsorted(known, marks[places]), len(known) - 1)
+        source = anchors[first[at]]
+        good = (known[at] == marks[places]) & (source + SHORTEST <= places + start)
+        places, source = places[good] + start, source[good]
+        # at most EVERY of a stretch come before its candidate: as many, at least, come after
+        places, source = places[places + EVERY <= len(words)], source[places + EVERY <= len(words)]
+        for k in range(EVERY - 1, 0, -1):
+            good = words[places + k] == words[source + k]
+            places, source = places[good], source[good]
+        found.append(np.stack([places, source]))
+    places, source = np.concatenate(found, axis=1)
+    return places.astype(np.int64), source.astype(np.int64)
+
+
+def _marks(words: Sequence[Words]) -> Words:
+    """(n,) what tells four words that follow each other, given as four (n,)."""
+    marks = words[0] * FACTORS[0]
+    for word, factor in zip(words[1:], FACTORS[1:]):
+        marks += word * factor
+    marks ^= marks >> np.uint64(29)
+    marks *= FACTORS[1]
+    return marks
 
 
 def _length(words: Words, source: int, place: int) -> int:

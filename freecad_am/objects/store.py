@@ -185,12 +185,16 @@ class _Packer:
 
     def columns(self) -> tuple[NDArray[np.float64], list[list[int]]]:
         """All tables column by column, and of each dtype, rows, and the shape of a row."""
-        parts = [np.zeros(0)]
-        for arrays in self.tables:
-            table = np.concatenate(arrays).astype(np.float64)
-            parts.append(table.reshape(len(table), -1).T.ravel() if table.size else np.zeros(0))
+        whole, start = np.empty(sum(value.size for arrays in self.tables for value in arrays)), 0
+        for arrays, rows in zip(self.tables, self.rows, strict=True):
+            size = sum(value.size for value in arrays)
+            table, row = whole[start : start + size].reshape(size // max(rows, 1), rows), 0
+            for value in arrays:
+                table[:, row : row + len(value)] = value.reshape(len(value), len(table)).T
+                row += len(value)
+            start += size
         told = [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
-        return np.concatenate(parts), told
+        return whole, told
 
 
 class _Reader:

@@ -60,11 +60,30 @@ class Chain:
 
     def forward(self, q: ArrayLike) -> Array:
         """The flange poses (..., 4, 4) in base_link for joint values `q` (..., axes), rad and mm."""
-        return self._run(q).flange
+        angles = np.asarray(q, float)
+        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        flange = _upright(by_joint.shape[1])
+        for start in range(0, len(flange), PIECE):
+            piece = slice(start, start + PIECE)
+            self._run_piece(by_joint[:, piece], None, flange[piece])
+        return flange.reshape(angles.shape[:-1] + (4, 4))
 
     def frames(self, q: ArrayLike) -> JointFrames:
         """The axes and the flange in base_link for joint values `q` (..., axes), rad and mm."""
-        return self._run(q)
+        angles = np.asarray(q, float)
+        lead = angles.shape[:-1]
+        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        count = by_joint.shape[1]
+        directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
+        flange = _upright(count)
+        for start in range(0, count, PIECE):
+            piece = slice(start, start + PIECE)
+            self._run_piece(by_joint[:, piece], (directions[:, :, piece], origins[:, :, piece]), flange[piece])
+        return JointFrames(
+            np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
+            np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
+            flange.reshape(lead + (4, 4)),
+        )
 
     def links(self, q: ArrayLike) -> Array:
         """The frames (..., axes + 1, 4, 4) of the links in base_link for joint values `q` (..., axes), rad and mm: base_link
@@ -79,24 +98,8 @@ class Chain:
             result[..., joint + 1, :, :] = result[..., joint, :, :] @ self.origins[joint] @ frames.pose(*moved)
         return result
 
-    def _run(self, q: ArrayLike) -> JointFrames:
-        angles = np.asarray(q, float)
-        lead = angles.shape[:-1]
-        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
-        count = by_joint.shape[1]
-        directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
-        flange = np.zeros((count, 4, 4))
-        flange[:, 3, 3] = 1.0
-        for start in range(0, count, PIECE):
-            piece = slice(start, start + PIECE)
-            self._run_piece(by_joint[:, piece], directions[:, :, piece], origins[:, :, piece], flange[piece])
-        return JointFrames(
-            np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
-            np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
-            flange.reshape(lead + (4, 4)),
-        )
-
-    def _run_piece(self, angles: Array, directions: Array, origins: Array, flange: Array) -> None:
+    def _run_piece(self, angles: Array, axes: tuple[Array, Array] | None, flange: Array) -> None:
+        """Fill in flange poses (n, 4, 4), and where wanted directions and origins (axes, 3, n), of angles (axes, n)."""
         sines, cosines = np.sin(angles), np.cos(angles)
         count = angles.shape[1]
         # one row per column of the rotation, each holding x, y, z of all poses
@@ -104,8 +107,8 @@ class Chain:
         position = np.zeros(3 * count)
         for joint in range(self.axes):
             columns, position = _advance(columns, position, self._links[joint])
-            directions[joint] = columns[2].reshape(3, count)
-            origins[joint] = position.reshape(3, count)
+            if axes is not None:
+                axes[0][joint], axes[1][joint] = columns[2].reshape(3, count), position.reshape(3, count)
             if self.sliding[joint]:
                 position = position + (columns[2].reshape(3, count) * angles[joint]).ravel()
             else:
@@ -113,6 +116,13 @@ class Chain:
         columns, position = _advance(columns, position, self._links[-1])
         flange[:, :3, :3] = columns.reshape(3, 3, count).T
         flange[:, :3, 3] = position.reshape(3, count).T
+
+
+def _upright(count: int) -> Array:
+    """(count, 4, 4) poses to be filled in."""
+    poses = np.zeros((count, 4, 4))
+    poses[:, 3, 3] = 1.0
+    return poses
 
 
 def _advance(columns: Array, position: Array, link: Array) -> tuple[Array, Array]:

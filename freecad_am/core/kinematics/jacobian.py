@@ -30,14 +30,13 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
     """
     angles = np.asarray(q, float)
     count = len(angles)
-    frames = chain.frames(angles)
     points = np.ascontiguousarray(np.broadcast_to(np.asarray(point, float), (count, 3)).T)
     result = np.empty((6, chain.axes, count))
-    # (axes, 3, n) in memory
-    directions, origins = frames.directions.transpose(1, 2, 0), frames.origins.transpose(1, 2, 0)
     for start in range(0, count, PIECE):
         piece = slice(start, start + PIECE)
-        direction, arm = directions[:, :, piece], points[:, piece] - origins[:, :, piece]
+        at = chain.frames(angles[piece])
+        # (axes, 3, n) in memory
+        direction, arm = at.directions.transpose(1, 2, 0), points[:, piece] - at.origins.transpose(1, 2, 0)
         for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
             np.multiply(direction[:, following], arm[:, last], out=result[row, :, piece])
             result[row, :, piece] -= direction[:, last] * arm[:, following]

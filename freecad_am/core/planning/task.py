@@ -17,6 +17,8 @@ from .points import TURN, Points, unwrapped
 
 Array = NDArray[np.float64]
 
+PIECE = 1 << 14  # poses whose Jacobians are held together
+
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
 ENDLESS_STROKE = 1e6 * TURN
@@ -172,11 +174,12 @@ class Task:
 
     def condition_at(self, flange: Array, joints: Array) -> Array:
         """(N,) the same for flange poses (N, 4, 4) and joints (N, axes)."""
-        good = np.isfinite(joints).all(axis=1)
+        good = np.flatnonzero(np.isfinite(joints).all(axis=1))
         value = np.zeros(len(joints))
-        if good.any():
-            value[good] = jac.condition(
-                self.jacobian_at(flange[good], joints[good]), self.parameters.characteristic_length
+        for start in range(0, len(good), PIECE):
+            some = good[start : start + PIECE]
+            value[some] = jac.condition(
+                self.jacobian_at(flange[some], joints[some]), self.parameters.characteristic_length
             )
         # the last bits depend on where in memory the arrays happen to lie: the same job gives the same bytes without them
         return np.round(value, 12)

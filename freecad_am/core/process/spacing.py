@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -172,7 +173,7 @@ def _nearest_chords(
     """The same as `_nearest_of_all`, of the segments within the radius (n,) about each point."""
     found = middles.query_ball_point(points, radius, return_sorted=False)
     count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
-    segment = np.fromiter((i for some in found for i in some), dtype=np.intp, count=int(count.sum()))
+    segment = np.fromiter(chain.from_iterable(found), dtype=np.intp, count=int(count.sum()))
     which = np.repeat(np.arange(len(points)), count)
     along = curve.end[segment] - curve.start[segment]
     offset = points[which] - curve.start[segment]
