@@ -220,7 +220,7 @@ def _write(
     with stages.timed("spacing_comparison", session):
         compared = _compare_spacings(job, stages, content, toolpath, distances, planned, cell, session)
     with stages.timed("preflight", session):
-        content["preflight"] = [one.as_dict() for one in _preflight(stages)]
+        content["preflight"] = [one.as_dict() for one in _preflight(stages, distances)]
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])
@@ -233,11 +233,11 @@ def _write(
     return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
 
 
-def _preflight(stages: Stages) -> Any:
+def _preflight(stages: Stages, distances: Any) -> Any:
     """The promises of the stages as far as they got."""
     from freecad_am.objects import preflight
 
-    return preflight.of_stages(stages.toolpath, stages.joint_path, stages.program)
+    return preflight.of_stages(stages.toolpath, stages.joint_path, stages.program, distances)
 
 
 def _compare_spacings(

@@ -16,7 +16,7 @@ from ..core.parameters.program import ProgramParameters
 from ..core.preflight.checks import Evidence, promises
 from ..core.preflight.promise import Promise
 from ..core.preflight.written import ReadBack
-from ..core.toolpath import Toolpath
+from ..core.toolpath import Array, Toolpath
 from ..posts import catalogue
 from ..verify import Verification
 from . import user_machines
@@ -30,13 +30,15 @@ ARM_PLACES = 6_000  # at which the arm is looked at: a tenth of the time that pl
 Work = Callable[[], tuple[Promise, ...]]
 
 
-def of_stages(toolpath: Any, path: Any = None, program: Any = None) -> tuple[Promise, ...]:
-    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). Raises
-    InputError 'NO_RESULT' where one has no result."""
+def of_stages(
+    toolpath: Any, path: Any = None, program: Any = None, distances: tuple[Array, ...] | None = None
+) -> tuple[Promise, ...]:
+    """The preflight of a toolpath, its joint path and its program (document objects, None where there is none). distances:
+    between the layers as they are run, where they are known. Raises InputError 'NO_RESULT' where one has no result."""
     if program is None:
-        return prepared(toolpath, path)()
+        return prepared(toolpath, path, distances=distances)()
     settings = program.Proxy.parameters(program, ProgramParameters)
-    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)))()
+    return prepared(toolpath, path, settings, read_back_of(program), tuple(issues_of(program)), distances)()
 
 
 def read_back_of(program: Any) -> Verification | None:
@@ -47,7 +49,7 @@ def read_back_of(program: Any) -> Verification | None:
 
 def prepared(
     toolpath: Any, path: Any = None, settings: ProgramParameters | None = None, read: Verification | None = None,
-    more: tuple[Issue, ...] = (),
+    more: tuple[Issue, ...] = (), distances: tuple[Array, ...] | None = None,
 ) -> Work:
     """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
     is read now. settings: of the program that is written of it; read: how that was read back; more: its findings. Raises
@@ -58,16 +60,17 @@ def prepared(
     issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
     planned = toolpath.Proxy.reader(toolpath)
     if path is None:
-        return lambda: promises(Evidence(planned(), build, issues))
+        return lambda: promises(Evidence(planned(), build, issues, distances=distances))
     joints, looks = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
     folders = tuple(user_machines.folders())
-    return lambda: of_motion(planned(), joints(), looks, folders, build, process, settings, issues, read)
+    return lambda: of_motion(planned(), joints(), looks, folders, build, process, settings, issues, read, distances)
 
 
 def of_motion(
     toolpath: Toolpath, planned: Planned, looks: CellParameters, folders: tuple[str, ...], build: BuildDirectionParameters,
     process: ProcessParameters, settings: ProgramParameters | None, issues: tuple[Issue, ...], read: Verification | None,
+    distances: tuple[Array, ...] | None = None,
 ) -> tuple[Promise, ...]:
     """The preflight of a joint path, or of the program that is written of it with `settings`. read: None where that was not
     read back."""
@@ -79,7 +82,7 @@ def of_motion(
         planned.joint_path.toolpath(toolpath), build, run.issues, cell, run.motion, run.condition, run.threshold,
         arm_of(run.motion, cell, toolpath, process, shapes, ARM_PLACES), bool(shapes) and None not in shapes,
         None if read is None else _read_back(read, toolpath.chord_error),
-        () if settings is None else catalogue.load(settings.post).ON_CONTROLLER,
+        () if settings is None else catalogue.load(settings.post).ON_CONTROLLER, distances,
     ))
 
 

@@ -32,7 +32,7 @@ class Evidence:
     """What a preflight looks at. toolpath: as it is run. issues: of all stages. motion: as the program runs it, None without
     a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by
     shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
-    the controller can show."""
+    the controller can show. distances: those between its layers, of `spacing`, where they are known."""
 
     toolpath: Toolpath
     build: BuildDirectionParameters
@@ -45,13 +45,14 @@ class Evidence:
     true_shapes: bool = False
     read: ReadBack | None = None
     on_controller: tuple[str, ...] = ()
+    distances: tuple[Array, ...] | None = None
 
 
 def promises(evidence: Evidence) -> tuple[Promise, ...]:
     """All promises, those about the deposit first."""
     issues = evidence.issues
     return (
-        deposit.layers(evidence.toolpath, issues),
+        deposit.layers(evidence.toolpath, issues, evidence.distances),
         clearance.nozzle(issues, evidence.build),
         *_of_motion(evidence),
         *written.promises(evidence.read, evidence.on_controller),

@@ -9,14 +9,14 @@ import numpy as np
 
 from ..issues import WARNING, Issue
 from ..process import spacing
-from ..toolpath import Toolpath
+from ..toolpath import Array, Toolpath
 from .promise import Promise, issue_place, of_codes
 
 
-def layers(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
-    """Of the distance between layers; what families allow of it they have said themselves."""
+def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] | None = None) -> Promise:
+    """Of the distance between layers, (n,) for each but the first; what families allow of it they have said themselves."""
     what = "Layers lie one layer height apart"
-    distances = [values for values in spacing.between_layers(toolpath) if len(values)]
+    distances = [values for values in (spacing.between_layers(toolpath) if known is None else known) if len(values)]
     if not distances:
         return Promise(what, "there is one layer alone", None)
     height = toolpath.layer_height
