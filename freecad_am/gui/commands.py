@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 
 import FreeCAD as App
@@ -19,7 +20,7 @@ class Tool:
     lacks for it; `beside`: whether it acts beside a task panel that is open."""
 
     name = ""  # without prefix
-    lacking = ""
+    told = ""  # in its tooltip now, below its name
 
     def __init__(
         self, icon: str, text: str, help: str, action: Callable[[], None], need: needs.Need = needs.document,
@@ -42,8 +43,9 @@ class Tool:
         """Whether it can act; the tooltip says what is missing when it cannot."""
         lacking = self.missing()
         help = tr(self.help)
-        if lacking != self.lacking and self._explain(tr("{}. {}").format(help, lacking) if lacking else help):
-            self.lacking = lacking
+        told = tr("{}. {}").format(help, lacking) if lacking else help
+        if told != self.told and self._explain(told):
+            self.told = told
         return not lacking
 
     def missing(self) -> str:
@@ -56,11 +58,13 @@ class Tool:
             return tr("First open a part, or make a document.")
 
     def _explain(self, text: str) -> bool:
-        """Tell in the tooltip what is missing, which FreeCAD sets once; False while there is no button yet."""
+        """Tell the tool's name in its tooltip, and what is missing, which FreeCAD sets once; False while there is no button
+        yet."""
         command = Gui.Command.get(_PREFIX + self.name)
         actions = [] if command is None else command.getAction()
+        name, help = html.escape(tr(self.text).rstrip("…")), html.escape(text, quote=False)
         for action in actions:
-            action.setToolTip(text)
+            action.setToolTip(f"<p><b>{name}</b></p><p>{help}</p>")
             action.setStatusTip(text)
         return bool(actions)
 

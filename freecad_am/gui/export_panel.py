@@ -21,6 +21,7 @@ from .selection import meant
 from .signals import connect
 from .stage_panel import CLOSED
 from .texts import tr, translated, translated_error
+from .wheel import scrolls
 
 STEP, DXF, CAM, TRAJECTORY = "step", "dxf", "cam", "trajectory"
 _FILES = {STEP: ".step", DXF: ".dxf"}
@@ -71,6 +72,7 @@ class ExportPanel:
         self.turn.box.setObjectName("Turn")
         self._help(self.turn.box, tr("Points are left out as long as the tool axis stays within this angle"))
         self._lay_out()
+        scrolls(self.form)
         self._follow()
         self.kind.currentIndexChanged.connect(self._follow)
         self.path.currentIndexChanged.connect(self._follow)

@@ -26,6 +26,7 @@ from .picking import Pick
 from .signals import connect
 from .stage_panel import CLOSED
 from .texts import tr, translated, translated_error
+from .wheel import scrolls
 from .worker import Worker
 
 _TOLD = 15000  # ms that the next step is told on the status bar
@@ -96,6 +97,7 @@ class JobPanel:
         for widget in (self.error, self.fold.widget, self.reason, hint):
             column.addWidget(widget)
         column.addStretch(1)
+        scrolls(self.form)
 
     # ---- the selection
 

@@ -43,7 +43,7 @@ class PreviewPanel(StagePanel):
         self.state = self._note("preview", "palette(text)")
         self.state.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
         self.column.removeWidget(self.state)
-        self.column.insertWidget(1 if self.heading is None else 2, self.state)
+        self.column.insertWidget(self.column.indexOf(self.findings) + (1 if self.heading is None else 2), self.state)
         self.preview = None if nodes is None else Preview(self.document, nodes.switch)
         self._show_own(False)
         self.timer = QtCore.QTimer(self.form)

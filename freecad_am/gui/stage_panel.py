@@ -26,6 +26,7 @@ from .fold import Fold
 from .later import Later
 from .signals import connect
 from .texts import marked, tr, translated, translated_error
+from .wheel import scrolls
 
 MOST_ISSUES = 6
 ADVANCED = marked("{}: advanced")
@@ -52,6 +53,7 @@ class StagePanel:
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
         self.error = self._note("error", WRONG)
+        self.findings = self._note("findings", "palette(text)")  # above all fields: some change what is deposited
         self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
         self.told: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
         self.heading: Any = None
@@ -67,7 +69,6 @@ class StagePanel:
         self.places: dict[str, tuple[fields.Field, str, Fold]] = {}
         for section in proxy.sections:
             self._add_section(section)
-        self.findings = self._note("findings", "palette(text)")
         self.column.addStretch(1)
         self._show_findings()
         self.later_entries = Later(self.form, self._judge_entries)
@@ -75,6 +76,7 @@ class StagePanel:
             for line in _lines(widget):
                 connect(line, "textChanged(QString)", self.later_entries.ask)
         self._judge_entries()
+        scrolls(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
         if obj is None and missing:
             self.say(missing[0])

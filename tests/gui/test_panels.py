@@ -199,3 +199,30 @@ def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(person, joint_p
     finally:
         gc.enable()
     assert document.UndoCount == steps and len(api.stages_of(document)) == 4
+
+
+def test_the_wheel_scrolls_a_panel_and_changes_no_field(person, hand, hemisphere):
+    feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
+    person.idle()
+    person.select(feature)
+    person.click("RoboticAM_Toolpath")
+    panel = person.panel("RoboticAM_Toolpath")
+    combo, spin = person.field(panel, "Direction"), person.field(panel, "TravelSpeed")
+    for field in (combo, spin):
+        hand.reveal(field)
+        before = combo.currentText(), spin.property("rawValue"), field.mapToGlobal(person.core.QPoint(0, 0))
+        place = field.mapToGlobal(field.rect().center())
+        for button in (5, 4, 4, 5):
+            hand.do("mousemove", place.x(), place.y(), "click", button)
+            assert (combo.currentText(), spin.property("rawValue")) == before[:2]
+        assert not field.hasFocus()
+    hand.do("mousemove", place.x(), place.y(), "click", 5)
+    hand.do("mousemove", place.x(), place.y(), "click", 5)
+    assert field.mapToGlobal(person.core.QPoint(0, 0)).y() < before[2].y(), "the panel has not scrolled"
+
+
+def test_a_tooltip_begins_with_the_name_of_its_tool(person, hemisphere):
+    for command, name in (("NewJob", "New Job"), ("WallOnPart", "Wall on Part"), ("Simulate", "Simulate")):
+        button = person.button(f"RoboticAM_{command}")
+        person.until(lambda: f"<b>{name}</b>" in button.toolTip(), f"the name of {command}", 5)  # noqa: B023
+        assert not button.statusTip().startswith("<")
