@@ -40,7 +40,8 @@ OURS = {
     },
     "posts": {"core/issues", "core/program"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
-    "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "kdl"},
+    "read_back": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "kdl"},
+    "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "read_back"},
     "brep": {"core/issues", "core/geometry", "core/one_thread"},
     "objects": {"core", "brep", "posts", "verify", "kdl"},
     "interop": {"core", "objects"},
@@ -53,6 +54,7 @@ OURS = {
 FOREIGN = {
     "core": {"numpy", "scipy"},
     "posts": {"numpy"},
+    "read_back": {"numpy"},
     "verify": {"numpy"},
     "kdl": {"numpy", "PyKDL"},
     "brep": {"numpy", "scipy", "FreeCAD", "Part", "Mesh", "MeshPart"},

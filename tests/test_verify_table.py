@@ -19,8 +19,9 @@ from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build
-from freecad_am.core.program import ReadMoves
+from freecad_am.core.program import Event, ReadMoves
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.read_back import text_path
 
 CHORD_ERROR = 0.02
 MM, RAD, UNIT, RELATIVE = 5e-4, math.radians(5e-4), 5e-7, 5e-6
@@ -50,6 +51,26 @@ def planned(request):
     return cell, motion
 
 
+def told(program):
+    """The events of a text that says what was planned: layers, and output 1 with no time before or after."""
+    events, row = [], 0
+    for block in program.blocks:
+        kind = {"LayerStart": "layer", "DepositOn": "on", "DepositOff": "off"}.get(type(block).__name__)
+        row += len(block) if kind is None else 0
+        if kind:
+            events.append(Event(row, kind, (float(block.layer),) if kind == "layer" else (1.0, "H1")))
+        if kind in ("on", "off") and block.lead:
+            events.insert(len(events) - (kind == "off"), Event(row, "wait", (block.lead,)))
+    return tuple(events)
+
+
+def first(duration):
+    """The first move takes its own time from wherever the machine stands."""
+    duration = duration.copy()
+    duration[0] = 10.0
+    return duration
+
+
 def written(cell, motion, way):
     """The program, and what a reader finds in a text of it: rounded as texts are."""
     cartesian = way in CARTESIAN
@@ -69,18 +90,20 @@ def written(cell, motion, way):
     joints = np.where(slides, rounded(column("joints"), MM), rounded(column("joints"), RAD))
     duration = column("duration")
     deposit = np.concatenate([np.full(len(moves), moves.kind == "deposit") for moves in program.moves])
+    rest = [deposit & cartesian, motion.stops[motion.moves], told(program)]
     if way == "joints":
         times = duration * (1.0 + RELATIVE * np.sin(np.arange(len(duration))))
         return program, ReadMoves(
-            joints, RAD, times, deposit, linear_digits=MM, duration_digits=duration * RELATIVE,
+            joints, RAD, times, deposit, *rest, linear_digits=MM, duration_digits=duration * RELATIVE,
         )
     position = rounded(column("position"), MM)
     known = {"position": position, "position_digits": MM, "speed": np.round(column("speed"), 3), "speed_digits": 5e-4}
     nothing = np.full(len(duration), np.nan)
     if way == "directions":
         direction = rounded(column("direction"), UNIT)
-        return program, ReadMoves(None, 0.0, nothing, deposit, direction=direction, direction_digits=UNIT, **known)
-    return program, ReadMoves(np.where(slides, np.nan, joints), RAD, nothing, deposit, **known)
+        known |= {"direction": direction, "direction_digits": UNIT}
+        return program, ReadMoves(None, 0.0, first(nothing), deposit, *rest, **known)
+    return program, ReadMoves(np.where(slides, np.nan, joints), RAD, first(nothing), deposit, *rest, **known)
 
 
 def verify(cell, motion, program, read):
@@ -133,7 +156,7 @@ def test_times_that_do_not_give_the_speed_are_caught(planned):
         times[40] *= factor
         assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {"VERIFY_TIME"}
     # a rapid that runs as fast as the machine does has no time; a bead must have one
-    times = np.where(read.deposit, read.duration, np.nan)
+    times = first(np.where(read.deposit, read.duration, np.nan))
     assert verify(cell, motion, program, dataclasses.replace(read, duration=times)).issues == ()
     times[np.flatnonzero(read.deposit)[5]] = np.nan
     assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {"VERIFY_TIME"}
@@ -147,7 +170,7 @@ def test_deposit_and_count_are_caught(planned):
     assert codes(verify(cell, motion, program, dataclasses.replace(read, deposit=deposit))) == {"VERIFY_DEPOSIT"}
     fewer = dataclasses.replace(
         read, joints=read.joints[1:], duration=read.duration[1:], deposit=read.deposit[1:],
-        duration_digits=read.duration_digits[1:],
+        duration_digits=read.duration_digits[1:], linear=read.linear[1:], stops=read.stops[1:],
     )
     assert codes(verify(cell, motion, program, fewer)) == {"VERIFY_COUNT"}
 
@@ -179,7 +202,7 @@ def test_positions_directions_and_speeds_that_are_off_are_caught(planned, way):
             joints[33, axis] += 3.0 * RAD
             assert codes(verify(cell, motion, program, dataclasses.replace(read, joints=joints))) >= {"VERIFY_JOINT"}
         nothing = dataclasses.replace(read, joints=None)
-        assert codes(verify(cell, motion, program, nothing)) == {"VERIFY_TOOL"}
+        assert codes(verify(cell, motion, program, nothing)) == {"VERIFY_TOOL", "VERIFY_BETWEEN"}
 
 
 def test_the_bound_holds_and_is_tight(planned):
@@ -190,7 +213,7 @@ def test_the_bound_holds_and_is_tight(planned):
     corners = np.array(list(itertools.product([-1.0, 1.0], repeat=5))) * digits
     for _ in range(20):
         shown = np.where(slides, rng.uniform(-200, 200, 5), rng.uniform(-2, 2, 5))
-        path, _ = verification._joint_path(cell, shown[None], digits)
+        path, _ = text_path.joint_path(cell, shown[None], digits)
         tips, tools = cell.tip_in_part(cell.machine.chain.forward(shown + corners))
         off = np.linalg.norm(tips - path.position, axis=1).max()
         tilt = np.linalg.norm(tools - path.tool, axis=1).max()

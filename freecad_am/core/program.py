@@ -13,18 +13,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 Six = tuple[float, float, float, float, float, float]
 
 DEPOSIT, RAPID = "deposit", "rapid"
+# what a move is for: away from the bead before, over to the next, onto its start; or DEPOSIT
+RETRACT, TRAVEL, APPROACH = "retract", "travel", "approach"
 LINEAR, ROTARY = "linear", "rotary"
+# what runs straight from point to point: the joints, or the tip
+JOINT_MOVE, LINEAR_MOVE = "joint", "linear"
+# Where the machine stands before a program is not known, so its first move has no planned time: share of the axes' largest
+# speeds, and s where a controller is told a time
+FIRST_SHARE, FIRST_TIME = 0.1, 10.0
 
 
 @dataclass(frozen=True)
 class Moves:
-    """A run of n moves without an event between; the last one comes to a stop, the others pass through.
+    """A run of n moves without an event between.
 
-    kind: 'deposit' or 'rapid'. layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
+    kind: 'deposit' or 'rapid'. interpolation: what runs straight on every move of the run, 'joint' or 'linear' (the tip).
+    stops: (n,) bool, whether the machine stands still at the end of a move or passes through, rounding the corner as far as
+    `Program.blend` and `NcOptions.tolerance` let it; left out, at every point of a rapid and at the last one of a bead.
+    role: n words, what each move is for; left out, a rapid of several moves begins with a retract.
+    layer, bead: the bead the moves belong or lead to. joints: (n, axes) controller
     values, rad, and mm of linear axes. duration: (n,) s of the move that ends at each point, > 0. speed: (n,) mm/s at the
     deposition point on that move. Only where motion is Cartesian: position (n, 3) mm and rotation (n, 3, 3), seen from the
     program's origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one
@@ -44,6 +56,19 @@ class Moves:
     configuration: tuple[tuple[str, str, str], ...] | None = None
     direction: Array | None = None
     wire: Array | None = None
+    interpolation: str = JOINT_MOVE
+    stops: Mask = None  # type: ignore[assignment]
+    role: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        count = len(self.joints)
+        if self.stops is None:
+            last = np.arange(count) == count - 1
+            object.__setattr__(self, "stops", last | (self.kind == RAPID))
+        if not self.role:
+            first = DEPOSIT if self.kind == DEPOSIT else RETRACT if count > 1 else TRAVEL
+            other = DEPOSIT if self.kind == DEPOSIT else TRAVEL
+            object.__setattr__(self, "role", (first, *(other,) * (count - 1)) if count else ())
 
     def __len__(self) -> int:
         return len(self.joints)
@@ -135,7 +160,9 @@ class Program:
 
     name: as the user named the job; a post derives its own file names or refuses. machine: title of the machine.
     endless: for each axis, whether it turns without end (continuous turn). remarks: lines a post writes as
-    comments. motion: 'joint' or 'cartesian'. deposit points run at constant speed at the deposition point.
+    comments. motion: 'joint' or 'cartesian', whether places are told as joint values or as positions; rapids are joint moves
+    in either. deposit points run at constant speed at the deposition point. blend: percent of the rounding of corners that
+    the controller knows, where moves pass through.
     max_speed: rad/s of each axis, mm/s of linear ones, infinite where not known. station, carried: X Y Z mm, RX RY RZ
     rad. With the part on the robot, of the deposition point in the maker's base frame and of the program's origin on the
     flange; with the tool on the robot, of the program's origin in the maker's base frame and of the nozzle's tip on the
@@ -170,19 +197,6 @@ class Program:
         """The moves alone, in order."""
         return tuple(block for block in self.blocks if isinstance(block, Moves))
 
-    @property
-    def awaited(self) -> Array:
-        """(n, 2) of all moves: which analogue input is waited for right before, and below what; 0 and NaN where none is."""
-        found: list[Array] = [np.zeros((0, 2))]
-        before = (0.0, np.nan)
-        for block in self.blocks:
-            if isinstance(block, WaitBelow):
-                before = float(block.number), block.below
-            elif isinstance(block, Moves) and len(block):
-                found.append(np.vstack([before, np.tile((0.0, np.nan), (len(block) - 1, 1))]))
-                before = (0.0, np.nan)
-        return np.concatenate(found)
-
 
 def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str, ...]) -> Array:
     """(n,) mm/s of the linear axes alone on moves that take `duration` (n,) s: V_s = |P1' P2''| V / |P1 P2| of Dai 2020,
@@ -194,6 +208,31 @@ def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str,
     way = np.diff(np.concatenate([before[None], joints])[:, linear], axis=0)
     feeds: Array = np.linalg.norm(way, axis=1) / duration
     return feeds
+
+
+@dataclass(frozen=True)
+class Event:
+    """What a text does between its moves: before the move `row`, n after the last.
+
+    kind and value: 'on' and 'off', number and word of the output; 'wait', s; 'input', number; 'below', number and value of
+    an analogue input; 'call', the program's name; 'layer', its number in a remark. digits: half of the last digit.
+    """
+
+    row: int
+    kind: str
+    value: tuple[float | str, ...]
+    digits: float = 0.0
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """What a text says of the arm at each of n positions: flip (n,) bool, joint 5 above zero; up (n,) the elbow; front (n,)
+    the shoulder; turns (n, 3) of axes, the last of them those of the last axis."""
+
+    flip: Mask
+    up: Mask
+    front: Mask
+    turns: Array
 
 
 @dataclass(frozen=True)
@@ -215,13 +254,21 @@ class ReadMoves:
     tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. lever: (n,) how far out a tool
     stands on another one that carries it. All mm.
     wire: (n,) value of the analogue output that the text sets, during each move, NaN before the first; None in texts that
-    set none. wire_digits: (n,) half of its last digit. awaited: (n, 2) as of a program; None: nothing is waited for.
+    set none. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
+    linear: (n,) bool, moves whose tip runs straight, where joints do not. stops: (n,) bool, moves at whose end the machine
+    stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded at the other points, where the text says
+    so. events: what happens between the moves, in order. configuration: of positions of robots.
+    user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
+    of moves of bare axes, which count on none, is left out.
     """
 
     joints: Array | None
     digits: float
     duration: Array
-    deposit: NDArray[np.bool_]
+    deposit: Mask
+    linear: Mask
+    stops: Mask
+    events: tuple[Event, ...]
     position: Array | None = None
     rotation: Array | None = None
     position_digits: float = 0.0
@@ -237,15 +284,12 @@ class ReadMoves:
     direction_digits: float = 0.0
     linear_digits: float = 0.0
     duration_digits: Array | None = None
-    shorter_way: NDArray[np.bool_] | None = None
+    shorter_way: Mask | None = None
     wire: Array | None = None
     wire_digits: Array | float = 0.0
-    awaited: Array | None = None
-
-
-def waits_otherwise(program: Program, read: ReadMoves) -> NDArray[np.bool_]:
-    """(n,) the moves before which a text waits for another analogue input than the program, or for another value."""
-    wanted = program.awaited
-    found = np.tile((0.0, np.nan), (len(wanted), 1)) if read.awaited is None else read.awaited
-    off = ~(np.abs(found[:, 1] - wanted[:, 1]) <= 1e-6) & (wanted[:, 0] > 0.0)
-    return np.asarray((found[:, 0] != wanted[:, 0]) | off)
+    wire_output: int | None = None
+    blend: Array | None = None
+    rounding: Array | None = None
+    configuration: Configuration | None = None
+    user_frame: Array | None = None
+    tool_frame: Array | None = None

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FANUC: TP listings (.LS) of joint moves by time, or of linear moves with the tool on the robot.
+"""FANUC: TP listings (.LS) of joint moves by time, or of beads in linear moves with the tool on the robot.
+
+Rapids are joint moves in either, and stop at every point.
 
 What is written, what must be set on the controller and what was confirmed where: docs/posts/fanuc.md.
 """
@@ -14,7 +16,8 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import (
-    RAPID,
+    FIRST_SHARE,
+    LINEAR_MOVE,
     Block,
     Call,
     DepositOff,
@@ -51,9 +54,7 @@ ON_CONTROLLER = on_controller(
 AXES = 6
 MOST_LINES = 9999
 
-# Where the robot stands before the program is not known, so the time of the first move cannot be: it goes at a
-# tenth of the full speed.
-_FIRST_MOVE = "10%"
+_FIRST_MOVE = f"{100.0 * FIRST_SHARE:.0f}%"
 
 # words of the listing's own language
 _RESERVED = frozenset(
@@ -163,9 +164,7 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
 
     def words(moves: Moves) -> Sequence[str]:
         nonlocal first
-        # a linear move that only turns the tool has no path speed, so rapids go by time in either case
-        timed = program.motion == "joint" or moves.kind == RAPID
-        speeds = numbers.time_words(moves) if timed else numbers.speed_words(moves)
+        speeds = numbers.speed_words(moves) if moves.interpolation == LINEAR_MOVE else numbers.time_words(moves)
         if first:
             speeds[0], first = _FIRST_MOVE, False
         return speeds
@@ -227,16 +226,13 @@ def _file(program: Program, name: str, comment: str, head: list[str], pieces: Se
 
 
 def _motion_lines(program: Program, run: Run, points_before: int) -> list[str]:
-    """Lines through all points of a run; the block's own last point is a stop."""
-    speeds = run.words[run.start : run.stop]
-    points = range(points_before + 1, points_before + 1 + len(run))
-    letter = "J" if program.motion == "joint" else "L"
-    lines = [f"{letter} P[{n}] {speed} CNT{program.blend}    ;" for n, speed in zip(points, speeds, strict=True)]
-    if speeds[0] == _FIRST_MOVE:
-        lines[0] = f"J P[{points[0]}] {_FIRST_MOVE} FINE    ;"
-    if run.stop == len(run.moves):
-        lines[-1] = lines[-1].replace(f"CNT{program.blend}", "FINE")
-    return lines
+    """Lines through all points of a run."""
+    part, points = slice(run.start, run.stop), range(points_before + 1, points_before + 1 + len(run))
+    letter = "L" if run.moves.interpolation == LINEAR_MOVE else "J"
+    corners = ["FINE" if stops else f"CNT{program.blend}" for stops in run.moves.stops[part].tolist()]
+    return [
+        f"{letter} P[{n}] {speed} {corner}    ;" for n, speed, corner in zip(points, run.words[part], corners, strict=True)
+    ]
 
 
 def _record_text(program: Program, runs: Sequence[Run]) -> str:

@@ -7,6 +7,7 @@ that no motion can hide in what was not understood.
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from dataclasses import dataclass, field
 
@@ -14,19 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import ReadMoves
+from ..core.program import Configuration, Event, ReadMoves
 
 Array = NDArray[np.float64]
 
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
-    r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:FINE|CNT ?\d+)(?: ?ACC ?\d+)?$"
+    r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+))$"
 )
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
 _COOL = re.compile(r"WAIT AI\[(\d+)(?::[^\]]*)?\]<(-?\d+(?:\.\d*)?)$")
-_HARMLESS = re.compile(r"$|!|//|--eg:|WAIT +\d*\.\d+\(sec\)$|WAIT DI\[\d+(?::[^\]]*)?\]=(?:ON|OFF)$")
+_LAYER = re.compile(r"!layer (\d+)$")
+_WAIT = re.compile(r"WAIT +(\d*\.(\d+))\(sec\)$")
+_INPUT = re.compile(r"WAIT DI\[(\d+)(?::[^\]]*)?\]=ON$")
+_HARMLESS = re.compile(r"$|!|//|--eg:")
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
 _FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
@@ -38,7 +42,7 @@ def _values(names: str, units: str) -> str:
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-_CONFIGURATION = r"CONFIG : '[NF] [UD] [TB], *-?\d, *-?\d, *-?\d',\s*"
+_CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
 _POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
 
 
@@ -51,6 +55,7 @@ class _Listing:
     instructions: list[tuple[int, str]]
     index: dict[int, int]
     values: Array
+    configuration: list[tuple[str, ...]]
     cartesian: bool
     frames: list[tuple[str, str]]
     digits: float
@@ -63,12 +68,19 @@ class _Run:
     rows: list[tuple[_Listing, int]] = field(default_factory=list)
     duration: list[float] = field(default_factory=list)
     speed: list[float] = field(default_factory=list)
+    share: list[float] = field(default_factory=list)
     deposit: list[bool] = field(default_factory=list)
+    linear: list[bool] = field(default_factory=list)
+    blend: list[float] = field(default_factory=list)
+    numbers: list[tuple[float, float]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     frame: dict[str, str] = field(default_factory=dict)
     output: str = ""
     on: bool = False
-    cooling: tuple[float, float] = (0.0, np.nan)
-    awaited: list[tuple[float, float]] = field(default_factory=list)
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(len(self.rows), kind, value, digits))
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -90,13 +102,22 @@ def _moves(run: _Run) -> ReadMoves:
     cartesian = run.rows[0][0].cartesian
     values = np.array([listing.values[row] for listing, row in run.rows])
     digits = max(listing.digits for listing, _ in run.rows)
-    duration, deposit = np.array(run.duration), np.array(run.deposit)
-    speed, awaited = np.array(run.speed), np.array(run.awaited)
+    joints, half_turn = (None, 0.0) if cartesian else (np.radians(values), float(np.radians(digits)))
+    blend, numbers = np.array(run.blend), np.array(run.numbers)
+    told = ReadMoves(
+        joints, half_turn, np.array(run.duration), np.array(run.deposit), np.array(run.linear), np.isnan(blend),
+        tuple(run.events), speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
+        user_frame=numbers[:, 0], tool_frame=numbers[:, 1],
+    )
     if not cartesian:
-        return ReadMoves(np.radians(values), np.radians(digits), duration, deposit, speed=speed, awaited=awaited)
-    return ReadMoves(
-        None, 0.0, duration, deposit, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])),
-        position_digits=digits, rotation_digits=float(np.radians(digits)), speed=speed, awaited=awaited,
+        return told
+    words = np.array([listing.configuration[row] for listing, row in run.rows])
+    return dataclasses.replace(
+        told, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])), position_digits=digits,
+        rotation_digits=float(np.radians(digits)),
+        configuration=Configuration(
+            words[:, 0] == "F", words[:, 1] == "U", words[:, 2] == "T", words[:, 3:].astype(np.float64)
+        ),
     )
 
 
@@ -140,11 +161,11 @@ def _listing(file: str, content: bytes) -> _Listing:
     index = {int(record[0]): row for row, record in enumerate(found)}
     if len(index) < len(found):
         raise _unreadable(file, "a position is recorded twice")
-    texts = [record[3:] for record in found]
+    texts = [record[-6:] for record in found]
     decimals = min((len(value) - value.index(".") - 1 for row in texts for value in row), default=0)
     return _Listing(
-        file, title[1].upper(), instructions, index, np.array(texts, dtype=np.float64).reshape(-1, 6), cartesian,
-        [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals,
+        file, title[1].upper(), instructions, index, np.array(texts, dtype=np.float64).reshape(-1, 6),
+        [record[3:-6] for record in found], cartesian, [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals,
     )
 
 
@@ -172,14 +193,20 @@ def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers
             if run.output not in ("", output[1]):
                 raise _unreadable(f"{listing.file} line {number}", "a second output is switched")
             run.output, run.on = output[1], output[2] == "ON"
+            run.happens("on" if run.on else "off", float(output[1]), "DO")
         elif call := _CALL.match(statement):
             if call[1].upper() in listings:
                 _follow(listings[call[1].upper()], listings, run, (*callers, listing.name))
+            else:
+                run.happens("call", call[1].upper())
         elif cool := _COOL.match(statement):
-            if run.on or run.cooling[0]:
-                where = f"{listing.file} line {number}"
-                raise _unreadable(where, "it is waited for an analogue input within a bead, or twice")
-            run.cooling = float(cool[1]), float(cool[2])
+            run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
+        elif wait := _WAIT.match(statement):
+            run.happens("wait", float(wait[1]), digits=0.5 * 10.0 ** -len(wait[2]))
+        elif given := _INPUT.match(statement):
+            run.happens("input", float(given[1]))
+        elif layer := _LAYER.match(statement):
+            run.happens("layer", float(layer[1]))
         elif frame := _FRAME.match(statement):
             run.frame[frame[1]] = frame[2]
         elif statement == "END" and position == len(listing.instructions) - 1:
@@ -189,27 +216,31 @@ def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers
 
 
 def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> None:
-    letter, point, value, unit = motion.groups()
+    letter, point, value, unit, fine, corner = motion.groups()
     row = listing.index.get(int(point))
     where = f"{listing.file} line {number}"
     if row is None:
         raise _unreadable(where, f"P[{point}] is not recorded")
     if run.rows and run.rows[0][0].cartesian != listing.cartesian:
         raise _unreadable(where, "joint and Cartesian positions are mixed")
-    if (letter == "L") != listing.cartesian and (letter == "L" or run.rows):
+    if letter == "L" and not listing.cartesian:
         raise _unreadable(where, "a position is moved to in another way than it is recorded")
-    if (unit == "mm/sec" and letter == "J") or (unit == "%" and letter == "L"):
-        raise _unreadable(where, f"{unit} is not understood here")
+    if (unit == "mm/sec" and letter == "J") or (unit == "%" and letter == "L") or (corner and float(corner) > 100.0):
+        raise _unreadable(where, f"{unit} or CNT{corner} is not understood here")
+    numbers = []
     for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row], strict=True):
         if recorded not in ("F", run.frame.get(word)):
             raise _unreadable(where, f"P[{point}] is recorded in another U{word} than the one selected")
+        numbers.append(float(run.frame.get(word, "nan")))
     seconds = {"sec": 1.0, "msec": 0.001}.get(unit, np.nan)
     run.rows.append((listing, row))
     run.duration.append(float(value) * seconds)
     run.speed.append(float(value) if unit == "mm/sec" else np.nan)
+    run.share.append(0.01 * float(value) if unit == "%" else np.nan)
     run.deposit.append(run.on)
-    run.awaited.append(run.cooling)
-    run.cooling = (0.0, np.nan)
+    run.linear.append(letter == "L")
+    run.blend.append(np.nan if fine else float(corner))
+    run.numbers.append((numbers[0], numbers[1]))
 
 
 def _unreadable(where: str, why: str) -> InputError:

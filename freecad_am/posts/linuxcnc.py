@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import (
-    DEPOSIT,
+    LINEAR_MOVE,
     ROTARY,
     Block,
     Call,
@@ -56,6 +56,8 @@ LAST_PIN = 64
 # the work offset that this program sets to zero, for moves of the axes themselves
 MACHINE_OFFSET = "G59.3"
 OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
+# the machine stands still at the end of every move
+EXACT_STOP = "G61.1"
 # mm/min or deg/min: its interpreter takes 0.1 where the time of a move asks for less, which would be too fast
 SLOWEST = 0.2
 # s: an input that does not come stops the program for good
@@ -175,11 +177,10 @@ def _remark(text: str) -> str:
 
 
 def _modes(program: Program) -> list[str]:
-    """What moves begin with: mm, absolute, the tool's length, rounding of corners, axes in the machine's own frame."""
-    tolerance = f"{program.nc.tolerance:.5f}"
+    """What moves begin with: mm, absolute, the tool's length, a stop at every point, axes in the machine's own frame."""
     zeros = " ".join(f"{name}0" for name in program.axis_names)
     return [
-        "G21 G17 G90 G94 G40 G49 G80", "G92.2", f"G64 P{tolerance} Q{tolerance}", f"G43 H{program.tool_frame}",
+        "G21 G17 G90 G94 G40 G49 G80", "G92.2", EXACT_STOP, f"G43 H{program.tool_frame}",
         f"G10 L2 P9 {zeros} R0", *_axes_again(program),
     ]  # fmt: skip
 
@@ -191,12 +192,13 @@ def _axes_again(program: Program) -> list[str]:
 def _instructions(program: Program, block: Block) -> list[str]:
     cartesian = program.motion == "cartesian"
     if isinstance(block, DepositOn):
-        enter = ["M428", OFFSETS[program.user_frame - 1]] if cartesian else []
+        tolerance = f"{program.nc.tolerance:.5f}"
+        enter = [*(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []), f"G64 P{tolerance} Q{tolerance}"]
         # at rest: at once
         wire = [] if block.wire is None else [f"M68 {_wire(program).format(*numbers.wire(program, [block.wire]))}"]
         return [*enter, *(["G4 P0"] if program.dry_run else [*wire, _output(program, True), *_dwell(block.lead)])]
     if isinstance(block, DepositOff):
-        leave = _axes_again(program) if cartesian else []
+        leave = [EXACT_STOP, *(_axes_again(program) if cartesian else [])]
         return [*(["G4 P0"] if program.dry_run else [*_dwell(block.lead), _output(program, False)]), *leave]
     if isinstance(block, LayerStart):
         return [_remark(f"layer {block.layer}")]
@@ -237,7 +239,7 @@ def _motion(program: Program, run: Run) -> list[str]:
     moves, part = run.moves, slice(run.start, run.stop)
     names = list(program.axis_names)
     values = numbers.shown(moves.joints[part], program.axis_kinds)
-    if program.motion == "cartesian" and moves.kind == DEPOSIT:
+    if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None
         rotary = np.array([kind == ROTARY for kind in program.axis_kinds])
         values = np.hstack([np.round(moves.position[part], numbers.DECIMALS) + 0.0, values[:, rotary]])

@@ -17,16 +17,18 @@ _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _WORD = re.compile(rf"([XYZABCF])({_NUMBER})$")
 _SUB = re.compile(r"O<(\w+)> (SUB|ENDSUB|CALL)$")
 _COMMENT = re.compile(r"\((?!\s*(?:ABORT|DEBUG|ERROR|LOG\w*|MSG|PRINT|PROBE\w*|PY|WARNING)\s*,)[^()]*\)")
-_HARMLESS = re.compile(
-    rf"(?:G92\.2|G61(?:\.1)?|G64(?: P(?:{_NUMBER}))?(?: Q(?:{_NUMBER}))?|G4 P(?:{_NUMBER})|M66 P\d+ L3 Q\d+|G43 H\d+)$"
-)
+_HARMLESS = re.compile(r"G92\.2$")
+_CORNERS = re.compile(rf"G61(\.1)?$|G64(?: P({_NUMBER}))?(?: Q({_NUMBER}))?$")
+_TOOL = re.compile(r"G43 H(\d+)$")
+_INPUT = re.compile(r"M66 P(\d+) L3 Q(\d+)$")
+_LAYER = re.compile(r"\(LAYER (\d+)\)$")
 _SAMPLE = re.compile(r"M66 E(\d+) L0$")
 _LOOP = re.compile(rf"O<(\w+)> (?:WHILE \[#5399 GE ({_NUMBER})\]|ENDWHILE)$")
-_DWELL = re.compile(rf"G4 P(?:{_NUMBER})$")
+_DWELL = re.compile(rf"G4 P({_NUMBER})$")
 _ZERO = re.compile(r"G10 L2 P9( [XYZABCR]0)+$")
 _OUTPUT = re.compile(r"M(6[2-5]) P(\d+)$|M(\d+)$")
 _WIRE = re.compile(rf"M6([78]) E(\d+) Q({_NUMBER})$")
-_OFFSETS = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"}
+_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 _FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
 _PLAIN = {"G17", "G40", "G49", "G80"}
 _TIP_ON, _TIP_OFF = "M428", "M429"
@@ -79,8 +81,9 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
     """Where each line is, and its words without comments."""
     found = []
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
-        text = " ".join(_COMMENT.sub(" ", line).split())
-        if len(line) > 250 or "(" in text or ";" in text:
+        layer = _LAYER.match(line.strip())
+        text = line.strip() if layer else " ".join(_COMMENT.sub(" ", line).split())
+        if len(line) > 250 or (not layer and "(" in text) or ";" in text:
             raise unreadable(f"{file} line {number}", "a comment that may be carried out, or a line that is too long")
         if text:
             found.append((f"{file} line {number}", text))
@@ -108,11 +111,36 @@ def _follow(name: str, lines: list[tuple[str, str]], state: _State, callers: tup
         elif wire := _WIRE.match(text):
             if wire[1] == "8" and state.track.on:
                 raise unreadable(where, "the analogue output stops the machine within a bead")
-            state.track.set_wire(wire[2], wire[3], where)
+            state.track.set_wire(int(wire[2]) + 1, wire[3], where)
+            if wire[1] == "8":
+                state.track.rests()
+        elif layer := _LAYER.match(text):
+            state.track.happens("layer", float(layer[1]))
+        elif _settled(text, state):
+            continue
         elif output := _OUTPUT.match(text):
             _switch(where, text, output, state)
         elif not _HARMLESS.match(text):
             _line(where, text, state)
+
+
+def _settled(text: str, state: _State) -> bool:
+    """Whether a line sets how corners are passed or which tool counts, or waits; it is done then."""
+    if corners := _CORNERS.match(text):
+        state.track.exact = text == "G61.1"
+        # G61 keeps to the path without a stop; other rounding of points than of corners is none that was asked for
+        known = corners[2] and corners[2] == corners[3]
+        state.track.rounding = float(corners[2]) if known else 0.0 if text.startswith("G61") else float("inf")
+    elif tool := _TOOL.match(text):
+        state.track.tool = float(tool[1])
+    elif given := _INPUT.match(text):
+        state.track.rests()
+        state.track.happens("input", float(given[1]) + 1.0)
+    elif dwell := _DWELL.match(text):
+        state.track.waits(dwell[1])
+    else:
+        return False
+    return True
 
 
 def _cooled(where: str, text: str, state: _State) -> bool:
@@ -125,7 +153,9 @@ def _cooled(where: str, text: str, state: _State) -> bool:
         state.sampled = sample[1]
     elif loop and loop[2] and sampled and not state.loop[0]:
         state.loop = loop[1], sampled
-        state.track.wait_below(str(int(sampled) + 1), loop[2], where)
+        if state.track.on:
+            raise unreadable(where, "it is waited for an analogue input within a bead")
+        state.track.happens("below", float(sampled) + 1.0, float(loop[2]), digits=1e-6)
     elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
         state.loop = "", ""
     elif loop or (state.loop[0] and not _DWELL.match(text)):
@@ -143,6 +173,9 @@ def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> Non
     else:
         # a program of the controller; what it leaves set is not known
         state.units, state.offset, state.zeroed, state.linear, state.kinematics = set(), "", set(), False, ""
+        state.track.happens("call", name)
+        state.track.rests()
+        state.track.tool, state.track.exact, state.track.rounding = float("nan"), False, float("inf")
 
 
 def _line(where: str, text: str, state: _State) -> None:
@@ -160,6 +193,7 @@ def _line(where: str, text: str, state: _State) -> None:
             state.units.add(token)
         elif token in _OFFSETS:
             state.offset = token
+            state.track.frame = _OFFSETS.index(token) + 1.0
         elif token not in _PLAIN:
             raise unreadable(where, f"{token!r} is not understood")
     if words:
@@ -188,6 +222,7 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
         if state.track.on:
             raise unreadable(where, "the kinematics changes while the deposit is on")
         state.kinematics = text
+        state.track.rests()
         return
     if output[1]:
         name, on, wrong = f"P{output[2]}", output[1] in ("62", "64"), False
@@ -200,3 +235,6 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
     if wrong or state.output not in ("", name):
         raise unreadable(where, f"{text!r} is not understood, or a second output is switched")
     state.output, state.track.on = name, on
+    if output[1] not in ("62", "63"):  # these wait for the next move instead
+        state.track.rests()
+    state.track.happens("on" if on else "off", float(output[2]) + 1.0 if output[1] else 0.0, text)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import LINEAR, RAPID, Moves, Program, slide_feeds
+from ..core.program import LINEAR, LINEAR_MOVE, RAPID, Moves, Program, slide_feeds
 
 Array = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ class Feeds:
         at = shown(moves.joints, self.kinds)
         start = at[0] if self.before is None else self.before
         self.before = at[-1]
-        if self.by_tip and moves.kind != RAPID:
+        if moves.interpolation == LINEAR_MOVE:
             self.after_tip = True
             return [f"{PATH} {feed(value)}" for value in _tip_feeds(moves).tolist()]
         inverse = _inverse_times(moves)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import ReadMoves
+from ..core.program import Event, ReadMoves
 
 Array = NDArray[np.float64]
 
@@ -53,35 +53,53 @@ class Shape:
 
 @dataclass
 class Track:
-    """The moves found so far, and whether the deposit is on. axes: names of the words of a move in axes, in their order;
-    shorter: those that were sent the shorter way. output, wire: the analogue output, and its value as it stands there."""
+    """The moves found so far, what happens between them, and what is set.
+
+    axes: names of the words of a move in axes, in their order; shorter: those that were sent the shorter way. on: whether
+    the deposit is. output, wire: the analogue output, from 1, and its value as it stands there. exact: whether moves stop at
+    their ends; rounding: mm they may round corners by elsewhere. frame, tool: numbers of the work offset of positions and of
+    the tool, NaN where none was said.
+    """
 
     rows: list[tuple[str, dict[str, str]]] = field(default_factory=list)
     deposit: list[bool] = field(default_factory=list)
     axes: tuple[str, ...] = ()
     on: bool = False
     shorter: set[str] = field(default_factory=set)
-    output: str = ""
+    output: int = 0
     wire: str = ""
     wires: list[str] = field(default_factory=list)
-    cooling: tuple[str, str] = ("0", "nan")
-    awaited: list[tuple[int, str, str]] = field(default_factory=list)
+    exact: bool = False
+    rounding: float = math.nan
+    frame: float = math.nan
+    tool: float = math.nan
+    corners: list[float] = field(default_factory=list)
+    stops: list[bool] = field(default_factory=list)
+    numbers: list[tuple[float, float]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     known: set[tuple[str, tuple[str, ...]]] = field(default_factory=set)
 
-    def wait_below(self, number: str, value: str, where: str) -> None:
-        """Wait before the next move until an analogue input is below a value. Raises InputError UNREADABLE_PROGRAM."""
-        if self.on or self.cooling[0] != "0":
-            raise unreadable(where, "it is waited for an analogue input within a bead, or twice")
-        self.cooling = number, value
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(len(self.rows), kind, value, digits))
 
-    def set_wire(self, output: str, value: str, where: str) -> None:
+    def waits(self, seconds: str) -> None:
+        """A dwell before the next move; the machine stands still."""
+        self.rests()
+        self.happens("wait", float(seconds), digits=float(_half_digits([seconds])[0]))
+
+    def rests(self) -> None:
+        """What follows waits for the end of the last move."""
+        self.stops[-1:] = [True] * len(self.stops[-1:])
+
+    def set_wire(self, output: int, value: str, where: str) -> None:
         """The analogue output from the next move on. Raises InputError UNREADABLE_PROGRAM for a second one."""
-        if self.output not in ("", output):
+        if self.output not in (0, output):
             raise unreadable(where, "a second analogue output is set")
         self.output, self.wire = output, value
 
-    def add(self, sort: str, words: dict[str, str], where: str) -> None:
-        """A move with these words, F among them. Raises InputError UNREADABLE_PROGRAM."""
+    def add(self, sort: str, words: dict[str, str], where: str, stops: bool = False) -> None:
+        """A move with these words, F among them, that may stop by itself. Raises InputError UNREADABLE_PROGRAM."""
         if float(words.get("F", "0")) <= 0.0:
             raise unreadable(where, "a move without a feed of its own")
         told = sort, tuple(words)
@@ -93,9 +111,9 @@ class Track:
         self.rows.append((sort, words))
         self.deposit.append(self.on)
         self.wires.append(self.wire)
-        if self.cooling[0] != "0":
-            self.awaited.append((len(self.rows) - 1, *self.cooling))
-            self.cooling = ("0", "nan")
+        self.stops.append(stops or self.exact)
+        self.corners.append(self.rounding)
+        self.numbers.append((self.frame if sort == TIP else math.nan, self.tool))
 
     def _check_words(self, sort: str, names: tuple[str, ...], where: str) -> None:
         """Whether these words tell a move; the first one tells the axes."""
@@ -122,32 +140,35 @@ class Track:
         turning, sliding = (float(np.max(digits[side], initial=0.0)) for side in (~linear, linear))
         shorter = np.array([name in self.shorter for name in self.axes])
         read = {"linear_digits": sliding, "duration_digits": duration_digits, "shorter_way": shorter}
-        read |= self._wire() | self._cooling()
-        deposit = np.array(self.deposit)
+        read |= self._wire() | self._numbers(tips)
+        deposit, stops, events = np.array(self.deposit), np.array(self.stops), tuple(self.events)
         if not tips.any():
-            return ReadMoves(joints, math.radians(turning), duration, deposit, **read)  # type: ignore[arg-type]
+            return ReadMoves(
+                joints, math.radians(turning), duration, deposit, tips, stops, events, **read,  # type: ignore[arg-type]
+            )
         position, position_digits = self._values(_LINEAR, np.repeat(tips[:, None], 3, axis=1))
         vectors = np.repeat((tips & np.array([_VECTOR[0] in words for _, words in self.rows]))[:, None], 3, axis=1)
         direction, direction_digits = self._values(_VECTOR, vectors)
         length = np.linalg.norm(direction, axis=1, keepdims=True)
         return ReadMoves(
-            joints, math.radians(turning), duration, deposit, position=position,
+            joints, math.radians(turning), duration, deposit, tips, stops, events, position=position,
             position_digits=float(position_digits.max()), speed=np.where(tips, feeds[:, 0] / 60.0, np.nan),
             speed_digits=float(np.max(feed_digits[tips, 0])) / 60.0,
             direction=direction / length if vectors.any() else None,
             direction_digits=float(direction_digits.max()), **read,  # type: ignore[arg-type]
         )
 
-    def _cooling(self) -> dict[str, object]:
-        found = np.tile((0.0, np.nan), (len(self.rows), 1))
-        for row, number, value in self.awaited:
-            found[row] = float(number), float(value)
-        return {"awaited": found} if self.awaited else {}
+    def _numbers(self, tips: NDArray[np.bool_]) -> dict[str, object]:
+        corners, numbers = np.array(self.corners), np.array(self.numbers)
+        read: dict[str, object] = {"tool_frame": numbers[:, 1], "user_frame": numbers[:, 0] if tips.any() else None}
+        told = ~np.isnan(corners).all()
+        return {**read, "rounding": np.where(self.stops, np.nan, corners)} if told else read
 
     def _wire(self) -> dict[str, object]:
         if not self.output:
             return {}
-        return {"wire": np.array([float(text or "nan") for text in self.wires]), "wire_digits": _half_digits(self.wires)}
+        values = np.array([float(text or "nan") for text in self.wires])
+        return {"wire": values, "wire_digits": _half_digits(self.wires), "wire_output": self.output}
 
     def _values(self, names: Sequence[str], told: NDArray[np.bool_], each: bool = False) -> tuple[Array, Array]:
         """Values (n, names) of the rows told, else NaN, and half of the last digit of each name, or of each value."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import (
-    DEPOSIT,
+    LINEAR_MOVE,
     ROTARY,
     Block,
     Call,
@@ -218,9 +218,9 @@ def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
 
 
 def _motion(program: Program, run: Run) -> list[str]:
-    """Blocks through all points of a run; the block's own last one is an exact stop."""
+    """Blocks through all points of a run, with an exact stop where the machine stands still."""
     moves, part = run.moves, slice(run.start, run.stop)
-    if program.motion == "cartesian" and moves.kind == DEPOSIT:
+    if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None and moves.direction is not None
         vector = " ".join(f"{name}=%.{numbers.VECTOR_DECIMALS}f" for name in ("A3", "B3", "C3"))
         values = np.hstack([
@@ -230,8 +230,9 @@ def _motion(program: Program, run: Run) -> list[str]:
     else:
         words = numbers.rows(*_axis_words(program, moves.joints[part]))
     blocks = numbers.blocks(words, run.words[part])
-    if run.stop == len(moves):
-        blocks[-1] = f"G9 {blocks[-1]}"
+    ahead = len(blocks) - len(words)
+    for row in np.flatnonzero(moves.stops[part]).tolist():
+        blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
     # a synchronized action of one block: it takes effect where that begins, without a stop
     told = numbers.told_of_wire(program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}"))
     # the time of one block would be that of all those compressed into one, and so would the wire's speed

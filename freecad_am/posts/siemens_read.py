@@ -25,10 +25,16 @@ _TIP_WORDS = {*"XYZF", "A3", "B3", "C3"}
 _FEEDS = {"G93", "G94"}
 _UNITS = {"G710", "G90"}
 _COMPRESS = {"COMPCAD": True, "COMPCURV": True, "COMPON": True, "COMPOF": False}
-_HARMLESS = re.compile(r"(?:G17|G40|G64\d?|G9|G60|D\d+|SOFT|BRISK|FFWON|FFWOF|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
-_WAIT = re.compile(r"WHILE \$A_IN\[\d+\]==0$")
+_HARMLESS = re.compile(r"(?:G17|G40|G9|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
+# rounding of corners with the jerk limit and feed forward that belong to it
+_CORNERS = re.compile(r"G60|G64\d?|SOFT|BRISK|FFWON|FFWOF")
+_SMOOTH, _HARD = {"SOFT", "FFWON"}, {"BRISK", "FFWOF"}
+_PAIRED = {"G642": _SMOOTH, "G64": _HARD}
+_TOOL = re.compile(r"D(\d+)$")
+_LAYER = re.compile(r"; ?LAYER (\d+)$")
+_WAIT = re.compile(r"WHILE \$A_IN\[(\d+)\]==0$")
 _COOL = re.compile(rf"WHILE \$A_INA\[(\d+)\]>=({_NUMBER})$")
-_DWELL = re.compile(rf"G4 F(?:{_NUMBER})$")
+_DWELL = re.compile(rf"G4 F({_NUMBER})$")
 
 
 @dataclass
@@ -44,6 +50,7 @@ class _State:
     tip: bool = False
     workpiece: bool = False
     group: bool = False
+    corners: set[str] = field(default_factory=set)
     compress: bool = False
     waiting: bool = False
     shape: Shape | None = None
@@ -73,7 +80,7 @@ def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
     """Where each block is, and its words; comments and block numbers are gone."""
     blocks, last = [], 0
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
-        text = line.partition(";")[0].strip()
+        text = line.partition(";")[0].strip() if not _LAYER.match(line) else line.strip()
         where = f"{file} line {number}"
         if numbered := _NUMBERED.match(text):
             if int(numbered[1]) <= last:
@@ -96,18 +103,25 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
         if state.shape is not None and words is not None:
             state.linear = True
             state.track.shorter |= state.shape.shorter
-            _move(where, words, state)
+            _move(where, words, state, text.startswith("G9 "))
         elif state.waiting:
             if text == "ENDWHILE":
                 state.waiting = False
             elif not _DWELL.match(text):
                 raise unreadable(where, f"{text!r} in a loop that waits for an input")
-        elif _WAIT.match(text):
+        elif given := _WAIT.match(text):
             state.waiting = True
+            state.track.happens("input", float(given[1]))
         elif cool := _COOL.match(text):
+            if state.track.on:
+                raise unreadable(where, "it is waited for an analogue input within a bead")
             state.waiting = True
-            state.track.wait_below(cool[1], cool[2], where)
-        elif not _DWELL.match(text):
+            state.track.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
+        elif dwell := _DWELL.match(text):
+            state.track.waits(dwell[1])
+        elif layer := _LAYER.match(text):
+            state.track.happens("layer", float(layer[1]))
+        else:
             _block(where, text, state, (*callers, name))
     if state.waiting:
         raise unreadable(name, "it ends within a loop")
@@ -117,7 +131,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
     if wire := _WIRE.match(text):
         if state.compress or (not wire[1] and state.track.on):
             raise unreadable(where, "the analogue output stops the machine within a bead, or its compressor")
-        state.track.set_wire(wire[2], wire[3], where)
+        state.track.set_wire(int(wire[2]), wire[3], where)
         return
     words: dict[str, str] = {}
     rest = []
@@ -138,7 +152,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
     if words:
         if rest:
             raise unreadable(where, f"{rest[0]!r} with a move is not understood")
-        _move(where, words, state)
+        _move(where, words, state, "G9" in text.split())
         state.shape = Shape.of(text, "G9")
     elif len(rest) == 1:
         _other(where, rest[0], state, callers)
@@ -154,10 +168,20 @@ def _mode(token: str, state: _State) -> bool:
         state.units.add(token)
     elif _OFFSET.match(token):
         state.offset = token
+        state.track.frame = float(token[1:]) - (53.0 if len(token) == 3 else 500.0)
+    elif tool := _TOOL.match(token):
+        state.track.tool = float(tool[1])
+    elif _CORNERS.fullmatch(token):
+        if token.startswith("G6"):
+            state.corners -= {word for word in state.corners if word.startswith("G6")}
+            state.track.exact = token == "G60"
+        else:
+            state.corners -= {"SOFT", "BRISK"} if token in ("SOFT", "BRISK") else {"FFWON", "FFWOF"}
+        state.corners.add(token)
     elif token in _COMPRESS:
         state.compress = _COMPRESS[token]
     elif token in ("TRAORI", "TRAFOOF"):
-        state.tip = token == "TRAORI"
+        state.tip, state.workpiece = token == "TRAORI", False
     elif token == "ORIWKS":
         state.workpiece = True
     else:
@@ -166,24 +190,27 @@ def _mode(token: str, state: _State) -> bool:
     return True
 
 
-def _move(where: str, words: dict[str, str], state: _State) -> None:
+def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None:
     if not state.linear or state.units != _UNITS:
         raise unreadable(where, "a move before G1, G90 and G710 are said")
+    if state.corners and not any(state.corners == {word, *others} for word, others in _PAIRED.items()):
+        raise unreadable(where, f"{' '.join(sorted(state.corners))} do not belong together")
     if state.tip:
-        if state.feed != "G94" or not state.workpiece or words.keys() != _TIP_WORDS or not state.offset:
-            raise unreadable(where, "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, ORIWKS and a work offset")
-        state.track.add(TIP, words, where)
+        known = state.workpiece and state.group and state.offset
+        if state.feed != "G94" or not known or words.keys() != _TIP_WORDS:
+            raise unreadable(where, "with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset")
+        state.track.add(TIP, words, where, stops)
         return
     if state.offset != "G500":
         raise unreadable(where, "axes are moved in another frame than that of the machine")
     if state.feed == "G94":
         if not state.group:
             raise unreadable(where, "it is not said which axes the feed is the speed of")
-        state.track.add(SLIDES, words, where)
+        state.track.add(SLIDES, words, where, stops)
         return
     if state.compress:
         raise unreadable(where, "blocks that tell a time are compressed into one, which would take the time of the last")
-    state.track.add(TIME, words, where)
+    state.track.add(TIME, words, where, stops)
 
 
 def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> None:
@@ -199,7 +226,9 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
         raise unreadable(where, f"{token!r} is not understood")
     else:
         # a program of the controller; what it leaves set is not known
-        state.units, state.offset, state.group, state.linear = set(), "", False, False
+        state.units, state.offset, state.group, state.linear, state.corners = set(), "", False, False, set()
+        state.track.happens("call", token)
+        state.track.frame = state.track.tool = float("nan")
 
 
 def _switch(where: str, token: str, output: re.Match[str], state: _State) -> None:
@@ -213,6 +242,8 @@ def _switch(where: str, token: str, output: re.Match[str], state: _State) -> Non
         name = "M"
     else:
         name, on, wrong = token.partition("=")[0], (output[2] or output[4]) != "0", False
+    number = float(output[1] or output[3] or 0)
     if wrong or state.output not in ("", name):
         raise unreadable(where, "a second output is switched")
     state.output, state.track.on = name, on
+    state.track.happens("on" if on else "off", number, token)

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from ..core.issues import InputError
 from ..core.program import (
     DEPOSIT,
-    RAPID,
+    JOINT_MOVE,
+    RETRACT,
     Block,
     Call,
     DepositOff,
@@ -155,11 +156,10 @@ def _refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Itera
 
 
 def _withdrawn(parts: list[list[Piece]]) -> list[list[Piece]]:
-    """The parts with the first move away from a bead in the part of that bead."""
+    """The parts with the first move of a retract in the part of the bead it leads away from."""
     for before, part in zip(parts, parts[1:]):
         first = part[0]
-        approach = [piece for piece in part if isinstance(piece, Run) and piece.moves.kind == RAPID]
-        if isinstance(first, Run) and first.moves.kind == RAPID and (len(first) > 1 or len(approach) > 1):
+        if isinstance(first, Run) and first.moves.role[first.start] == RETRACT:
             before.append(dataclasses.replace(first, stop=first.start + 1))
             part[:1] = [dataclasses.replace(first, start=first.start + 1)] if len(first) > 1 else []
     return parts
@@ -238,7 +238,7 @@ def _files(
 def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]) -> list[str]:
     """Lines through all points of a run, with a stop at the last; the points and descriptors go to the arrays."""
     moves, rows = run.moves, slice(run.start, run.stop)
-    if program.motion == "joint" or moves.kind != DEPOSIT:
+    if moves.interpolation == JOINT_MOVE:
         pattern, array, kind = "movej(jPath[{point}],tCarried,mPath[{speed}])", "jPath", "jointRx"
         values = text.joints(numbers.degrees(moves.joints[rows]))
     else:

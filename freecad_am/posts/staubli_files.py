@@ -20,6 +20,7 @@ PROJECT, DATA, PROGRAM = (_NAMESPACE + space + "}" for space in ("Project/3", "D
 AXES = ("j1", "j2", "j3", "j4", "j5", "j6")
 POSE = ("x", "y", "z", "rx", "ry", "rz")
 _PLAIN = re.compile(r"(?:-?[0-9]+(?:\.[0-9]+)? )*")
+_LAYER = re.compile(r"// layer \d+$")
 _DECIMALS = re.compile(r"\.([0-9]+) ")
 
 
@@ -89,7 +90,7 @@ def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int
     if program is None or code is None or program.get("name") != name:
         raise unreadable(file, f"it does not hold the code of a program {name}")
     lines = [(number, line.strip()) for number, line in enumerate(code.split("\n"), 1)]
-    lines = [(number, line) for number, line in lines if line and not line.startswith("//")]
+    lines = [(number, line) for number, line in lines if line and (not line.startswith("//") or _LAYER.match(line))]
     if len(lines) < 2 or lines[0][1] != "begin" or lines[-1][1] != "end":
         raise unreadable(file, "its code does not run from begin to end")
     return lines[1:-1]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import DEPOSIT, Moves, Program
+from ..core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 
 Array = NDArray[np.float64]
 
@@ -19,8 +19,6 @@ ANGLE_DECIMALS, LENGTH_DECIMALS = 5, 4
 UNLIMITED = "99999"
 # mm/s, and percent of the nominal joint speed
 SLOWEST, LEAST_PERCENT = 0.01, 0.001
-# Where the robot stands before the program is not known, so the time of the first move cannot be
-FIRST_PERCENT = 10.0
 
 
 def degrees(joints: Array) -> Array:
@@ -57,13 +55,13 @@ class Descriptors:
         """The attributes of one descriptor per move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
         shown = degrees(moves.joints)
         blend = self._blend(moves)
-        if self.cartesian and moves.kind == DEPOSIT:
+        if moves.interpolation == LINEAR_MOVE:
             words = [_descriptor("100", f"{speed:.3f}", blend) for speed in _speeds(moves).tolist()]
         else:
             start = shown[:1] if self.before is None else self.before
             percent = self._percent(moves, np.diff(shown, axis=0, prepend=start))
             if self.before is None:
-                percent[0] = FIRST_PERCENT
+                percent[0] = 100.0 * FIRST_SHARE
             words = [_descriptor(f"{share:.5f}", UNLIMITED, blend) for share in percent.tolist()]
         self.before = shown[-1:]
         return words

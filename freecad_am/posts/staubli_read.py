@@ -7,6 +7,7 @@ that no motion can hide in what was not understood.
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.program import ReadMoves
+from ..core.program import Event, ReadMoves
 from .staubli_files import AXES, POSE, Application, Data, applications, numbers, poses, rotations, unreadable
 
 Array = NDArray[np.float64]
@@ -26,7 +27,10 @@ _FOR = re.compile(r"for l_nI=(\d+) to (\d+)$")
 _OUTPUT = re.compile(r"(\w+)=(true|false)$")
 _CALL = re.compile(r"call (?:(\w+):)?(\w+)\(\)$")
 _LOAD = re.compile(r'if (\w+):libLoad\("\./(\w+)"\)!=0$')
-_HARMLESS = re.compile(r"delay\(\d+\.?\d*\)$|wait\((\w+)==(?:true|false)\)$")
+_DELAY = re.compile(r"delay\((\d+(?:\.(\d*))?)\)$")
+_WAIT = re.compile(r"wait\((\w+)==true\)$")
+_LAYER = re.compile(r"// layer (\d+)$")
+_NUMBER = re.compile(r".*%[IQ](\d+)$")
 _UNLIMITED = 99999.0
 
 
@@ -42,6 +46,7 @@ class _Step:
     tool: Indices
     speed: Indices
     deposit: bool
+    stops: bool = False
 
 
 @dataclass
@@ -54,6 +59,12 @@ class _Run:
     output: str = ""
     on: bool = False
     moving: bool = False
+    moves: int = 0
+    events: list[Event] = field(default_factory=list)
+
+    def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
+        """Something happens before the next move."""
+        self.events.append(Event(self.moves, kind, value, digits))
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -71,7 +82,18 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise unreadable("program", "there are no moves")
     if run.moving:
         raise unreadable("program", "it ends before the last move does")
-    return _moves(run.steps)
+    read_moves = dataclasses.replace(_moves(run.steps), events=tuple(run.events))
+    for app in found.values():
+        _check_stop(app)
+    return read_moves
+
+
+def _check_stop(app: Application) -> None:
+    """Stopping an application must end its motion and switch off what it may have switched on."""
+    lines = [line for _, line in app.programs.get("stop", [])]
+    named = [name for name, data in app.data.items() if data.kind == "dio" and "%Q" in data.values[0].get("link", "")]
+    if lines != ["resetMotion()", *(f"{name}=false" for name in named)]:
+        raise unreadable(f"{app.folder}/stop.pgx", "it does not end the motion and switch the deposit off")
 
 
 def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
@@ -91,6 +113,10 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
             _move(app, line, np.zeros(0, np.int64), run, where)
         elif line == "waitEndMove()":
             run.moving = False
+            if run.steps:
+                run.steps[-1] = dataclasses.replace(run.steps[-1], stops=True)
+        elif layer := _LAYER.match(line):
+            run.happens("layer", float(layer[1]))
         elif run.moving:
             raise unreadable(where, f"{line!r} does not wait for the moves before it")
         elif load := _LOAD.match(line):
@@ -99,6 +125,8 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
             called = app if call[1] is None else _library(app, call[1], run, where)
             if called is not None:
                 _follow(called, call[2], run, (*callers, here))
+            else:
+                run.happens("call", str(call[1]).upper())
         else:
             _other(app, line, run, where)
 
@@ -132,9 +160,11 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
         if run.output not in ("", link):
             raise unreadable(where, "a second output is switched")
         run.output, run.on = link, output[2] == "true"
-    elif harmless := _HARMLESS.match(line):
-        if harmless[1]:
-            _link(app, harmless[1], "I", where)
+        run.happens("on" if run.on else "off", _number(link, where), output[1])
+    elif delay := _DELAY.match(line):
+        run.happens("wait", float(delay[1]), digits=0.5 * 10.0 ** -len(delay[2] or ""))
+    elif wait := _WAIT.match(line):
+        run.happens("input", _number(_link(app, wait[1], "I", where), where))
     else:
         raise unreadable(where, f"the instruction {line!r} is not understood")
 
@@ -144,6 +174,14 @@ def _link(app: Application, name: str, letter: str, where: str) -> str:
     if data.kind != "dio" or len(data.values) != 1 or f"%{letter}" not in data.values[0].get("link", ""):
         raise unreadable(where, f"{name} is no digital {'output' if letter == 'Q' else 'input'} of the project")
     return data.values[0]["link"]
+
+
+def _number(link: str, where: str) -> float:
+    """The number of an input or output, from 1."""
+    number = _NUMBER.match(link)
+    if number is None:
+        raise unreadable(where, f"{link!r} has no number")
+    return float(number[1]) + 1.0
 
 
 def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) -> None:
@@ -159,6 +197,7 @@ def _move(app: Application, line: str, counter: Indices, run: _Run, where: str) 
             raise unreadable(where, f"{name} is not {kind} data of the project, or has not so many values")
         rows.append(taken)
     run.moving = True
+    run.moves += len(rows[0])
     run.steps.append(_Step(app, where, letter == "l", (names[0], names[1], names[2]), rows[0], rows[1], rows[2], run.on))
 
 
@@ -207,7 +246,10 @@ class _Values:
         return next(iter(self._fathers[key])) if len(self._fathers[key]) == 1 else ""
 
     def frame(self, app: Application, name: str, where: str) -> Array:
-        """(4, 4) the frame that the points of an array are in; it must stand in the world."""
+        """(4, 4) the frame that the points of an array are in; it must stand in the world, and the arm stay as it is."""
+        for value in app.data[name].values:
+            if any(value.get(word, f"{word[0]}same") != f"{word[0]}same" for word in ("shoulder", "elbow", "wrist")):
+                raise unreadable(where, f"a point of {name} asks for another configuration of the arm")
         return self._one(app, name, "frame", "world[0]", where, f"the points of {name} are not all in one frame")
 
     def carrier(self, app: Application, name: str, where: str) -> Array:
@@ -225,6 +267,19 @@ class _Values:
         return found
 
 
+def _corners(values: _Values, app: Application, descriptor: str, step: _Step) -> Array:
+    """(n,) mm before and after their ends that moves may leave their lines to round corners, 0 where they stop."""
+    leave, reach = values(app, descriptor, _CORNERS)[step.speed].T
+    words = np.array([value.get("blend", "") for value in app.data[descriptor].values])[step.speed]
+    full = values(app, descriptor, _ACCELERATION)[step.speed]
+    kinds = ("off", "Cartesian") if step.linear else ("off", "joint", "Cartesian")
+    if not np.isin(words, kinds).all() or (leave != reach).any() or (full != 100.0).any():
+        raise unreadable(step.where, "it rounds corners or accelerates in a way that is not understood")
+    rounded: Array = np.where(words == "off", 0.0, np.maximum(leave, 1e-9))
+    return rounded
+
+
+_CORNERS, _ACCELERATION = ("leave", "reach"), ("accel", "decel")
 _LENGTHS, _ANGLES = POSE[:3], POSE[3:]
 _FLANGE = "flange[0]"
 
@@ -235,13 +290,17 @@ def _moves(steps: list[_Step]) -> ReadMoves:
     joints, point = np.full((total, 6), np.nan), np.full((total, 6), np.nan)
     tools, lever = np.tile(np.eye(4), (total, 1, 1)), np.zeros(total)
     share, speed, deposit = np.full(total, np.nan), np.full(total, np.nan), np.zeros(total, dtype=bool)
+    stops, rounding, straight = np.zeros(total, dtype=bool), np.full(total, np.nan), np.zeros(total, dtype=bool)
     frame: Array | None = None
     row = 0
     for step in steps:
         rows = slice(row, row + len(step.point))
         row = rows.stop
         app, (target, tool, descriptor) = step.app, step.names
-        deposit[rows] = step.deposit
+        deposit[rows], straight[rows] = step.deposit, step.linear
+        rounding[rows] = _corners(values, app, descriptor, step)
+        stops[rows] = rounding[rows] == 0.0
+        stops[rows.stop - 1] |= step.stops
         percent = values(app, descriptor, _SHARE)[step.speed, 0]
         most, most_turn = values(app, descriptor, _SPEEDS)[step.speed].T
         if step.linear:
@@ -264,7 +323,7 @@ def _moves(steps: list[_Step]) -> ReadMoves:
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
         np.radians(joints) if np.isfinite(share).any() else None, float(np.radians(values.digits(AXES))),
-        np.full(total, np.nan), deposit,
+        np.full(total, np.nan), deposit, straight, stops, (), rounding=np.where(stops, np.nan, rounding),
         position=point[:, :3] if linear else None, rotation=rotations(point[:, 3:]) if linear else None,
         position_digits=values.digits(_LENGTHS),
         rotation_digits=float(np.radians(values.digits(_ANGLES))),

@@ -146,6 +146,7 @@ def _random_program(seed, motion="joint", endless=True, **options):
                 "position": rng.uniform(-2000, 2000, (count, 3)),
                 "rotation": turned,
                 "configuration": tuple(words),
+                "interpolation": "linear" if kind == "deposit" else "joint",
             }
         return Moves(kind, layer, bead, joints, duration, rng.uniform(0.5, 150.0, count), **extra)
 

@@ -67,7 +67,7 @@ GOLDEN_TABLE = program(
           # Rz(90) Rx(180), and Ry(90) where only R - W counts
           rotation=np.array([[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
                              [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]]),
-          configuration=(UPRIGHT, ("front", "down", "noflip"))),
+          configuration=(UPRIGHT, ("front", "down", "noflip")), interpolation="linear"),
     DepositOff(),
     name="TABLE", motion="cartesian", setup="tool-on-robot", user_frame=2, tool_frame=3, deposit_output=7, blend=50,
 )  # fmt: skip

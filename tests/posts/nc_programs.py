@@ -67,6 +67,7 @@ def random_program(seed, motion="joint", endless=False, names=NAMES, wire=False,
             direction[rng.random(count) < 0.2] = [0.0, 0.0, 1.0]
             direction /= np.linalg.norm(direction, axis=1, keepdims=True)
             extra = {"position": rng.uniform(-400, 400, (count, 3)), "direction": direction}
+            extra["interpolation"] = "linear" if kind == "deposit" else "joint"
         return Moves(kind, layer, bead, joints, duration, rng.uniform(0.5, 150.0, count), **extra)
 
     for layer in range(int(rng.integers(1, 5))):

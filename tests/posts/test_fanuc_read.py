@@ -28,7 +28,7 @@ DEFAULT_GROUP	= 1,*,*,*,*;
    5:   ;
    6:  DO[5:wire]=ON ;
    7:  WAIT    .50(sec) ;
-   8:J P[1] 250msec CNT100 ACC80    ;
+   8:J P[1] 250msec CNT100    ;
    9:J P[2] 2.5sec CNT0    ;
   10:  CALL SUB    ;
   11:J P[1] .5sec FINE    ;
@@ -79,6 +79,12 @@ def test_a_listing_by_hand():
     assert np.degrees(read.joints) == pytest.approx(np.array([home, first, home, other, first], float), abs=1e-12)
     assert read.duration == pytest.approx([np.nan, 0.25, 2.5, 0.001, 0.5], nan_ok=True)
     assert read.deposit.tolist() == [False, True, True, False, False]
+    assert not read.linear.any() and read.stops.tolist() == [True, False, False, True, True]
+    assert read.blend[1:3].tolist() == [100.0, 0.0] and read.share[0] == 0.2
+    assert set(read.user_frame.tolist()) == {3.0} and set(read.tool_frame.tolist()) == {4.0}
+    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+        (1, "on", 5.0, "DO"), (1, "wait", 0.5), (3, "off", 5.0, "DO"), (3, "input", 3.0), (5, "call", "ELSEWHERE"),
+    ]
     assert np.degrees(read.digits) == pytest.approx(0.005)  # two decimals in one of the files
     assert np.isnan(read.speed).all() and read.position is None
 
@@ -123,7 +129,9 @@ def test_random_programs_come_back(random_program, seed, motion):
 
 @pytest.mark.parametrize(("pattern", "replacement", "where", "why"), [
     (r"  WAIT    .50\(sec\)", "  OVERRIDE=20%", "HAND.LS line 14", "'OVERRIDE=20%'"),
-    (r"CNT100 ACC80", "CNT100 Offset,PR[1]", "HAND.LS line 15", "Offset"),
+    (r"CNT100 ", "CNT100 Offset,PR[1] ", "HAND.LS line 15", "Offset"),
+    (r"CNT100 ", "CNT100 ACC150 ", "HAND.LS line 15", "ACC150"),
+    (r"CNT100 ", "CNT101 ", "HAND.LS line 15", "CNT101"),
     (r"CNT0 ", "CNT0 RTCP", "HAND.LS line 16", "RTCP"),
     (r"J P\[1\] 250msec", "C P[1]", "HAND.LS line 15", "'C P[1]"),
     (r"J P\[1\] 250msec", "J PR[1] 250msec", "HAND.LS line 15", "PR[1]"),

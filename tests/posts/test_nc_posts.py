@@ -54,7 +54,7 @@ def tip_bead(layer):
     return [
         LayerStart(layer), moves("rapid", axes[:1], layer=layer), DepositOn(0.5),
         moves("deposit", axes, layer=layer, speed=5.0, direction=directions,
-              position=[[10.0, 0.0, 1.0], [11.0, 0.25, 1.0 + layer], [-12.5, 0.0, 1.0]]),
+              position=[[10.0, 0.0, 1.0], [11.0, 0.25, 1.0 + layer], [-12.5, 0.0, 1.0]], interpolation="linear"),
         DepositOff(),
     ]  # fmt: skip
 

@@ -15,7 +15,7 @@ N30 CLEANING
 N40 M30
 """
 PART = """N5 G500
-N10 G642
+N10 SOFT FFWON G642
 N15 FGROUP(X,Y,Z)
 N20 G93 G1 x10 Y0.25 Z5 a-12.5 C=45 F6 ; first
 N30 G94
@@ -87,6 +87,13 @@ def test_a_sinumerik_program_by_hand():
     np.testing.assert_allclose(read.direction[2], [0.0, 0.6, 0.8])
     np.testing.assert_allclose(read.duration, [10.0, 5.0, np.nan, 0.5])  # 5 mm at 60 mm/min
     np.testing.assert_allclose(read.speed, [np.nan, np.nan, 5.0, np.nan])
+    assert read.linear.tolist() == [False, False, True, False] and read.stops.tolist() == [False, True, False, True]
+    assert read.user_frame.tolist()[2] == 1.0 and np.isnan(read.user_frame[[0, 1, 3]]).all() and read.rounding is None
+    assert set(read.tool_frame.tolist()) == {2.0}
+    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+        (2, "on", 2.0, "$A_OUT[2]=1"), (2, "wait", 0.5), (3, "off", 2.0, "$A_OUT[2]=0"), (4, "input", 4.0),
+        (4, "call", "CLEANING"),
+    ]  # fmt: skip
     assert read.deposit.tolist() == [False, False, True, False] and read.shorter_way.tolist() == [False] * 4 + [True]
     assert (read.linear_digits, np.degrees(read.digits), read.direction_digits) == pytest.approx((0.5, 0.5, 0.5))
 
@@ -102,6 +109,13 @@ def test_a_linuxcnc_program_by_hand():
     np.testing.assert_allclose(read.duration, [10.0, 5.0, 30.0, np.nan, 0.5])
     np.testing.assert_allclose(read.speed, [np.nan] * 3 + [5.0, np.nan])
     assert read.deposit.tolist() == [False] * 3 + [True, False] and read.direction is None
+    assert read.linear.tolist() == [False] * 3 + [True, False]
+    # what changes the kinematics waits for the end of the motion; so does the end
+    assert read.stops.tolist() == [False, False, True, True, False] and set(read.rounding[:2].tolist()) == {np.inf}
+    assert read.user_frame[3] == 1.0 and read.tool_frame[:4].tolist() == [2.0] * 4 and np.isnan(read.tool_frame[4])
+    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+        (3, "on", 4.0, "M62 P3"), (4, "off", 4.0, "M63 P3"), (4, "call", "CLEANING"), (4, "input", 3.0), (4, "wait", 1.0),
+    ]
 
 
 @pytest.mark.parametrize(("old", "new", "where", "why"), [

@@ -85,7 +85,8 @@ def gauge_bead(layer):
         LayerStart(layer),
         moves("rapid", [at[0], at[0]], layer=layer, position=places[:2], rotation=TURNED[:2]),
         DepositOn(),
-        moves("deposit", at, [0.3, 0.4, 0.5], layer=layer, speed=5.0, position=places, rotation=TURNED),
+        moves("deposit", at, [0.3, 0.4, 0.5], layer=layer, speed=5.0, position=places, rotation=TURNED,
+              interpolation="linear"),
         DepositOff(),
     ]
 

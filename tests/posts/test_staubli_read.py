@@ -52,7 +52,7 @@ DATA = f"""{HEAD}<Database {XSI} xmlns="{SPACE}Data/2">
       <Value key="1" accel="100" vel="100" decel="100" tmax="6" rmax="99999" blend="off" leave="0" reach="0" />
     </Data>
     <Data name="mTravel" access="private" xsi:type="array" type="mdesc" size="1">
-      <Value key="0" accel="50" vel="20" decel="50" tmax="99999" rmax="99999" blend="off" leave="50" reach="50" />
+      <Value key="0" accel="100" vel="20" decel="100" tmax="99999" rmax="99999" blend="off" leave="50" reach="50" />
     </Data>
     <Data name="pPath" access="private" xsi:type="array" type="pointRx" size="2">
       <Value key="0" x="10" y="0.25" z="5" rx="180" ry="0" rz="0" fatherId="fPart[0]" />
@@ -94,10 +94,14 @@ LAYER = """  doExtrude=true
   waitEndMove()"""
 
 
+STOP = """  resetMotion()
+  doExtrude=false"""
+
+
 def by_hand(old="", new="", **more):
     files = {
         "hand/hand.pjx": PROJECT, "hand/hand.dtx": DATA, "hand/start.pgx": code("start", START),
-        "hand/layer_0001.pgx": code("layer_0001", LAYER), "hand/stop.pgx": code("stop", "  resetMotion()"),
+        "hand/layer_0001.pgx": code("layer_0001", LAYER), "hand/stop.pgx": code("stop", STOP),
     }  # fmt: skip
     assert not old or sum(old in text for text in files.values())
     return {file: text.replace(old, new).encode() for file, text in {**files, **more}.items()}
@@ -120,7 +124,12 @@ def test_an_application_by_hand():
         read.tool[1, :3, :3], Rotation.from_euler("XYZ", [5, 6, 7], degrees=True).as_matrix(), atol=1e-15
     )
     assert read.frame[:3, 3].tolist() == [600, 0, -200] and read.tool[2, :3, 3].tolist() == [1, 2, 250]
-    assert read.deposit.tolist() == [False, True, True, False]
+    assert read.deposit.tolist() == read.linear.tolist() == [False, True, True, False]
+    assert read.stops.tolist() == [True, False, True, True] and read.rounding[1] == 0.5
+    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+        (1, "on", 1.0, "doExtrude"), (3, "off", 1.0, "doExtrude"), (3, "input", 5.0), (3, "call", "GRIPPER"),
+        (3, "wait", 2.0),
+    ]  # fmt: skip
     np.testing.assert_array_equal(read.speed, [np.nan, 30.5, 6.0, np.nan])
     np.testing.assert_array_equal(read.share, [0.2, np.nan, np.nan, 0.2])
     assert np.degrees(read.digits) == pytest.approx(0.005) and read.position_digits == pytest.approx(0.005)
@@ -203,7 +212,7 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ("wait(diReady", "wait(doExtrude", "hand/start.pgx line 7", "no digital input"),
     ('vel="20"', 'vel="0"', "hand/start.pgx line 3", "speed"),
     ('vel="20"', 'vel="120"', "hand/start.pgx line 3", "speed"),
-    ('vel="20" decel="50" tmax="99999"', 'vel="20" decel="50" tmax="250"', "hand/start.pgx line 3", "speed"),
+    ('vel="20" decel="100" tmax="99999"', 'vel="20" decel="100" tmax="250"', "hand/start.pgx line 3", "speed"),
     ('vel="100" decel="100" tmax="6"', 'vel="50" decel="100" tmax="6"', "hand/layer_0001.pgx line 3", "speed"),
     ('tmax="6" rmax="99999"', 'tmax="6" rmax="60"', "hand/layer_0001.pgx line 3", "speed"),
     ('fatherId="world[0]"', 'fatherId="fOther[0]"', "hand/layer_0001.pgx line 3", "stands in the world"),

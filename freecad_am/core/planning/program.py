@@ -8,19 +8,26 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import motion as motions
 from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
 from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell
 from ..kinematics.machine import Machine
-from ..motion import APPROACH, RETRACT, Motion
+from ..motion import Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
 from ..program import (
+    APPROACH,
     DEPOSIT,
+    FIRST_TIME,
+    JOINT_MOVE,
     LINEAR,
+    LINEAR_MOVE,
     RAPID,
+    RETRACT,
     ROTARY,
+    TRAVEL,
     Block,
     Call,
     DepositOff,
@@ -39,8 +46,8 @@ from .joint_path import BeadPath
 
 Array = NDArray[np.float64]
 
-# the robot comes to its first point from wherever it stands, s: slow enough from anywhere
-FIRST_APPROACH = 10.0
+# what the rows of a motion are for, by its numbers
+ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
 
 def build(
@@ -125,7 +132,7 @@ def rows_from(motion: Motion, start: StartParameters) -> NDArray[np.bool_]:
         )
     first = int(np.flatnonzero(run)[0])
     ahead = np.arange(len(motion)) < first + int(motion.deposit[first:].argmax())
-    run[ahead & (motion.role == RETRACT)] = False
+    run[ahead & (motion.role == motions.RETRACT)] = False
     return np.asarray(run, dtype=np.bool_)
 
 
@@ -138,7 +145,7 @@ def _blocks(
         place = int(motion.layer[rows[-1]]), int(motion.bead[rows[-1]])
         if process.cooling.below is None or place not in returns:
             return [_moves(motion, cell, rows, RAPID, parameters, arriving)]
-        onto = motion.role[rows] == APPROACH
+        onto = motion.role[rows] == motions.APPROACH
         if not onto.any():
             onto[-1] = True
         above = [_moves(motion, cell, rows[~onto], RAPID, parameters, arriving)] if not onto.all() else []
@@ -167,7 +174,7 @@ def _blocks(
         elif here == layer:
             blocks += approach(rows)
         else:
-            retract = motion.role[rows] == RETRACT
+            retract = motion.role[rows] == motions.RETRACT
             if retract.any():
                 blocks.append(_moves(motion, cell, rows[retract], RAPID, parameters))
             blocks += _between(process.between_layers, waits[here] if len(waits) else 0.0)
@@ -204,7 +211,7 @@ def _moves(
 ) -> Moves:
     duration = motion.duration[rows].copy()
     if arriving:
-        duration[0] = FIRST_APPROACH
+        duration[0] = FIRST_TIME
     position = rotation = direction = None
     configuration = None
     if parameters.motion == "cartesian" and cell.setup == ROTARY_TABLE:
@@ -225,6 +232,8 @@ def _moves(
         kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
         joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
         position=position, rotation=rotation, configuration=configuration, direction=direction, wire=wire if told else None,
+        interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
+        stops=motion.stops[rows], role=tuple(ROLES[role] for role in motion.role[rows].tolist()),
     )
 
 

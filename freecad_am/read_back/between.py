@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The way between two points: beads against their planned lines, rapids against the way that was looked at."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.geometry import frames
+from ..core.kinematics.cell import Cell
+from .planned import Planned
+from .text_path import Joints, Path, tip_bounds
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# of the way between two points, where the path is looked at
+BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
+# mm: near a singularity digits may explain more than the clearance of rapids has to spare; then the text is none
+MOST_MM = 0.2
+
+
+def rapids_between(cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask) -> tuple[float, Mask]:
+    """Largest distance of the tip from where it was looked at on rapids, and the moves (n,) that leave that way by more than
+    the digits explain: as the text says them, the joints straight or (linear) the tip."""
+    off, ends = np.zeros(len(planned.deposit), dtype=bool), planned.rapids
+    if not len(ends):
+        return 0.0, off
+    looked_at = _between(planned.joints, ends)
+    tip, tool = _tips(cell, looked_at)
+    driven_tip, driven_tool = _tips(cell, _between(text.serial, ends))
+    straight_tip, straight_tool = _between(path.position, ends), _between(path.tool, ends)
+    along = np.repeat(linear[ends], len(BETWEEN))[:, None]
+    apart = np.linalg.norm(np.where(along, straight_tip, driven_tip) - tip, axis=1)
+    tilted = np.linalg.norm(np.where(along, straight_tool, driven_tool) - tool, axis=1)
+    bound, tool_bound = tip_bounds(cell, looked_at, _between(text.reach, ends))
+    wrong = ~((apart <= np.minimum(bound, MOST_MM)) & (tilted <= tool_bound))
+    off[ends] = wrong.reshape(len(ends), -1).any(axis=1)
+    return float(apart.max()), off
+
+
+def _between(rows: Array, ends: NDArray[np.intp]) -> Array:
+    """(len(ends) * len(BETWEEN), ...) what lies on the straight way to the rows `ends` from those before."""
+    step = (rows[ends] - rows[ends - 1])[:, None]
+    between: Array = (rows[ends - 1, None] + BETWEEN[:, None] * step).reshape(-1, rows.shape[1])
+    return between
+
+
+def _tips(cell: Cell, serial: Array) -> tuple[Array, Array]:
+    return cell.tip_in_part(cell.machine.chain.forward(serial))
+
+
+def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_error: float) -> tuple[float, Mask]:
+    """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off."""
+    ends = planned.ends
+    if not len(ends):
+        return 0.0, np.zeros(len(shown), dtype=bool)
+    joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
+    flange = cell.machine.chain.forward(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
+    return off_segments(planned, ends, cell.tip_in_part(flange)[0], path, chord_error)
+
+
+def off_segments(
+    planned: Planned, ends: NDArray[np.intp], tips: Array, path: Path, chord_error: float
+) -> tuple[float, Mask]:
+    """Largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments that end at the rows `ends`,
+    and the moves (n,) that leave theirs by more than the chord error and the digits of their two points."""
+    off = np.zeros(len(planned.deposit), dtype=bool)
+    tips = tips.reshape(len(ends), len(BETWEEN), 3)
+    start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
+    away = tips - start[:, None]
+    squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
+    share = np.clip(np.einsum("nki,ni->nk", away, step) / squared[:, None], 0.0, 1.0)
+    distance = np.linalg.norm(away - share[..., None] * step[:, None], axis=2).max(axis=1)
+    off[ends] = ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
+    return float(distance.max()), off
+
+
+def straight(start: Array, end: Array) -> Array:
+    """(n, len(BETWEEN), 4, 4) poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
+    turn = np.swapaxes(start[:, :3, :3], 1, 2) @ end[:, :3, :3]
+    axis = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    sine = np.linalg.norm(axis, axis=1)
+    angle = np.arctan2(sine, 0.5 * (np.trace(turn, axis1=1, axis2=2) - 1.0))
+    axis = np.where(sine[:, None] > 1e-12, axis / np.maximum(sine, 1e-12)[:, None], [0.0, 0.0, 1.0])
+    spun = start[:, None, :3, :3] @ frames.rotation_about(axis[:, None], BETWEEN * angle[:, None])
+    return frames.pose(spun, start[:, None, :3, 3] + BETWEEN[:, None] * (end - start)[:, None, :3, 3])

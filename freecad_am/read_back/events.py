@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What happens between the moves of a text - deposit, waits, inputs, calls, layers - against what was planned, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..core.issues import ERROR, Issue
+from ..core.kinematics.cell import ROTARY_TABLE
+from ..core.program import (
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    Event,
+    LayerStart,
+    Moves,
+    Program,
+    ReadMoves,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from .planned import COMPUTED_AXIS, Planned
+
+# code and message of what is off, and the kinds of events that it is about
+_FAMILIES = (
+    ("VERIFY_DEPOSIT", "the deposit is switched otherwise than planned", ("on", "off")),
+    ("VERIFY_WAIT", "it is waited otherwise than planned", ("wait", "input")),
+    ("VERIFY_COOLING", "a temperature is waited for otherwise", ("below",)),
+    ("VERIFY_CALL", "other programs are called than planned", ("call",)),
+    ("VERIFY_LAYER", "layers begin at other places than planned", ("layer",)),
+)
+
+
+def event_issues(planned: Planned, program: Program, read: ReadMoves) -> list[Issue]:
+    """The deposit in each move, the speed of its wire, and all events."""
+    wanted = planned.deposit & (not program.dry_run)
+    wire = np.where(wanted, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan)
+    told = np.where(read.deposit, np.nan if read.wire is None else read.wire, np.nan)
+    wrong = (np.abs(told - wire) > read.wire_digits + COMPUTED_AXIS * wire) | (np.isnan(told) != np.isnan(wire))
+    if read.wire_output not in (None, program.nc.wire_output):
+        wrong |= wanted
+    issues = planned.issue("VERIFY_DEPOSIT", read.deposit != wanted, "the deposit is switched otherwise than planned")
+    issues += planned.issue("VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one")
+    known = {issue.code for issue in issues}
+    found, due = _joined(read.events), _joined(_due(program))
+    for code, message, kinds in _FAMILIES:
+        if code not in known:
+            issues += _compared(planned, program, code, message, _of(found, kinds), _of(due, kinds))
+    if not issues and [(event.row, event.kind) for event in found] != [(event.row, event.kind) for event in due]:
+        issues.append(Issue(ERROR, "VERIFY_ORDER", "what happens between moves is in another order than planned"))
+    return issues
+
+
+def _compared(
+    planned: Planned, program: Program, code: str, message: str, found: Sequence[Event], due: Sequence[Event]
+) -> list[Issue]:
+    """An error where the events of a text are not those that are due."""
+    alike = [_alike(program, one, other) for one, other in zip(found, due)]
+    off = alike.count(False) + abs(len(found) - len(due))
+    if not off:
+        return []
+    first = alike.index(False) if False in alike else len(alike)
+    row = min((events[first].row for events in (found, due) if first < len(events)), default=0)
+    return [Issue(ERROR, code, f"{message}; {off} of {max(len(found), len(due))} events", *planned.place(row))]
+
+
+def _alike(program: Program, found: Event, due: Event) -> bool:
+    """Whether an event of a text is the one that is due."""
+    if (found.row, found.kind) != (due.row, due.kind):
+        return False
+    if due.kind in ("on", "off") and program.nc.deposit_on and program.setup == ROTARY_TABLE:
+        return found.value[1] == (program.nc.deposit_on if due.kind == "on" else program.nc.deposit_off).upper()
+    if due.kind in ("on", "off"):
+        return found.value[0] == due.value[0]
+    if due.kind == "call":
+        return found.value == due.value
+    *names, value = (float(part) for part in found.value)
+    *others, wanted = (float(part) for part in due.value)
+    # a wait that is shorter than the last digit is written as one of that
+    wanted = max(wanted, 2.0 * found.digits) if due.kind == "wait" else wanted
+    return names == others and abs(value - wanted) <= found.digits + 1e-9
+
+
+def _of(events: Sequence[Event], kinds: Sequence[str]) -> list[Event]:
+    return [event for event in events if event.kind in kinds]
+
+
+def _joined(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
+    """The events with waits one after the other as one, and none of no time."""
+    joined: list[Event] = []
+    for event in events:
+        last = joined[-1] if joined else None
+        if event.kind == "wait" and event.value == (0.0,):
+            continue
+        if last and (last.row, last.kind, event.kind) == (event.row, "wait", "wait"):
+            joined[-1] = Event(event.row, "wait", (float(last.value[0]) + float(event.value[0]),), event.digits)
+        else:
+            joined.append(event)
+    return joined
+
+
+def _due(program: Program) -> Iterator[Event]:
+    """What is planned to happen between the moves."""
+    row = 0
+    for block in program.blocks:
+        if isinstance(block, Moves):
+            row += len(block)
+            continue
+        for kind, *value in _happening(program, block):
+            yield Event(row, str(kind), tuple(value))
+
+
+def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else [("on", float(program.deposit_output)), ("wait", float(block.lead))]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [("wait", float(block.lead)), ("off", float(program.deposit_output))]
+    if isinstance(block, LayerStart):
+        return [("layer", float(block.layer))]
+    if isinstance(block, Wait):
+        return [("wait", float(block.seconds))]
+    if isinstance(block, WaitInput):
+        return [("input", float(block.number))]
+    if isinstance(block, WaitBelow):
+        return [("below", float(block.number), block.below)]
+    if isinstance(block, Call):
+        return [("call", block.program.upper())]
+    return []

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The planned rows that a text is compared with, and how a finding names its place."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import ERROR, Issue
+from ..core.motion import Motion
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# what rounding in the computation itself may amount to: mm, and of unit vectors
+COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
+
+
+class Planned:
+    """The rows of the motion that a controller moves to, with the finding of a place."""
+
+    def __init__(self, motion: Motion, rows: NDArray[np.intp]) -> None:
+        self.rows, self.motion = rows, motion
+        self.deposit, self.joints = motion.deposit[rows], motion.joints[rows]
+        self.position, self.tool = motion.position[rows], motion.tool[rows]
+        self.duration, self.speed = motion.duration[rows], motion.speed[rows]
+        self.stops = motion.stops[rows]
+        # moves that begin where another one ended: of beads, and of rapids
+        moved = np.arange(len(rows)) > 0
+        self.ends, self.rapids = np.flatnonzero(self.deposit & moved), np.flatnonzero(~self.deposit & moved)
+
+    def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
+        """An error at the first wrong move, none when there is none; the message says how many there are."""
+        if not wrong.any():
+            return []
+        count, first = int(wrong.sum()), int(np.argmax(wrong))
+        return [Issue(ERROR, code, f"{message}; {count} of {len(wrong)} moves", *self.place(first))]
+
+    def place(self, move: int) -> tuple[int, int, int]:
+        """Layer, bead and point of a move; of the last one for what follows it."""
+        row = self.rows[min(move, len(self.rows) - 1)]
+        layer, bead, point = (int(column[row]) for column in (self.motion.layer, self.motion.bead, self.motion.point))
+        return layer, bead, point

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Points, axis values, limits and solvers: whether a text leads where it should."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import NOTE, Issue
+from ..core.kinematics.cell import Cell
+from ..core.program import ReadMoves
+from ..kdl import chain as kdl_chain
+from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned
+from .text_path import Joints, Path, digits, told_by_position
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, endless: Mask) -> list[Issue]:
+    """Joint values against the planned ones: the tip does not show where the rotation about the tool is."""
+    assert read.joints is not None
+    apart = read.joints - cell.machine.to_controller(planned.joints)
+    apart[:, endless] -= 2.0 * np.pi * np.rint(apart[:, endless] / (2.0 * np.pi))
+    told = ~np.isnan(read.joints) | ~told_by_position(cell, read.joints)
+    apart[~told] = 0.0
+    computed = np.where(cell.machine.chain.sliding, COMPUTED_MM, COMPUTED_AXIS)
+    wrong = ~(np.abs(apart) <= digits(cell, read) + computed)
+    found = []
+    for axis in np.flatnonzero(wrong.any(axis=0)):
+        most = np.abs(apart[:, axis]).max() / cell.machine.unit_values[axis]
+        message = f"axis {cell.machine.axes[axis]} is up to {most:.3g} {cell.machine.units[axis]} from the planned value"
+        found += planned.issue("VERIFY_JOINT", wrong[:, axis], message)
+    return found
+
+
+def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
+    """Whether the joints that a text asks for are within the limits of the cell, but for its digits."""
+    limits = cell.limits
+    over = -limits.margin(text.serial) - np.hstack([text.reach, text.reach @ np.abs(limits.coefficients).T])
+    row, label = np.unravel_index(int(np.argmax(over)), over.shape)
+    if over[row, label] <= COMPUTED_AXIS:
+        return []
+    unit = cell.machine.units[label] if label < limits.axes else "deg"
+    most = over[row, label] / (cell.machine.unit_values[label] if label < limits.axes else np.radians(1.0))
+    message = f"the text takes {limits.labels[label]} up to {most:.3g} {unit} beyond its limit"
+    return planned.issue("VERIFY_LIMIT", np.asarray((over > COMPUTED_AXIS).any(axis=1)), message)
+
+
+def point_issues(planned: Planned, path: Path) -> list[Issue]:
+    off = np.linalg.norm(path.position - planned.position, axis=1)
+    tilted = np.linalg.norm(path.tool - planned.tool, axis=1)
+    message = f"the text leads up to {off.max():.3g} mm away from the planned point, more than its digits explain"
+    found = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
+    message = f"the tool is tilted by up to {np.degrees(tilted.max()):.3g} deg, more than the digits explain"
+    return found + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
+
+
+def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) -> tuple[list[Issue], tuple[str, ...]]:
+    """The same joint values through PyKDL, where it is installed."""
+    if not kdl_chain.available():
+        message = "PyKDL is not installed; the program was checked by one solver alone"
+        return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
+    other = kdl_chain.KdlArm(cell.machine).forward(cell.machine.from_controller(shown))
+    apart = np.linalg.norm(other[:, :3, 3] - flange[:, :3, 3], axis=1) > COMPUTED_MM
+    turned = np.abs(other[:, :3, :3] - flange[:, :3, :3]).max(axis=(1, 2)) > COMPUTED_AXIS
+    issues = planned.issue("VERIFY_SOLVERS", apart | turned, "PyKDL and the joint-frame chain disagree")
+    return issues, ("chain", "pykdl")

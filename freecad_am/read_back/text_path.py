@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where a text takes the tip, and the joints it asks for, with the error its digits allow.
+
+From its joint values by the joint-frame chain - not the closed form that planned them - or from its positions, for which
+joint values are solved by the chain's Jacobian beside the planned ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.geometry import frames
+from ..core.kinematics.cell import ROTARY_TABLE, Cell
+from ..core.program import Program, ReadMoves
+from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Path:
+    """Where the text takes the tip, in part coordinates, with the error its digits allow. Rows are moves."""
+
+    position: Array
+    tool: Array
+    bound: Array
+    tool_bound: Array
+
+
+@dataclass(frozen=True)
+class Joints:
+    """The serial joints (n, axes) that a text asks for, rad and mm, and by how much each may be off (n, axes)."""
+
+    serial: Array
+    reach: Array
+
+
+def told_by_position(cell: Cell, joints: Array) -> Mask:
+    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: all in a row,
+    and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
+    slides = cell.machine.chain.sliding & (cell.setup == ROTARY_TABLE)
+    return np.asarray(slides | np.isnan(joints).all(axis=1, keepdims=True), dtype=np.bool_)
+
+
+def shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:
+    """(axes,) the axes that the controller takes the shorter way: those of robots that turn without end. Rotary axes of
+    machine tools count their turns, unless the text says otherwise."""
+    if cell.setup != ROTARY_TABLE:
+        return np.array(program.endless)
+    return np.array(program.endless) & (False if read.shorter_way is None else read.shorter_way)
+
+
+def digits(cell: Cell, read: ReadMoves) -> Array:
+    """(axes,) half of the last digit of each axis, rad and mm."""
+    return np.where(cell.machine.chain.sliding, read.linear_digits, read.digits)
+
+
+def joint_path(cell: Cell, shown: Array, half: Array) -> tuple[Path, Array]:
+    """The path of controller joint values (n, axes), each off by at most `half` (axes,), and the flange poses (n, 4, 4)."""
+    machine = cell.machine
+    serial = machine.from_controller(shown)
+    flange = machine.chain.forward(serial)
+    position, tool = cell.tip_in_part(flange)
+    bound, tool_bound = _bounds(cell, serial, machine.controller_matrix, np.broadcast_to(half, shown.shape))
+    return Path(position, tool, bound, tool_bound), flange
+
+
+def tip_bounds(cell: Cell, serial: Array, reach: Array) -> tuple[Array, Array]:
+    """(n,) mm and (n,) by how much tip and tool axis move at most where joints (n, axes) are off by `reach` (n, axes)."""
+    return _bounds(cell, serial, np.eye(serial.shape[1]), reach)
+
+
+def _bounds(cell: Cell, serial: Array, matrix: Array, half: Array) -> tuple[Array, Array]:
+    """Bounds of tip and tool to first order where matrix @ joints are off by `half` (n, axes): the sum of the lengths of the
+    Jacobian's columns; what the second order adds is at most that times the sum of the angles."""
+    chain = cell.machine.chain
+    at = chain.frames(serial)
+    to_serial = np.linalg.inv(matrix)
+    slides = chain.sliding[:, None]
+    lever = cell.deposition_point(at.flange)[:, None, :] - at.origins
+    linear = np.where(slides, at.directions, np.cross(at.directions, lever))
+    linear, angular = (
+        np.einsum("nki,kj->nji", rows, to_serial) for rows in (linear, np.where(slides, 0.0, at.directions))
+    )
+    more = 1.0 + (half @ np.abs(to_serial).T)[:, ~chain.sliding].sum(axis=1)
+    bound = more * (np.linalg.norm(linear, axis=2) * half).sum(axis=1) + COMPUTED_MM
+    return bound, more * (np.linalg.norm(angular, axis=2) * half).sum(axis=1) + COMPUTED_AXIS
+
+
+def text_joints(cell: Cell, planned: Planned, shown: Array | None, half: Array, path: Path, asked: Array | None) -> Joints:
+    """The joints that a text asks for: its values `shown` (n, axes), as the controller counts them, off by `half` (axes,).
+    Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from the planned ones.
+
+    asked: (n, 4, 4) flange poses of the text, None where it tells of tip and direction alone.
+    """
+    machine = cell.machine
+    given = machine.to_controller(planned.joints)
+    shown = np.full_like(given, np.nan) if shown is None else shown
+    unknown = np.isnan(shown)
+    serial = machine.from_controller(np.where(unknown, given, shown))
+    reach = np.tile(np.abs(np.linalg.inv(machine.controller_matrix)) @ half, (len(serial), 1))
+    rows = np.flatnonzero(unknown.any(axis=1))
+    if len(rows):
+        columns, away, about = _to_tip(cell, serial[rows], path, rows) if asked is None else _to_flange(
+            cell, serial[rows], path, asked[rows], rows)
+        inverse = np.linalg.pinv(columns * unknown[rows, None, :], rcond=1e-9)
+        serial[rows] += np.einsum("nij,nj->ni", inverse, away)
+        solved = np.einsum("nij,nj->ni", np.abs(inverse), about)
+        reach[rows] = np.where(unknown[rows], solved, reach[rows])
+    return Joints(serial, reach)
+
+
+# mm that a radian counts as where positions and directions are brought together
+_LEVER = 300.0
+
+
+def _to_flange(cell: Cell, serial: Array, path: Path, asked: Array, rows: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+    """Of the flange: how joints move it (n, 6, axes), how far it is from where it is asked to be (n, 6), and by how much
+    that may be off (n, 6); mm, and radians times the lever."""
+    at = cell.machine.chain.frames(serial)
+    slides = cell.machine.chain.sliding[:, None]
+    place = at.flange[:, :3, 3]
+    moved = np.where(slides, at.directions, np.cross(at.directions, place[:, None, :] - at.origins))
+    turned = np.where(slides, 0.0, at.directions) * _LEVER
+    turn = asked[:, :3, :3] @ np.swapaxes(at.flange[:, :3, :3], 1, 2)
+    # the angles are those of digits: their sines are as good
+    about = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)
+    away = np.hstack([asked[:, :3, 3] - place, about * _LEVER])
+    arm = np.linalg.norm(cell.deposition_point(at.flange) - place, axis=1)
+    off = np.stack([path.bound[rows] + arm * path.tool_bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3, axis=1)
+    return np.swapaxes(np.concatenate([moved, turned], axis=2), 1, 2), away, off
+
+
+def _to_tip(cell: Cell, serial: Array, path: Path, rows: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+    """The same of the tip and its direction in part coordinates, where the part is what the chain moves."""
+    at = cell.machine.chain.frames(serial)
+    slides = cell.machine.chain.sliding[:, None]
+    tip, tool = cell.tip_in_part(at.flange)
+    lever = cell.deposition_point(at.flange)[:, None, :] - at.origins
+    moved = np.where(slides, at.directions, np.cross(at.directions, lever))
+    turned = np.cross(np.where(slides, 0.0, at.directions), cell.station[:3, 2]) * _LEVER
+    into = cell.mount[:3, :3] @ np.swapaxes((at.flange @ cell.carried)[:, :3, :3], 1, 2)
+    columns = -np.concatenate([moved @ np.swapaxes(into, 1, 2), turned @ np.swapaxes(into, 1, 2)], axis=2)
+    away = np.hstack([path.position[rows] - tip, (path.tool[rows] - tool) * _LEVER])
+    off = np.stack([path.bound[rows]] * 3 + [path.tool_bound[rows] * _LEVER] * 3, axis=1)
+    return np.swapaxes(columns, 1, 2), away, off
+
+
+def text_tips(cell: Cell, program: Program, read: ReadMoves) -> Path:
+    """Tips and tool axes of a text in part coordinates, by its positions and its directions, or else its rotary axes; of
+    the rows it tells in axes, by these."""
+    assert read.position is not None and program.carried is not None
+    in_part = cell.mount @ frames.inverse(cell.carried) @ frames.bryant(program.carried)
+    position = read.position @ in_part[:3, :3].T + in_part[:3, 3]
+    bound = np.full(len(position), np.sqrt(3.0) * read.position_digits + COMPUTED_MM)
+    tool, tool_bound = np.full_like(position, np.nan), np.zeros(len(position))
+    if read.direction is not None:
+        length = np.linalg.norm(read.direction, axis=1)
+        tool = (read.direction / np.maximum(length, 1e-300)[:, None]) @ in_part[:3, :3].T
+        tool_bound = np.sqrt(3.0) * read.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
+    elif read.joints is not None:  # where the linear axes stand does not turn the tool
+        told, _ = joint_path(cell, np.where(cell.machine.chain.sliding, 0.0, read.joints), digits(cell, read))
+        tool, tool_bound = told.tool, told.tool_bound
+    if read.joints is not None:
+        rows = np.isfinite(read.joints).all(axis=1)  # told in axes
+        path, _ = joint_path(cell, read.joints[rows], digits(cell, read))
+        position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
+    return Path(position, tool, bound, tool_bound)
+
+
+def text_path(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array, Array]:
+    """The path of a text with positions, the flange poses and the tools (n, 4, 4) on the flange it asks for.
+
+    Texts without frames of their own count on the user frame that the program tells of. Every frame is off by half a
+    digit: its origin by at most sqrt(3) of it, its rotation by three angles; a frame that does not turn the target about
+    itself has no lever.
+    """
+    assert read.position is not None and read.rotation is not None
+    count, lever = 1, np.zeros(len(read.position))
+    user = cell.station if program.station is None else cell.machine.base @ frames.bryant(program.station)
+    seen, tools = user @ frames.pose(read.rotation, read.position), np.broadcast_to(cell.carried, (len(lever), 4, 4))
+    if read.frame is not None and read.tool is not None:
+        count, tools = 3, read.tool
+        seen = cell.machine.base @ read.frame @ frames.pose(read.rotation, read.position)
+        lever = np.linalg.norm(read.position, axis=1)
+        if read.lever is not None and read.lever.any():
+            count, lever = 4, lever + read.lever
+    asked = seen @ frames.inverse(tools)
+    bound = count * np.sqrt(3.0) * read.position_digits + 3.0 * read.rotation_digits * lever + COMPUTED_MM
+    tool_bound = np.full(len(bound), 3.0 * count * read.rotation_digits + COMPUTED_AXIS)
+    position, tool = cell.tip_in_part(asked)
+    if read.joints is not None:
+        rows = np.isfinite(read.joints).all(axis=1)
+        path, asked[rows] = joint_path(cell, read.joints[rows], digits(cell, read))
+        position[rows], tool[rows], bound[rows], tool_bound[rows] = path.position, path.tool, path.bound, path.tool_bound
+    return Path(position, tool, bound, tool_bound), asked, tools

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How a text gets from point to point: what runs straight, where it stops, how far it rounds corners, in which frame, and in
+which configuration of the arm; against how the program was planned."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import ERROR, Issue
+from ..core.kinematics import opw
+from ..core.kinematics.cell import ROTARY_TABLE, Cell
+from ..core.program import LINEAR_MOVE, Configuration, Program, ReadMoves
+from .planned import COMPUTED_AXIS, Planned
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# mm by which a distance that a text rounds to thousandths may be off
+THOUSANDTH = 0.0011
+# rad: where an axis stands this near to half a turn, either number of turns is right
+HALF_TURN = np.radians(0.001)
+
+
+def way_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> list[Issue]:
+    """VERIFY_INTERPOLATION, VERIFY_BLEND, VERIFY_FRAME, VERIFY_CONFIGURATION."""
+    linear = np.repeat([run.interpolation == LINEAR_MOVE for run in program.moves], [len(run) for run in program.moves])
+    return [
+        *planned.issue(
+            "VERIFY_INTERPOLATION", read.linear != linear,
+            "the text moves straight in space where straight in the joints was planned, or the other way",
+        ),
+        *planned.issue(
+            "VERIFY_BLEND", _rounded_otherwise(planned, program, read),
+            "the text stops, or rounds the corner, otherwise than planned",
+        ),
+        *_frame_issues(cell, planned, program, read, linear),
+        *_configuration_issues(cell, planned, program, read.configuration),
+    ]
+
+
+def _rounded_otherwise(planned: Planned, program: Program, read: ReadMoves) -> Mask:
+    """(n,) moves that do not stop where they should, or pass through where they should not, or by another rounding."""
+    if read.blend is not None:
+        return np.asarray((read.stops != planned.stops) | (~planned.stops & (read.blend != program.blend)))
+    if read.rounding is None:
+        return np.asarray(read.stops != planned.stops)
+    if program.setup == ROTARY_TABLE:
+        off = np.abs(read.rounding - program.nc.tolerance) <= 1e-5
+        return np.asarray((read.stops != planned.stops) | (~planned.stops & ~off))
+    # a rounding of nothing is a stop
+    apart = np.abs(np.where(read.stops, 0.0, read.rounding) - _share_of_shortest(planned, program.blend))
+    return np.where(planned.stops, ~read.stops, ~(apart <= THOUSANDTH))
+
+
+def _share_of_shortest(planned: Planned, blend: float) -> Array:
+    """(n,) mm: the blend in percent of half the shortest move of each bead, never more than 100."""
+    starts = np.flatnonzero(np.diff(planned.deposit, prepend=False))
+    length = np.where(planned.deposit, planned.speed * planned.duration, np.inf)
+    if not len(starts):
+        return np.zeros(len(length))
+    beads = np.repeat(np.minimum.reduceat(length, starts), np.diff([*starts, len(length)]))
+    shortest = np.concatenate([np.full(starts[0], np.inf), beads])
+    return np.minimum(0.005 * blend * np.where(np.isfinite(shortest), shortest, 0.0), 100.0)
+
+
+def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves, linear: Mask) -> list[Issue]:
+    wrong = np.zeros(len(linear), dtype=bool)
+    if read.user_frame is not None:
+        counted = linear if cell.setup == ROTARY_TABLE else np.ones(len(linear), dtype=bool)
+        wrong |= counted & (read.user_frame != program.user_frame)
+    if read.tool_frame is not None:
+        wrong |= read.tool_frame != program.tool_frame
+    message = f"the text selects another frame or tool than {program.user_frame} and {program.tool_frame}"
+    return planned.issue("VERIFY_FRAME", wrong, message)
+
+
+def _configuration_issues(cell: Cell, planned: Planned, program: Program, told: Configuration | None) -> list[Issue]:
+    """The configuration of the arm and the turns of the last axis at each position; the other two turns must be none."""
+    if told is None:
+        return []
+    arm = cell.machine.opw
+    if arm is None:
+        return [Issue(ERROR, "VERIFY_CONFIGURATION", "the text names configurations of an arm, and the machine has none")]
+    names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]
+    shown = cell.machine.to_controller(planned.joints)
+    last = np.where(np.array(program.endless)[-1], 0.0, shown[:, -1])
+    near, far = (np.rint((np.abs(last) + side) / (2.0 * np.pi)) * np.sign(last) for side in (-HALF_TURN, HALF_TURN))
+    turned = (told.turns[:, -1] != near) & (told.turns[:, -1] != far) | (told.turns[:, :-1] != 0.0).any(axis=1)
+    bent = np.abs(shown[:, 4]) > COMPUTED_AXIS
+    other = bent & (told.flip != (shown[:, 4] > 0.0)) | (told.up != (names[:, 1] == "up"))
+    other |= told.front != (names[:, 0] == "front")
+    message = "the text asks for another configuration of the arm, or other turns"
+    return planned.issue("VERIFY_CONFIGURATION", np.asarray(turned | other), message)
