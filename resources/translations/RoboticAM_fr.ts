@@ -3442,12 +3442,12 @@
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/points.py"/>
         <source>PyKDL and the joint-frame chain disagree</source>
         <translation>PyKDL et la chaîne des repères articulaires ne s&apos;accordent pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/points.py"/>
         <source>PyKDL is not installed; the program was checked by one solver alone</source>
         <translation>PyKDL n&apos;est pas installé ; le programme a été vérifié par un seul solveur</translation>
     </message>
@@ -5017,6 +5017,11 @@
         <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>a point of {0} asks for another configuration of the arm</source>
+        <translation>un point de {0} demande une autre configuration du bras</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
         <source>a position is moved to in another way than it is recorded</source>
         <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
@@ -5082,7 +5087,7 @@
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/events.py"/>
         <source>a temperature is waited for otherwise</source>
         <translation>une température est attendue autrement</translation>
     </message>
@@ -5342,7 +5347,7 @@
         <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de VAL 3 comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/points.py"/>
         <source>axis {0} is up to {1} {2} from the planned value</source>
         <translation>l&apos;axe {0} est jusqu&apos;à {1} {2} de la valeur planifiée</translation>
     </message>
@@ -6072,6 +6077,11 @@
         <translation>il déclare un type de document, ce qu&apos;aucune commande n&apos;écrit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>it does not end the motion and switch the deposit off</source>
+        <translation>il ne termine pas le mouvement et ne coupe pas le dépôt</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>it does not end with M17, or calls itself</source>
         <translation>il ne finit pas par M17, ou s&apos;appelle lui-même</translation>
@@ -6442,9 +6452,14 @@
         <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
-        <source>it is waited for an analogue input within a bead, or twice</source>
-        <translation>une entrée analogique est attendue au sein d&apos;un cordon, ou deux fois</translation>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
+        <source>it is waited for an analogue input within a bead</source>
+        <translation>une entrée analogique est attendue au milieu d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>it is waited otherwise than planned</source>
+        <translation>les attentes sont autres que planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wire.py"/>
@@ -6465,6 +6480,11 @@
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>it needs an extension that is not read ({0}); export plain triangles</source>
         <translation>il demande une extension qui n&apos;est pas lue ({0}) ; exportez des triangles simples</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>it rounds corners or accelerates in a way that is not understood</source>
+        <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/laid_flat.py"/>
@@ -6675,6 +6695,11 @@
         <location filename="../../freecad_am/gui/spin_map/board.py"/>
         <source>layers ({} of {} beads)</source>
         <translation>couches ({} de {} cordons)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>layers begin at other places than planned</source>
+        <translation>des couches commencent ailleurs que planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
@@ -7155,6 +7180,11 @@
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>opw gives</source>
         <translation>opw donne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>other programs are called than planned</source>
+        <translation>d&apos;autres programmes sont appelés que ceux planifiés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -7642,7 +7672,7 @@
         <translation>le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/events.py"/>
         <source>the deposit is switched otherwise than planned</source>
         <translation>le dépôt est commandé autrement que planifié</translation>
     </message>
@@ -7710,6 +7740,11 @@
         <location filename="../../freecad_am/brep/first_layer.py"/>
         <source>the first layer lies on the wall and on {0} within {1} mm</source>
         <translation>la première couche repose sur la paroi et sur {0} à {1} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/times.py"/>
+        <source>the first move, from wherever the machine stands, is not as slow as it has to be</source>
+        <translation>le premier mouvement, d&apos;où que parte la machine, n&apos;est pas aussi lent qu&apos;il le doit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -8077,12 +8112,12 @@
         <translation>les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/times.py"/>
         <source>the speed in the text is not the planned one</source>
         <translation>la vitesse dans le texte n&apos;est pas celle planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/events.py"/>
         <source>the speed of the wire in the text is not the planned one</source>
         <translation>la vitesse du fil dans le texte n&apos;est pas celle planifiée</translation>
     </message>
@@ -8097,27 +8132,57 @@
         <translation>le tableau a été mesuré à un dévidage de {0} mm/s, le travail a {1} mm/s ; réglez process.wire.feed, ou mesurez un tableau à ce dévidage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text asks for another configuration of the arm, or other turns</source>
+        <translation>le texte demande une autre configuration du bras, ou d&apos;autres tours</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/verify.py"/>
         <source>the text has {0} moves, planned are {1}</source>
         <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/points.py"/>
         <source>the text leads up to {0} mm away from the planned point, more than its digits explain</source>
         <translation>le texte mène jusqu&apos;à {0} mm du point planifié, plus que ses chiffres n&apos;expliquent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text moves straight in space where straight in the joints was planned, or the other way</source>
+        <translation>le texte va droit dans l&apos;espace où il était planifié d&apos;aller droit dans les articulations, ou l&apos;inverse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text names configurations of an arm, and the machine has none</source>
+        <translation>le texte nomme des configurations d&apos;un bras, et la machine n&apos;en a pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text selects another frame or tool than {0} and {1}</source>
+        <translation>le texte choisit un autre repère ou outil que {0} et {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text stops, or rounds the corner, otherwise than planned</source>
+        <translation>le texte s&apos;arrête, ou arrondit l&apos;angle, autrement que planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the text takes {0} up to {1} {2} beyond its limit</source>
+        <translation>le texte mène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/times.py"/>
         <source>the time in the text does not give the planned speed</source>
         <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/times.py"/>
         <source>the times of a bead do not add up to the planned one</source>
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/points.py"/>
         <source>the tool is tilted by up to {0} deg, more than the digits explain</source>
         <translation>l&apos;outil est incliné jusqu&apos;à {0} deg, plus que les chiffres n&apos;expliquent</translation>
     </message>
@@ -8195,6 +8260,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>the wall to deposit, or its faces</source>
         <translation>la paroi à déposer, ou ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the way between two beads leaves the one that was checked by up to {0} mm</source>
+        <translation>le chemin entre deux cordons s&apos;écarte jusqu&apos;à {0} mm de celui qui a été vérifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
@@ -8587,6 +8657,11 @@
         <translation>parcours</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>what happens between moves is in another order than planned</source>
+        <translation>ce qui se passe entre les mouvements est dans un autre ordre que planifié</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>what the machine&apos;s controller reads</source>
         <translation>ce que lit la commande de la machine</translation>
@@ -8613,8 +8688,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
-        <source>with TRAORI a move needs X Y Z A3 B3 C3 F, G94, ORIWKS and a work offset</source>
-        <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, ORIWKS et un décalage d&apos;origine</translation>
+        <source>with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset</source>
+        <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS et un décalage d&apos;origine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
@@ -8787,6 +8862,11 @@
         <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens_read.py"/>
+        <source>{0} do not belong together</source>
+        <translation>{0} ne vont pas ensemble</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>{0} do not join to one wall; name the faces of the wall, or deposit them one by one</source>
         <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
@@ -8825,6 +8905,11 @@
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>{0} has no limits {1}; use {2}</source>
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <source>{0} has no number</source>
+        <translation>{0} n&apos;a pas de numéro</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -9162,7 +9247,7 @@
         <translation>{0} n&apos;est pas compris ({1}) ; écrivez-le comme {2}Spreadsheet.height / 2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>{0} is not understood here</source>
         <translation>{0} n&apos;est pas compris ici</translation>
     </message>
@@ -9360,6 +9445,11 @@
         <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
         <source>{0} of {1} solids or groups of solids get one layer alone, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
         <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>{0} or CNT{1} is not understood here</source>
+        <translation>{0} ou CNT{1} n&apos;est pas compris ici</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids.py"/>
@@ -9577,7 +9667,12 @@
         <translation>{0} ; écrivez le programme de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>{0}; {1} of {2} events</source>
+        <translation>{0} ; {1} événements sur {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/planned.py"/>
         <source>{0}; {1} of {2} moves</source>
         <translation>{0} ; {1} de {2} mouvements</translation>
     </message>

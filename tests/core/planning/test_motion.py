@@ -14,11 +14,11 @@ from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessP
 from freecad_am.core.parameters.program import ProgramParameters, StartParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.program import FIRST_APPROACH, build, check_controller
+from freecad_am.core.planning.program import build, check_controller
 from freecad_am.core.planning.rapids import _hits_deposit, collisions
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
-from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
+from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.kdl import chain as kdl
 from freecad_am.posts import catalogue
 
@@ -149,7 +149,7 @@ def test_what_happens_between_layers(planned):
     assert words == [*expected, "Moves"]
     assert Wait(3.0) in blocks and WaitInput(7) in blocks and Call("CLEAN") in blocks
     assert DepositOn(0.5) in blocks and DepositOff(0.25) in blocks
-    assert blocks[1].duration[0] == FIRST_APPROACH
+    assert blocks[1].duration[0] == FIRST_TIME
 
 
 def test_resuming_runs_the_same_motion_from_there(planned):
