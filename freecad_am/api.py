@@ -22,7 +22,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -56,6 +55,7 @@ from .objects.revival import revive
 from .objects.settings import given
 from .objects.surface_feature import SurfaceFeature
 from .objects.toolpath import Toolpath
+from .posts import written
 
 __all__ = (
     "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
@@ -275,22 +275,14 @@ def stages_of(doc: Any, kind: str = "") -> list[Any]:
 def export(program: Any, folder: str) -> list[str]:
     """Write the files of a program, or the figures of an inspection, into a folder, which is made; the paths.
 
-    `am.export(doc.Program, "out")`
+    Parts that an earlier, longer program of this name has left there are removed. `am.export(doc.Program, "out")`
     """
     files = files_of_figures(program) if isinstance(_stage(program), Inspection) else files_of(program)
-    paths = []
     try:
-        os.makedirs(folder, exist_ok=True)
-        for name, content in files.items():
-            path = os.path.join(folder, *name.split("/"))
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            with open(path + ".part", "wb") as file:
-                file.write(content)
-            os.replace(path + ".part", path)
-            paths.append(path)
+        return written.write(folder, files)
     except OSError as error:
-        raise InputError("NOT_WRITABLE", folder, f"{error.strerror}; choose a folder you can write to") from None
-    return paths
+        message = f"{error.strerror or error}; choose a folder you can write to"
+        raise InputError("NOT_WRITABLE", error.filename or folder, message) from None
 
 
 @one_thread()

@@ -49,6 +49,10 @@ def _run(argv: list[str], session: Any) -> int:
         session.out(USAGE)
         return DONE if argv else BAD_INPUT
     command, words = argv[0], argv[1:]
+    for word in argv:
+        if not word.isascii() and word != word.encode("utf-8", "replace").decode("utf-8"):
+            shown = word.encode("utf-8", "backslashreplace").decode("utf-8")
+            raise InputError("USAGE", "command line", f"{shown!r} holds bytes that are not UTF-8; use a name in UTF-8")
     if command not in COMMANDS:
         import difflib
 
@@ -65,7 +69,7 @@ def _run(argv: list[str], session: Any) -> int:
 
 
 def _interrupted(session: Any) -> int:
-    session.say("interrupted: nothing was written")
+    session.say(f"interrupted: {session.outcome}")
     return INTERRUPTED
 
 
@@ -75,7 +79,8 @@ def _failed(error: Exception, session: Any) -> int:
     if os.environ.get("FREECAD_AM_DEBUG"):
         import traceback
 
-        session.say(traceback.format_exc().rstrip())
+        for line in traceback.format_exc().rstrip().split("\n"):
+            session.say(line)
     if isinstance(error, AmError):
         session.say(error.line())
         return error.exit_status
@@ -138,15 +143,21 @@ def _plan(options: Any, session: Any) -> int:
 
     read = job.read_job(options.job)
     result = run.run(read, options.output or run.default_folder(read), session, page=not options.no_page)
-    session.out("".join(f"{path}\n" for path in result.paths))
+    _tell_paths(result.paths, session)
     return result.exit_status
+
+
+def _tell_paths(paths: list[str], session: Any) -> None:
+    from freecad_am.batch.console import escaped
+
+    session.out("".join(f"{escaped(path)}\n" for path in paths))
 
 
 def _export(options: Any, session: Any) -> int:
     from freecad_am.batch import export
 
     paths = export.export(options.document, options.output, tuple(options.object), session, options.wires)
-    session.out("".join(f"{path}\n" for path in paths))
+    _tell_paths(paths, session)
     return DONE
 
 
@@ -162,7 +173,7 @@ def _inspect(options: Any, session: Any) -> int:
     paths = measured.inspect(
         options.source, tuple(options.measured), options.output, tuple(options.settings), options.object, session
     )
-    session.out("".join(f"{path}\n" for path in paths))
+    _tell_paths(paths, session)
     return DONE
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 import threading
@@ -13,6 +14,15 @@ from typing import Any
 from freecad_am.core.issues import ERROR, Issue
 
 _MOST_ISSUES = 12  # told on stderr; the report has them all
+# signs that move the cursor, end a line or turn the direction of writing: in a name they could forge what we say
+_UNSEEN = re.compile(
+    "[\\x00-\\x1f\\x7f-\\x9f\\u061c\\u200e\\u200f\\u2028\\u2029\\u202a-\\u202e\\u2066-\\u2069\\ufeff\\ud800-\\udfff]"
+)
+
+
+def escaped(text: str) -> str:
+    """The text on one line, with control signs, ends of lines and what turns writing round as Python would write them."""
+    return _UNSEEN.sub(lambda found: repr(found[0])[1:-1] if found[0].isascii() else f"\\u{ord(found[0]):04x}", text)
 
 
 class Session:
@@ -23,6 +33,7 @@ class Session:
 
     def __init__(self) -> None:
         self.interrupted = False  # whether Ctrl-C was pressed
+        self.outcome = "nothing was written"  # told where the command is interrupted
         self._progress = ""
 
     def __enter__(self) -> Session:
@@ -48,14 +59,15 @@ class Session:
             os.close(saved)
 
     def out(self, text: str) -> None:
-        """Write to stdout."""
+        """Write to stdout; control signs other than ends of lines and tabs as `escaped` writes them."""
         self._clear()
-        _write(self._saved[0], text)
+        lines = ("\t".join(map(escaped, line.split("\t"))) for line in text.split("\n"))
+        _write(self._saved[0], "\n".join(lines))
 
     def say(self, line: str) -> None:
-        """Write a line to stderr."""
+        """Write a line to stderr, one whatever is in it."""
         self._clear()
-        _write(self._saved[1], line + "\n")
+        _write(self._saved[1], escaped(line) + "\n")
 
     def issues(self, found: Iterable[Issue]) -> None:
         """Tell findings, errors first, on stderr; of many only some."""
@@ -70,7 +82,7 @@ class Session:
         self.check()
         if self._tty:
             self._clear()
-            _write(self._saved[1], text)
+            _write(self._saved[1], escaped(text))
             self._progress = text
 
     def check(self) -> None:

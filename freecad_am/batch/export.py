@@ -10,7 +10,6 @@ from freecad_am.core.issues import InputError
 
 from . import outputs, paths
 
-WIRES = "wires"
 _PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 
 
@@ -30,7 +29,7 @@ def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, 
     import FreeCAD
 
     target = folder or os.path.join(os.path.dirname(os.path.abspath(path)), "out", os.path.splitext(label)[0])
-    with outputs.Outputs(target) as files:
+    with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
         try:
             document = FreeCAD.openDocument(path, True)
@@ -75,7 +74,7 @@ def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: A
         session.progress(f"computing {obj.Label} ...")
         api.recompute(obj)
         session.check()
-        name = f"{WIRES}/{obj.Label.replace(os.sep, '-')}.{kind}"
+        name = f"{outputs.WIRES}/{obj.Label.replace(os.sep, '-')}.{kind}"
         if name in written:
             raise InputError("SAME_NAME", obj.Label, f"two paths write {name}; give one another label")
         written.add(name)

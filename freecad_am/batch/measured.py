@@ -32,7 +32,7 @@ def inspect(
     stem = os.path.splitext(os.path.basename(source))[0]
     target = folder or os.path.join(os.path.dirname(os.path.abspath(source)), "out", f"{stem}-inspection")
     labels = _labels(measured)
-    with outputs.Outputs(target) as files:
+    with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
         document, planned = _opened(source, name, session)
         try:

@@ -20,14 +20,14 @@ from freecad_am.core.issues import AmError, Issue, has_errors
 
 from . import run as planning
 from . import table
-from .console import Session
+from .console import Session, escaped
 
 FIGURES = ("layers", "beads", "points", "length_mm", "duration_s", "spacing_min_mm", "spacing_max_mm", "condition_min")
-_WORST_FIRST = (1, 2, 3, 0)
+_WORST_FIRST = (1, 130, 2, 3, 0)
 
 
 def run(path: str, job_path: str, output: str | None, processes: int, session: Session) -> int:
-    """Plan every row; the summary goes to stdout. The exit status of the worst row: 1 over 2 over 3."""
+    """Plan every row; the summary goes to stdout. The exit status of the worst row: 1 over 130 over 2 over 3."""
     columns, rows = table.read(path, job_path)
     folder = output or os.path.join(
         os.path.dirname(os.path.abspath(job_path)), "out", os.path.splitext(os.path.basename(path))[0]
@@ -41,13 +41,15 @@ def run(path: str, job_path: str, output: str | None, processes: int, session: S
             session.say(row.error.line())
             results[row.number] = {"exit": row.error.exit_status, "message": row.error.message}
     planning.import_all()  # once for all rows
+    session.outcome = "rows that were done are whole, of the others nothing was written"
     for row, result in _planned(waiting, folder, processes, session):
         results[row.number] = result
         for line in result.pop("lines", []):
             session.say(f"row {row.number}: {line}")
         session.progress(f"{len(results)} of {len(rows)} rows done")
     session.out(_summary(columns, rows, results))
-    return next(status for status in _WORST_FIRST if any(result["exit"] == status for result in results.values()))
+    ends = {result["exit"] for result in results.values()}
+    return next((status for status in _WORST_FIRST if status in ends), 1)
 
 
 def _planned(
@@ -80,11 +82,21 @@ def _received(receiver: Any, process: Any) -> dict[str, Any]:
         result: dict[str, Any] = receiver.recv()
     except EOFError:
         process.join()
-        result = {"exit": 1, "message": f"the process ended by itself ({process.exitcode})",
-                  "lines": [f"error[INTERNAL] row: the process ended by itself ({process.exitcode}); please report it"]}
+        result = _ended(process.exitcode)
     receiver.close()
     process.join()
     return result
+
+
+def _ended(status: int) -> dict[str, Any]:
+    """The result of a row whose process ended without one."""
+    if status < 0:
+        name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)
+        message = f"the row's process was ended from outside or by a crash ({name})"
+        remedy = "where memory does not suffice plan fewer rows at the same time with -j, else look at the row's part"
+        return {"exit": 1, "message": message, "lines": [f"error[ENDED] row: {message}; {remedy}"]}
+    message = f"the process ended by itself ({status})"
+    return {"exit": 1, "message": message, "lines": [f"error[INTERNAL] row: {message}; please report it"]}
 
 
 def _stop(process: Any) -> None:
@@ -154,16 +166,17 @@ def _figures(report: dict[str, Any] | None) -> dict[str, Any]:
 def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[str, Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["row", *columns, "folder", "exit", "status", *FIGURES, "message"])
+    writer.writerow(["row", *map(escaped, columns), "folder", "exit", "status", *FIGURES, "message"])
     for row in rows:
         result = results[row.number]
         status = result.get("status", "failed")
         figures = [_cell(result.get(figure)) for figure in FIGURES]
-        writer.writerow([row.number, *row.cells.values(), row.folder, result["exit"], status, *figures, result["message"]])
+        told = map(escaped, (*row.cells.values(), row.folder))
+        writer.writerow([row.number, *told, result["exit"], status, *figures, escaped(result["message"])])
     return text.getvalue()
 
 
 def _cell(value: Any) -> str:
     if value is None:
         return ""
-    return f"{value:.6f}" if isinstance(value, float) else str(value)
+    return f"{value:.6f}" if isinstance(value, float) else escaped(str(value))

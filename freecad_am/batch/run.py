@@ -78,7 +78,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
 
     try:
         cell = check(job)
-        with one_thread(), outputs.Outputs(folder) as files:
+        with one_thread(), outputs.Outputs(folder, session) as files:
             document = FreeCAD.newDocument("Job")
             try:
                 document.Label, document.UndoMode = job.name, 0

@@ -135,14 +135,14 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     assert workshop.run("plan", "cup.yaml").status == 0
     out = workshop.folder / "out" / "cup"
     (out / "program" / "notes.txt").write_text("mine")
-    (out / "program" / "OLD.LS").write_text("of an earlier run")
+    (out / "program" / "HOME.LS").write_text("mine")
     (out / "photo.jpg").write_text("mine")
     workshop.change("  limits: paper", "  limits: paper\n  deposition_point: [9000, 0, 500, 0, 0, 0]")
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 3
     assert re.search(r"^error\[[A-Z_]+\] layer 0 .*: ", done.err, re.MULTILINE)
     assert set(workshop.files()) == {
-        "cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/notes.txt", "photo.jpg"
+        "cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/notes.txt", "program/HOME.LS", "photo.jpg"
     }
     report = json.loads(workshop.files()["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []

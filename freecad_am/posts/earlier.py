@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs of ours that stand in a folder, told by what is in them: nobody else's files are taken for ours.
+
+A main program begins with remarks that each one of ours has, and its name is that of its file; it names its parts. Links
+are not followed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+# of every main program: remarks that it begins with
+OUR_REMARKS = ("Limits: ", "Travel speed ")
+# endings of main programs, and those of their parts
+PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc"}
+APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
+_HEAD = 4096  # characters of a program that hold the remarks it begins with
+_LARGEST = 1 << 20  # characters of a main program that are looked through for its parts
+
+
+def programs(folder: str) -> dict[str, set[str]]:
+    """Main program -> its files and those of its parts, as names relative to the folder with slashes."""
+    found: dict[str, set[str]] = {}
+    files, folders = _entries(folder)
+    for main in files:
+        stem, ending = os.path.splitext(main)
+        if ending.lower() in PART_ENDINGS:
+            text = _text(os.path.join(folder, main))
+            if _is_ours(text, stem, ending):
+                found[main] = {main} | _parts(text, stem, PART_ENDINGS[ending.lower()], files)
+    for name in folders:
+        inside = os.path.join(folder, name)
+        own, parts = _entries(inside)
+        if "start.pgx" in own and _is_ours(_text(os.path.join(inside, "start.pgx")), name, ".pgx"):
+            numbered = [part for part in parts if re.fullmatch(re.escape(name) + r"\d+", part)]
+            files_of = {part: _entries(os.path.join(inside, part))[0] for part in numbered}
+            found[f"{name}/{name}.pjx"] = {f"{name}/{file}" for file in _application(name, own)} | {
+                f"{name}/{part}/{file}" for part, there in files_of.items() for file in _application(part, there)
+            }
+    return found
+
+
+def _is_ours(text: str, stem: str, ending: str) -> bool:
+    head = text[:_HEAD]
+    if ending.lower() == ".ls" and not re.match(rf"/PROG\s+{re.escape(stem)}\s", head, re.IGNORECASE):
+        return False  # somebody's copy under another name
+    return all(remark in head for remark in OUR_REMARKS)
+
+
+def _application(name: str, files: list[str]) -> set[str]:
+    """Those of the files that an application, or a part of one, is made of."""
+    return {form.format(name) for form in APPLICATION} & set(files)
+
+
+def _parts(text: str, stem: str, ending: str, files: list[str]) -> set[str]:
+    """The files of the parts that a main program names."""
+    called = {name.lower() for name in re.findall(rf"\b{re.escape(stem)}\d+\b", text, re.IGNORECASE)}
+    split = ((file, *os.path.splitext(file.lower())) for file in files)
+    return {file for file, name, its in split if its == ending and name in called}
+
+
+def _entries(folder: str) -> tuple[list[str], list[str]]:
+    """Names of files and of folders in a folder, links left out."""
+    files, folders = [], []
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                if entry.is_file(follow_symlinks=False):
+                    files.append(entry.name)
+                elif entry.is_dir(follow_symlinks=False):
+                    folders.append(entry.name)
+    except (OSError, ValueError):
+        pass
+    return sorted(files), sorted(folders)
+
+
+def _text(path: str) -> str:
+    try:
+        with open(path, encoding="utf-8-sig", errors="replace") as stream:
+            return stream.read(_LARGEST)
+    except OSError:
+        return ""
