@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A small part and job in a folder of their own, and the launcher to run them."""
 
-import importlib
+import atexit
+import json
 import os
+import select
 import signal
 import subprocess
 import sys
 import tempfile
-import time
-import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
 import FreeCAD
 import Part
 import pytest
-
-from freecad_am.batch import cli
 
 JOB = """\
 version: 1
@@ -33,28 +31,7 @@ process:
 program:
   post: fanuc
 """
-
-
 PATIENCE = 120  # s for a command
-NEEDED = ("Part", "Mesh", *(f"freecad_am.batch.{name}" for name in ("cli", "run", "rows", "export", "measured", "machines")))
-
-
-def _as_command(streams: list[int], folder: Path, words: list[str]) -> None:
-    """Be the process of a command, as freecad_am/batch/boot.py is."""
-    status = 1
-    try:
-        for number, stream in enumerate(streams):
-            os.dup2(stream, number)
-        sys.stdout, sys.stderr = (os.fdopen(number, "w", encoding="utf-8", closefd=False) for number in (1, 2))
-        os.chdir(folder)
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        status = cli.main(words)
-    except BaseException:
-        traceback.print_exc()
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
 
 
 @dataclass
@@ -64,6 +41,49 @@ class Ended:
     status: int
     out: str
     err: str
+
+
+class Commands:
+    """The process of command_server.py, started when it is first needed, and again after a command that took too long."""
+
+    def __init__(self) -> None:
+        self.process: subprocess.Popen | None = None
+
+    def run(self, folder: Path, words: list[str]) -> Ended:
+        if self.process is None:
+            self._start()
+        with tempfile.TemporaryDirectory() as place:
+            out, err = Path(place) / "out", Path(place) / "err"
+            asked = json.dumps([str(folder), {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}, str(out), str(err), words])
+            self.process.stdin.write(f"{asked}\n".encode())
+            self.process.stdin.flush()
+            if not select.select([self.answer], [], [], PATIENCE)[0]:
+                os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait()
+                self.process = None
+                pytest.fail(f"{' '.join(words)} took more than {PATIENCE} s")
+            status = int(self.answer.readline())
+            return Ended(status, out.read_text(encoding="utf-8"), err.read_text(encoding="utf-8"))
+
+    def _start(self) -> None:
+        ours, theirs = os.pipe()
+        script = Path(__file__).with_name("command_server.py")
+        self.process = subprocess.Popen(
+            [sys.executable, str(script), str(theirs)], stdin=subprocess.PIPE, pass_fds=[theirs], start_new_session=True,
+            env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+        )
+        os.close(theirs)
+        self.answer = os.fdopen(ours, "rb", buffering=0)
+
+    def end(self) -> None:
+        """Let it end, and wait for it: what it took counts as taken by the tests."""
+        if self.process is not None:
+            self.process.stdin.close()
+            self.process.wait()
+
+
+COMMANDS = Commands()
+atexit.register(COMMANDS.end)
 
 
 @dataclass
@@ -99,25 +119,9 @@ class Workshop:
         return Ended(done.returncode, done.stdout, done.stderr)
 
     def run(self, *words: object) -> Ended:
-        """The same in a copy of this process, which has FreeCAD and what commands need already: half a second less. User
-        folder of FreeCAD, modules and the order of sets are those of the tests: what is about these asks the launcher."""
-        for name in NEEDED:
-            importlib.import_module(name)
-        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, open(os.devnull, "rb") as nothing:
-            process = os.fork()
-            if not process:
-                _as_command([nothing.fileno(), out.fileno(), err.fileno()], self.folder, list(map(str, words)))
-            end, ended = time.monotonic() + PATIENCE, 0
-            while not ended:
-                ended, status = os.waitpid(process, os.WNOHANG)
-                if not ended and time.monotonic() > end:
-                    os.kill(process, signal.SIGKILL)
-                    os.waitpid(process, 0)
-                    pytest.fail(f"{' '.join(map(str, words))} took more than {PATIENCE} s")
-                time.sleep(0.0 if ended else 0.005)
-            out.seek(0)
-            err.seek(0)
-            return Ended(os.waitstatus_to_exitcode(status), out.read().decode("utf-8"), err.read().decode("utf-8"))
+        """The same in a copy of a process that has FreeCAD and what commands need already: a second less. User folder of
+        FreeCAD, modules and the order of sets are the same for all: what is about these asks the launcher."""
+        return COMMANDS.run(self.folder, list(map(str, words)))
 
     def files(self, folder: str = "out/cup") -> dict[str, bytes]:
         """Every file below a folder, hidden ones too, by its name relative to it."""

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs commands as freecad_am/batch/boot.py does, each in a copy of this process, which has FreeCAD and all modules.
+
+What is asked for comes in by stdin, a line of JSON each: [folder, environment, file for stdout, file for stderr, words]; the
+exit status, negative for a signal, goes to the descriptor named by the first argument. This process computes nothing and has
+one thread: OpenCASCADE 7.8 would wait in a copy of one that has meshed for threads that are not copied.
+"""
+
+import importlib
+import json
+import os
+import sys
+import traceback
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from freecad_am.batch import cli, host
+
+NEEDED = ("Part", "Mesh", *(f"freecad_am.batch.{name}" for name in ("run", "rows", "export", "measured", "machines")))
+
+
+def be_command(folder, environment, out, err, words):
+    """Run a command and end."""
+    status = 1
+    try:
+        os.environ.clear()
+        os.environ.update(environment)
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        files = [os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC) for name in (out, err)]
+        for number, stream in enumerate([nothing, *files]):
+            os.dup2(stream, number)
+            os.close(stream)
+        os.chdir(folder)
+        status = cli.main(words)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+def main():
+    host.find_freecad()
+    import FreeCAD  # noqa: F401  before Part
+
+    for name in NEEDED:
+        importlib.import_module(name)
+    answer = int(sys.argv[1])
+    for line in sys.stdin:
+        assert len(os.listdir("/proc/self/task")) == 1, "this process is to have one thread"
+        process = os.fork()
+        if not process:
+            be_command(*json.loads(line))
+        status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+        os.write(answer, f"{status}\n".encode())
+
+
+if __name__ == "__main__":
+    main()
