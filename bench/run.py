@@ -16,7 +16,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
 PEERS = ("eaik", "trimesh")
-BENCHMARKS = ("filling", "kinematics", "long_work", "paths", "planning", "simulation", "slicing", "surface", "whole")
+BENCHMARKS = ("filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface", "whole")
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 

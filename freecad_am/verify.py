@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .core.geometry import frames
 from .core.issues import ERROR, Issue
 from .core.kinematics.cell import ROTARY_TABLE, Cell
 from .core.motion import Motion
@@ -106,10 +105,7 @@ def _verify_poses(
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
     strayed = 0.0
     if read.tool is not None and len(planned.ends):  # a tool that stays the same goes straight from point to point
-        start, end = asked[planned.ends - 1] @ tools[planned.ends], asked[planned.ends] @ tools[planned.ends]
-        ways = between.straight(start, end) @ frames.inverse(tools[planned.ends])[:, None]
-        tips = cell.tip_in_part(ways.reshape(-1, 4, 4))[0]
-        strayed, off = between.off_segments(planned, planned.ends, tips, told, chord_error)
+        strayed, off = between.tools_between(cell, planned, asked, tools, told, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
     text = text_path.text_joints(cell, planned, read.joints, text_path.digits(cell, read), told, asked)
     return _concluded(cell, planned, read, told, text, strayed, (joints, flange), issues)

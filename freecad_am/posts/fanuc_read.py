@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from array import array
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +21,15 @@ from ..core.program import Configuration, Event, ReadMoves
 
 Array = NDArray[np.float64]
 
+_NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
+_TITLE = 1000  # bytes that hold the first line
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
     r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+))$"
 )
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
+_CALLS = re.compile(r"^ *\d*: *CALL (\w+) *; *\r?$", re.MULTILINE)
 _FRAME = re.compile(r"U(FRAME|TOOL)_NUM=(\d+)$")
 _COOL = re.compile(r"WAIT AI\[(\d+)(?::[^\]]*)?\]<(-?\d+(?:\.\d*)?)$")
 _LAYER = re.compile(r"!layer (\d+)$")
@@ -34,6 +39,7 @@ _HARMLESS = re.compile(r"$|!|//|--eg:")
 
 _RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
 _FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
+_DECIMALS = re.compile(r"\.(\d+)")
 _NUMBER = r" *(-?\d*\.\d+) *"
 
 
@@ -48,10 +54,9 @@ _POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm d
 
 @dataclass
 class _Listing:
-    """One file: its program's name, its instructions with their line numbers, and its positions."""
+    """One file: its instructions with their line numbers, and its positions."""
 
     file: str
-    name: str
     instructions: list[tuple[int, str]]
     index: dict[int, int]
     values: Array
@@ -61,18 +66,30 @@ class _Listing:
     digits: float
 
 
+def _floats() -> array[float]:
+    return array("d")
+
+
 @dataclass
 class _Run:
-    """What happened so far while the programs are followed."""
+    """What happened so far while the programs are followed: packed, for a list of floats takes four times the memory.
 
-    rows: list[tuple[_Listing, int]] = field(default_factory=list)
-    duration: list[float] = field(default_factory=list)
-    speed: list[float] = field(default_factory=list)
-    share: list[float] = field(default_factory=list)
-    deposit: list[bool] = field(default_factory=list)
-    linear: list[bool] = field(default_factory=list)
-    blend: list[float] = field(default_factory=list)
-    numbers: list[tuple[float, float]] = field(default_factory=list)
+    pending: records of the listing at hand that were moved to and are not among `values` yet.
+    """
+
+    cartesian: bool = False
+    values: list[Array] = field(default_factory=list)
+    configuration: list[tuple[str, ...]] = field(default_factory=list)
+    digits: float = 0.0
+    pending: list[int] = field(default_factory=list)
+    duration: array[float] = field(default_factory=_floats)
+    speed: array[float] = field(default_factory=_floats)
+    share: array[float] = field(default_factory=_floats)
+    deposit: bytearray = field(default_factory=bytearray)
+    linear: bytearray = field(default_factory=bytearray)
+    blend: array[float] = field(default_factory=_floats)
+    user_frame: array[float] = field(default_factory=_floats)
+    tool_frame: array[float] = field(default_factory=_floats)
     events: list[Event] = field(default_factory=list)
     frame: dict[str, str] = field(default_factory=dict)
     output: str = ""
@@ -80,7 +97,16 @@ class _Run:
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
         """Something happens before the next move."""
-        self.events.append(Event(len(self.rows), kind, value, digits))
+        self.events.append(Event(len(self.duration), kind, value, digits))
+
+    def take(self, listing: _Listing) -> None:
+        """Take over the records that are pending."""
+        if self.pending:
+            self.values.append(listing.values[self.pending])
+            self.digits = max(self.digits, listing.digits)
+            if self.cartesian:
+                self.configuration += [listing.configuration[row] for row in self.pending]
+            self.pending = []
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
@@ -88,30 +114,33 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
-    listings = {listing.name: listing for listing in (_listing(file, files[file]) for file in sorted(files))}
-    if len(listings) < len(files):
+    named = {_name(file, files[file]): file for file in sorted(files)}
+    if len(named) < len(files):
         raise _unreadable("program", "two files hold a program of the same name")
+    called = {call.upper() for content in files.values() for call in _CALLS.findall(content.decode("latin-1"))}
+    main = [name for name in named if name not in called]
+    if len(main) != 1:
+        raise _unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
     run = _Run()
-    _follow(_main(listings), listings, run, ())
-    if not run.rows:
+    _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
+    if not run.duration:
         raise _unreadable("program", "there are no moves")
     return _moves(run)
 
 
 def _moves(run: _Run) -> ReadMoves:
-    cartesian = run.rows[0][0].cartesian
-    values = np.array([listing.values[row] for listing, row in run.rows])
-    digits = max(listing.digits for listing, _ in run.rows)
+    cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits
     joints, half_turn = (None, 0.0) if cartesian else (np.radians(values), float(np.radians(digits)))
-    blend, numbers = np.array(run.blend), np.array(run.numbers)
+    deposit, linear = (np.array(column, dtype=np.bool_) for column in (run.deposit, run.linear))
+    blend = np.array(run.blend)
     told = ReadMoves(
-        joints, half_turn, np.array(run.duration), np.array(run.deposit), np.array(run.linear), np.isnan(blend),
-        tuple(run.events), speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
-        user_frame=numbers[:, 0], tool_frame=numbers[:, 1],
+        joints, half_turn, np.array(run.duration), deposit, linear, np.isnan(blend), tuple(run.events),
+        speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
+        user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame),
     )
     if not cartesian:
         return told
-    words = np.array([listing.configuration[row] for listing, row in run.rows])
+    words = np.array(run.configuration)
     return dataclasses.replace(
         told, position=values[:, :3], rotation=_rotation(np.radians(values[:, 3:])), position_digits=digits,
         rotation_digits=float(np.radians(digits)),
@@ -133,12 +162,23 @@ def _rotation(wpr: Array) -> Array:
     return np.moveaxis(np.array(rows), -1, 0)
 
 
+def _lines(content: bytes) -> list[str]:
+    return content.decode("latin-1").replace("\r\n", "\n").split("\n")
+
+
+def _name(file: str, content: bytes) -> str:
+    """The name of a program, upper case."""
+    title = re.match(r"/PROG +(\w+)\s*$", _lines(content[:_TITLE])[0])
+    if title is None:
+        raise _unreadable(file, _NO_LISTING)
+    return title[1].upper()
+
+
 def _listing(file: str, content: bytes) -> _Listing:
-    lines = content.decode("latin-1").replace("\r\n", "\n").split("\n")
+    lines = _lines(content)
     marks = [lines.index(section) if section in lines else -1 for section in ("/MN", "/POS", "/END")]
-    title = re.match(r"/PROG +(\w+)\s*$", lines[0])
-    if title is None or -1 in marks or marks != sorted(marks):
-        raise _unreadable(file, "it is not a listing with /PROG, /MN, /POS and /END in this order")
+    if -1 in marks or marks != sorted(marks):
+        raise _unreadable(file, _NO_LISTING)
     start, positions, end = marks
     instructions = []
     for number, line in enumerate(lines[start + 1 : positions], start + 2):
@@ -162,30 +202,18 @@ def _listing(file: str, content: bytes) -> _Listing:
     if len(index) < len(found):
         raise _unreadable(file, "a position is recorded twice")
     texts = [record[-6:] for record in found]
-    decimals = min((len(value) - value.index(".") - 1 for row in texts for value in row), default=0)
+    decimals = min(map(len, _DECIMALS.findall(" ".join(chain.from_iterable(texts)))), default=0)
     return _Listing(
-        file, title[1].upper(), instructions, index, np.array(texts, dtype=np.float64).reshape(-1, 6),
+        file, instructions, index, np.array(texts, dtype=np.float64).reshape(-1, 6),
         [record[3:-6] for record in found], cartesian, [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals,
     )
 
 
-def _main(listings: dict[str, _Listing]) -> _Listing:
-    called = {
-        match[1].upper()
-        for listing in listings.values()
-        for _, statement in listing.instructions
-        if (match := _CALL.match(statement))
-    }
-    main = [listing for name, listing in listings.items() if name not in called]
-    if len(main) != 1:
-        raise _unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
-    return main[0]
-
-
-def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers: tuple[str, ...]) -> None:
-    """Carry out the instructions of a listing in order, and of those it calls."""
-    if listing.name in callers:
-        raise _unreadable(listing.file, "it calls itself")
+def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: tuple[str, ...]) -> None:
+    """Carry out the instructions of a program in order, and of those it calls. A listing is there while it is followed."""
+    if name in callers:
+        raise _unreadable(files[name][0], "it calls itself")
+    listing = _listing(*files[name])
     for position, (number, statement) in enumerate(listing.instructions):
         if motion := _MOTION.match(statement):
             _move(listing, motion, run, number)
@@ -195,8 +223,9 @@ def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers
             run.output, run.on = output[1], output[2] == "ON"
             run.happens("on" if run.on else "off", float(output[1]), "DO")
         elif call := _CALL.match(statement):
-            if call[1].upper() in listings:
-                _follow(listings[call[1].upper()], listings, run, (*callers, listing.name))
+            if call[1].upper() in files:
+                run.take(listing)
+                _follow(call[1].upper(), files, run, (*callers, name))
             else:
                 run.happens("call", call[1].upper())
         elif cool := _COOL.match(statement):
@@ -210,9 +239,10 @@ def _follow(listing: _Listing, listings: dict[str, _Listing], run: _Run, callers
         elif frame := _FRAME.match(statement):
             run.frame[frame[1]] = frame[2]
         elif statement == "END" and position == len(listing.instructions) - 1:
-            return
+            break
         elif not _HARMLESS.match(statement):
             raise _unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
+    run.take(listing)
 
 
 def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> None:
@@ -221,7 +251,7 @@ def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> N
     where = f"{listing.file} line {number}"
     if row is None:
         raise _unreadable(where, f"P[{point}] is not recorded")
-    if run.rows and run.rows[0][0].cartesian != listing.cartesian:
+    if run.duration and run.cartesian != listing.cartesian:
         raise _unreadable(where, "joint and Cartesian positions are mixed")
     if letter == "L" and not listing.cartesian:
         raise _unreadable(where, "a position is moved to in another way than it is recorded")
@@ -232,15 +262,17 @@ def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> N
         if recorded not in ("F", run.frame.get(word)):
             raise _unreadable(where, f"P[{point}] is recorded in another U{word} than the one selected")
         numbers.append(float(run.frame.get(word, "nan")))
+    run.cartesian = listing.cartesian
     seconds = {"sec": 1.0, "msec": 0.001}.get(unit, np.nan)
-    run.rows.append((listing, row))
+    run.pending.append(row)
     run.duration.append(float(value) * seconds)
     run.speed.append(float(value) if unit == "mm/sec" else np.nan)
     run.share.append(0.01 * float(value) if unit == "%" else np.nan)
     run.deposit.append(run.on)
     run.linear.append(letter == "L")
     run.blend.append(np.nan if fine else float(corner))
-    run.numbers.append((numbers[0], numbers[1]))
+    run.user_frame.append(numbers[0])
+    run.tool_frame.append(numbers[1])
 
 
 def _unreadable(where: str, why: str) -> InputError:

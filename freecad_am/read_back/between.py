@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..core.geometry import frames
 from ..core.kinematics.cell import Cell
-from .planned import Planned
+from .planned import Planned, pieces
 from .text_path import Joints, Path, tip_bounds
 
 Array = NDArray[np.float64]
@@ -52,31 +52,42 @@ def _tips(cell: Cell, serial: Array) -> tuple[Array, Array]:
 
 def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_error: float) -> tuple[float, Mask]:
     """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off."""
-    ends = planned.ends
-    if not len(ends):
-        return 0.0, np.zeros(len(shown), dtype=bool)
-    joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
-    flange = cell.machine.chain.forward(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
-    return off_segments(planned, ends, cell.tip_in_part(flange)[0], path, chord_error)
+    largest, off = 0.0, np.zeros(len(shown), dtype=bool)
+    for ends in pieces(planned.ends):
+        joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
+        flange = cell.machine.chain.forward(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
+        strayed, off[ends] = _off_segments(planned, ends, cell.tip_in_part(flange)[0], path, chord_error)
+        largest = float(np.maximum(largest, strayed))
+    return largest, off
 
 
-def off_segments(
+def tools_between(
+    cell: Cell, planned: Planned, asked: Array, tools: Array, path: Path, chord_error: float
+) -> tuple[float, Mask]:
+    """The same while tools (n, 4, 4), another one at each point, on flanges at `asked` (n, 4, 4) run straight."""
+    largest, off = 0.0, np.zeros(len(asked), dtype=bool)
+    for ends in pieces(planned.ends):
+        ways = _straight(asked[ends - 1] @ tools[ends], asked[ends] @ tools[ends]) @ frames.inverse(tools[ends])[:, None]
+        strayed, off[ends] = _off_segments(planned, ends, cell.tip_in_part(ways.reshape(-1, 4, 4))[0], path, chord_error)
+        largest = float(np.maximum(largest, strayed))
+    return largest, off
+
+
+def _off_segments(
     planned: Planned, ends: NDArray[np.intp], tips: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
     """Largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments that end at the rows `ends`,
-    and the moves (n,) that leave theirs by more than the chord error and the digits of their two points."""
-    off = np.zeros(len(planned.deposit), dtype=bool)
+    and which of these (len(ends),) leave theirs by more than the chord error and the digits of their two points."""
     tips = tips.reshape(len(ends), len(BETWEEN), 3)
     start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
     away = tips - start[:, None]
     squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
     share = np.clip(np.einsum("nki,ni->nk", away, step) / squared[:, None], 0.0, 1.0)
     distance = np.linalg.norm(away - share[..., None] * step[:, None], axis=2).max(axis=1)
-    off[ends] = ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
-    return float(distance.max()), off
+    return float(distance.max()), ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
 
 
-def straight(start: Array, end: Array) -> Array:
+def _straight(start: Array, end: Array) -> Array:
     """(n, len(BETWEEN), 4, 4) poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
     turn = np.swapaxes(start[:, :3, :3], 1, 2) @ end[:, :3, :3]
     axis = 0.5 * np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], 1)

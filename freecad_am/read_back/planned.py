@@ -14,6 +14,7 @@ Mask = NDArray[np.bool_]
 
 # what rounding in the computation itself may amount to: mm, and of unit vectors
 COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
+PIECE = 4096  # moves that are looked at together: the poses of all of them at once would take all memory
 
 
 class Planned:
@@ -41,3 +42,8 @@ class Planned:
         row = self.rows[min(move, len(self.rows) - 1)]
         layer, bead, point = (int(column[row]) for column in (self.motion.layer, self.motion.bead, self.motion.point))
         return layer, bead, point
+
+
+def pieces(rows: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Rows (n,) in pieces that are looked at one after the other."""
+    return [rows[start : start + PIECE] for start in range(0, len(rows), PIECE)]

@@ -10,7 +10,7 @@ from ..core.issues import NOTE, Issue
 from ..core.kinematics.cell import Cell
 from ..core.program import ReadMoves
 from ..kdl import chain as kdl_chain
-from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned
+from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
 from .text_path import Joints, Path, digits, told_by_position
 
 Array = NDArray[np.float64]
@@ -63,8 +63,10 @@ def second_opinion(cell: Cell, planned: Planned, shown: Array, flange: Array) ->
     if not kdl_chain.available():
         message = "PyKDL is not installed; the program was checked by one solver alone"
         return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
-    other = kdl_chain.KdlArm(cell.machine).forward(cell.machine.from_controller(shown))
-    apart = np.linalg.norm(other[:, :3, 3] - flange[:, :3, 3], axis=1) > COMPUTED_MM
-    turned = np.abs(other[:, :3, :3] - flange[:, :3, :3]).max(axis=(1, 2)) > COMPUTED_AXIS
-    issues = planned.issue("VERIFY_SOLVERS", apart | turned, "PyKDL and the joint-frame chain disagree")
+    arm, wrong = kdl_chain.KdlArm(cell.machine), np.zeros(len(shown), dtype=bool)
+    for rows in pieces(np.arange(len(shown))):
+        apart = arm.forward(cell.machine.from_controller(shown[rows])) - flange[rows]
+        wrong[rows] = np.linalg.norm(apart[:, :3, 3], axis=1) > COMPUTED_MM
+        wrong[rows] |= np.abs(apart[:, :3, :3]).max(axis=(1, 2)) > COMPUTED_AXIS
+    issues = planned.issue("VERIFY_SOLVERS", wrong, "PyKDL and the joint-frame chain disagree")
     return issues, ("chain", "pykdl")

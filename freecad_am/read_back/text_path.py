@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..core.geometry import frames
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
 from ..core.program import Program, ReadMoves
-from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned
+from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -61,12 +61,16 @@ def digits(cell: Cell, read: ReadMoves) -> Array:
 
 def joint_path(cell: Cell, shown: Array, half: Array) -> tuple[Path, Array]:
     """The path of controller joint values (n, axes), each off by at most `half` (axes,), and the flange poses (n, 4, 4)."""
-    machine = cell.machine
-    serial = machine.from_controller(shown)
-    flange = machine.chain.forward(serial)
-    position, tool = cell.tip_in_part(flange)
-    bound, tool_bound = _bounds(cell, serial, machine.controller_matrix, np.broadcast_to(half, shown.shape))
-    return Path(position, tool, bound, tool_bound), flange
+    machine, count = cell.machine, len(shown)
+    path = Path(np.empty((count, 3)), np.empty((count, 3)), np.empty(count), np.empty(count))
+    flange = np.empty((count, 4, 4))
+    for rows in pieces(np.arange(count)):
+        serial = machine.from_controller(shown[rows])
+        flange[rows] = machine.chain.forward(serial)
+        path.position[rows], path.tool[rows] = cell.tip_in_part(flange[rows])
+        half_of = np.broadcast_to(half, serial.shape)
+        path.bound[rows], path.tool_bound[rows] = _bounds(cell, serial, machine.controller_matrix, half_of)
+    return path, flange
 
 
 def tip_bounds(cell: Cell, serial: Array, reach: Array) -> tuple[Array, Array]:
