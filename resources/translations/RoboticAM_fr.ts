@@ -5297,6 +5297,11 @@
         <translation>au plus {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <source>at {0} ends of beads the retract of {1} mm would leave limits, reach or condition; it is {2} to {3} mm there, {4} times in another direction than along the tool axis and {5} times with the tool turned</source>
+        <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/speeds.py"/>
         <source>at {0} short places, {1} mm in all, the deposit is slowed, here to {2} mm/s, for the axes go no faster; up to {3} mm of the bead more than meant lie there{4}</source>
         <translation>en {0} endroits courts, {1} mm en tout, le dépôt est ralenti, ici à {2} mm/s, car les axes ne vont pas plus vite ; jusqu&apos;à {3} mm de cordon de plus que prévu s&apos;y trouvent{4}</translation>
@@ -5447,7 +5452,12 @@
         <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/motion.py"/>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <source>before {0} beads the tool is retracted in another direction than along its axis, or turned on the way, to pass clear</source>
+        <translation>avant {0} cordons l&apos;outil est retiré dans une autre direction que le long de son axe, ou tourné en chemin, pour passer sans toucher</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
         <source>before {0} beads the tool is withdrawn by up to {1} mm instead of {2} mm to pass clear</source>
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
@@ -5620,6 +5630,11 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>condition {0} is below the {1} asked for: too near a singularity</source>
         <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <source>condition {0} on a rapid move before or after the bead is below the {1} allowed, and no other height, direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell</source>
+        <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/readout.py"/>
@@ -7128,8 +7143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids.py"/>
-        <source>on its way from the bead before the nozzle would meet {0}; raise process.between_layers.lift</source>
-        <translation>en venant du cordon précédent la buse rencontrerait {0} ; augmentez process.between_layers.lift</translation>
+        <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried; move the seam or the part, or take a more slender nozzle</source>
+        <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
@@ -7822,11 +7837,6 @@
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/motion.py"/>
-        <source>the lifted points before or after the bead cannot be reached; lower process.between_layers.lift</source>
-        <translation>les points levés avant ou après le cordon ne peuvent pas être atteints ; diminuez process.between_layers.lift</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>the limits of {0} run from {1} to {2}; give the lower one first</source>
         <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la plus basse</translation>
@@ -8055,6 +8065,11 @@
         <location filename="../../freecad_am/core/filling/centre.py"/>
         <source>the region at {0} is {1} mm wide, less than a bead ({2} mm); choose thin = single, a narrower bead or a margin</source>
         <translation>la région en {0} est large de {1} mm, moins qu&apos;un cordon ({2} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <source>the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower process.between_layers.lift or move the part in the cell</source>
+        <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -9452,11 +9467,6 @@
         <translation>{0} ou CNT{1} n&apos;est pas compris ici</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids.py"/>
-        <source>{0} or the platform</source>
-        <translation>{0} ou le plateau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>{0} pairs of points; give three or more</source>
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
@@ -9560,6 +9570,11 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>{0} would be at {1} deg, its limit is {2} deg</source>
         <translation>{0} serait à {1} deg, sa limite est {2} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
+        <source>{0} would be at {1} {2} on the retract before or after the bead, its limit is {3} {4}, and no other height, direction or rotation keeps within limits; lower process.between_layers.lift or move the part in the cell</source>
+        <translation>{0} serait à {1} {2} au retrait avant ou après le cordon, sa limite est {3} {4}, et aucune autre hauteur, direction ou rotation ne reste dans les limites ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/table.py"/>

@@ -2,21 +2,25 @@
 """Looks whether the nozzle stays clear of deposit, platform and bodies on the rapid moves between beads.
 
 While depositing, clearance is settled before the joints are planned. A rapid runs straight in the joints, so where the
-nozzle goes is known only now: it is driven through in small steps, against everything deposited by then, and against the
-triangles of the bodies around the part.
+nozzle goes is known only now: retract, travel and approach alike are driven through in small steps, against everything
+deposited by then, and against the triangles of the bodies around the part.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.bodies import of_bodies
-from ..collision.frustum import Frustum
+from ..collision.frustum import beside_tip
+from ..collision.nozzle import Nozzle, travelling
 from ..collision.obstacles import Obstacles
-from ..geometry.surroundings import Body
+from ..collision.scene import Scene, scene
+from ..collision.tolerances import ABOVE_FACES
+from ..geometry.surroundings import Body, disc
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
@@ -25,135 +29,211 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-# largest turn of an axis between two looks, rad, and way of one that slides, mm; between neighbouring obstacle points, mm
+# largest turn of an axis between two looks, rad, and way of one that slides, mm
 STEP = np.radians(5.0)
 SLIDE = 5.0
+# largest way of a point of the nozzle between two looks, mm: first with a nozzle as much thicker, then, where that meets
+# anything, with the nozzle itself
+COARSE = 5.0
+FINE = 0.5
+# length of the segments the deposit is looked at as, mm, and how far it may turn along one of them, rad: so they are as near
+# to the bead as its own chords
 GRAIN = 1.5
-PLATFORM_GRAIN = 4.0
-# how deep a point must be inside the nozzle to count: beads are followed to their chord error, mm
-TOUCH = 0.05
-# the same for bodies, whose triangles are as far from their true faces
-BODY_TOUCH = 0.1
+BENT = 0.2
+# moves driven at once, so that large jobs need no more memory than small ones
+MOVES = 4096
+
+
+class Moves(NamedTuple):
+    """Rapid moves: joints (k, axes) they start and end at, how many deposit rows (k,) are there by then, and the points
+    (k, 3) mm at which the bead before ends and the next starts, NaN where there is none."""
+
+    start: Array
+    end: Array
+    laid: Index
+    left: Array
+    entered: Array
+
+    def of(self, rows: Index) -> Moves:
+        """Those of the rows."""
+        return Moves(self.start[rows], self.end[rows], self.laid[rows], self.left[rows], self.entered[rows])
+
+
+class Looks(NamedTuple):
+    """Where the nozzle is looked at: tip and tool axis (l, 3) in part coordinates, the move (l,) and the share of it."""
+
+    tip: Array
+    axis: Array
+    move: Index
+    share: Array
+
+
+class Surroundings:
+    """What is in the way of rapids: deposit as the lines it is laid along, with the row from which it is there, platform and
+    bodies.
+
+    Where the nozzle retracts from the end of a bead or comes to the start of one, it touches what it has laid and what that
+    stands on, as while depositing: there its part below a height is left out, that at which its side is one diameter of the
+    tip from the deposit point, less the distance of the tip from that point. Withdrawn along its axis, a cone stays within
+    the room that it kept clear while depositing, above that height at the deposit point: so nothing more need be left out,
+    wherever the move leads.
+    """
+
+    def __init__(self, cell: Cell, points: Array, first: Mask, bodies: Sequence[Body]) -> None:
+        """points: (m, 3) of all deposit rows in order. first: (m,) whether each is the first of a bead."""
+        self.cell = cell
+        platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
+        self.bodies = (*bodies, *platform)
+        self.deposit = Obstacles(*_segments(points, first))
+        self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
+        self._scene = Scene(scene((), points, 0.0).bodies)
+
+    def met(self, moves: Moves) -> Mask:
+        """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
+        met = np.zeros(len(moves.start), dtype=bool)
+        known = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
+        for first in range(0, len(known), MOVES):
+            rows = known[first : first + MOVES]
+            met[rows] = self._met(moves.of(rows))
+        return met
+
+    def names(self, moves: Moves) -> list[str]:
+        """What is met on any of the moves: deposit, bodies by their names and the platform."""
+        looks = _driven(self.cell, moves, FINE)
+        nozzle = self._nozzle(moves, looks)
+        alone = [("the deposit", Scene(scene((), looks.tip, 0.0).bodies, self.deposit))]
+        alone += [(body.name, scene((body,), looks.tip, nozzle.reach)) for body in self.bodies]
+        moment = moves.laid[looks.move]
+        return [name for name, one in alone if one.touched(nozzle, looks.tip, looks.axis, moment).any()]
+
+    def _met(self, moves: Moves) -> Mask:
+        looks = _driven(self.cell, moves, COARSE)
+        around = self._around(looks.tip)
+        thick = _thicker(self._nozzle(moves, looks), 0.5 * COARSE)
+        near = around.touched(thick, looks.tip, looks.axis, moves.laid[looks.move])
+        before = np.flatnonzero((looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]))
+        parts = int(np.ceil(COARSE / FINE))
+        step = np.linspace(0.0, 1.0, parts + 1)
+        share = looks.share[before, None] + step * (looks.share[before + 1] - looks.share[before])[:, None]
+        close = _looks(self.cell, moves, np.repeat(looks.move[before], parts + 1), share.ravel())
+        touched = around.touched(self._nozzle(moves, close), close.tip, close.axis, moves.laid[close.move])
+        return np.bincount(close.move, touched, minlength=len(moves.start)) > 0
+
+    def _around(self, tip: Array) -> Scene:
+        """All that nozzles at the tips (k, 3) may meet. Trees of bodies take long: they are kept for the next moves."""
+        low, high = tip.min(axis=0), tip.max(axis=0)
+        if (low < self._box[0]).any() or (high > self._box[1]).any():
+            # larger at once by half where it is too small, so that it seldom is again
+            known = np.isfinite(self._box).all()
+            more = 0.5 * (high - low) if known else np.zeros(3)
+            least, most = self._box
+            self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
+            nozzle = self.cell.nozzle
+            reach = float(np.hypot(nozzle.length, 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * nozzle.length))
+            self._scene = scene(self.bodies, self._box, reach, self.deposit)
+        return self._scene
+
+    def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
+        """The nozzle at each look, less what touches rightly near the ends of beads."""
+        nozzle = self.cell.nozzle
+        radius, slope = 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle))
+        away = np.fmin(*(np.linalg.norm(looks.tip - end[looks.move], axis=1) for end in (moves.left, moves.entered)))
+        exempt = np.fmax(beside_tip(radius, slope) + ABOVE_FACES - away, 0.0)
+        return travelling(radius, slope, nozzle.length, exempt)
 
 
 def collisions(
     motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | None = None, bodies: Sequence[Body] = ()
 ) -> list[Issue]:
-    """An issue for every travel between two beads on which the nozzle would meet deposit, platform or bodies.
+    """An issue for every bead on the rapid way to which, or after the last one, the nozzle would meet deposit, platform or
+    bodies.
 
-    Only the travels to the beads `among` (layer, bead) are looked at, where they are given.
-
-    The withdrawal and the way down run along the tool axis, through room the nozzle itself keeps clear; their upper
-    ends belong to the travel and are looked at. Where they are longer than the nozzle, its end enters further room: that
-    is looked at too.
+    Only the ways to the beads `among` (layer, bead) are looked at, where they are given.
     """
-    travels = np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1
-    # the way down onto a start is the last rapid row before the deposit: not a travel
-    down = np.append(motion.deposit[1:], False)
-    travels = travels[~down[travels]]
+    rows, moves = moves_of(motion)
     if among is not None:
-        chosen = [(int(motion.layer[row]), int(motion.bead[row])) in among for row in travels]
-        travels = travels[np.array(chosen, dtype=bool)]
-    travels = travels[~np.isnan(motion.joints[travels - 1] + motion.joints[travels]).any(axis=1)]
-    length = cell.nozzle.length
-    met = _met([_way(motion, cell, row) for row in travels], travels, motion, cell, bodies, TOUCH)
-    lifts = [lift for lift in _long_lifts(motion, length) if among is None or lift[2:] in among]
-    ends = [_along(motion, start, height) for start, height, _, _ in lifts]
-    met_above = _met(ends, np.array([lift[0] for lift in lifts], dtype=np.intp), motion, cell, bodies, length - SLIDE)
-    places = [(int(motion.layer[row]), int(motion.bead[row])) for row in travels[met]]
-    places += [lift[2:] for lift, hit in zip(lifts, met_above, strict=True) if hit]
-    what = ", ".join(["the deposit", *(body.name for body in bodies)]) + " or the platform"
+        chosen = np.array([(int(motion.layer[row]), int(motion.bead[row])) in among for row in rows], dtype=bool)
+        rows, moves = rows[chosen], moves.of(np.flatnonzero(chosen))
+    laid = motion.deposit
+    surroundings = Surroundings(cell, motion.position[laid], motion.point[laid] == 0, bodies)
+    met = surroundings.met(moves)
+    places: dict[tuple[int, int], list[int]] = {}
+    for k in np.flatnonzero(met).tolist():
+        places.setdefault((int(motion.layer[rows[k]]), int(motion.bead[rows[k]])), []).append(k)
     return [
-        Issue(
-            ERROR, "RAPID_COLLISION",
-            f"on its way from the bead before the nozzle would meet {what}; raise process.between_layers.lift",
-            layer, bead,
-        )
-        for layer, bead in dict.fromkeys(places)
+        collision(surroundings.names(moves.of(np.array(some))), layer, bead)
+        for (layer, bead), some in places.items()
     ]
 
 
-def _met(
-    ways: Sequence[tuple[Array, Array]], rows: Index, motion: Motion, cell: Cell, bodies: Sequence[Body], low: float
-) -> Mask:
-    """Whether the nozzle above the height `low` meets anything on each of the ways."""
-    if not ways:
-        return np.zeros(0, dtype=bool)
-    hit: Mask = _hits_deposit(ways, rows, motion, cell, low) | _hits_bodies(ways, bodies, cell, low)
-    return hit
-
-
-def _long_lifts(motion: Motion, length: float) -> list[tuple[int, float, int, int]]:
-    """The ways from beads up and down onto them that are longer than `length`: row of the deposit, height, layer, bead."""
-    laid, joints = motion.deposit, motion.joints
-    found = []
-    for bead_row, lifted in (
-        *((row, row + 1) for row in np.flatnonzero(laid[:-1] & ~laid[1:])),
-        *((row, row - 2) for row in np.flatnonzero(~laid[:-1] & laid[1:]) + 1 if row > 1 and not laid[row - 2]),
-    ):
-        height = float(np.linalg.norm(motion.position[lifted] - motion.position[bead_row]))
-        if height > length and not np.isnan(joints[lifted]).any():
-            found.append((int(bead_row), height, int(motion.layer[lifted]), int(motion.bead[lifted])))
-    return found
-
-
-def _along(motion: Motion, row: int, height: float) -> tuple[Array, Array]:
-    """Tip and tool axis (k, 3) at looks from a point of the deposit up along its tool axis."""
-    axis = motion.tool[row]
-    tip = motion.position[row] + np.append(np.arange(0.0, height, SLIDE), height)[:, None] * axis
-    return tip, np.broadcast_to(axis, tip.shape)
-
-
-def _way(motion: Motion, cell: Cell, row: int) -> tuple[Array, Array]:
-    """Tip and tool axis (k, 3) at looks along the travel to a row, in part coordinates."""
-    start, end = motion.joints[row - 1], motion.joints[row]
-    steps = np.where(cell.machine.chain.sliding, SLIDE, STEP)
-    looks = 1 + int(np.ceil((np.abs(end - start) / steps).max()))
-    joints = start + np.linspace(0.0, 1.0, looks + 1)[:, None] * (end - start)
-    return cell.tip_in_part(cell.machine.chain.forward(joints))
-
-
-def _hits_bodies(ways: Sequence[tuple[Array, Array]], bodies: Sequence[Body], cell: Cell, low: float) -> Mask:
-    """Whether the nozzle, above the height `low`, meets a body on each of the ways."""
-    if not bodies:
-        return np.zeros(len(ways), dtype=bool)
-    nozzle = cell.nozzle
-    solid = Frustum(
-        max(0.5 * nozzle.diameter - BODY_TOUCH, 0.0), float(np.tan(nozzle.half_angle)), max(low, BODY_TOUCH),
-        nozzle.length,
+def collision(names: Sequence[str], layer: int, bead: int) -> Issue:
+    """The issue about a bead on the rapid way to which the nozzle would meet what the names tell."""
+    return Issue(
+        ERROR, "RAPID_COLLISION",
+        f"on its way from the bead before the nozzle would meet {', '.join(names)} at every retract distance and direction "
+        "tried; move the seam or the part, or take a more slender nozzle", layer, bead,
     )
-    tip, axis = (np.concatenate(parts) for parts in zip(*ways, strict=True))
-    touched = of_bodies(bodies, tip, solid.reach).touched(solid, tip, axis)
-    begin = np.r_[0, np.cumsum([len(way[0]) for way in ways])[:-1]]
-    hits: Mask = np.logical_or.reduceat(touched, begin)
-    return hits
 
 
-def _hits_deposit(
-    ways: Sequence[tuple[Array, Array]], rows: Index, motion: Motion, cell: Cell, low: float = TOUCH
-) -> Mask:
-    """Whether the nozzle, above the height `low`, meets the platform or what is deposited before the row, on each way."""
-    nozzle = cell.nozzle
-    solid = Frustum(0.5 * nozzle.diameter - TOUCH, float(np.tan(nozzle.half_angle)), max(low, TOUCH), nozzle.length)
-    points, laid = _obstacles(motion, cell)
-    tip, axis = (np.concatenate(parts) for parts in zip(*ways, strict=True))
-    count = np.array([len(way[0]) for way in ways])
-    touched = Obstacles(points[:, None], laid).touched(solid, tip, axis, np.repeat(rows, count))
-    local = (tip - cell.mount[:3, 3]) @ cell.mount[:3, :3]
-    touched |= (local[:, 2] < -TOUCH) & (np.hypot(local[:, 0], local[:, 1]) < 0.5 * cell.platform_diameter)
-    hits: Mask = np.logical_or.reduceat(touched, np.cumsum(count) - count)
-    return hits
+def moves_of(motion: Motion) -> tuple[Index, Moves]:
+    """The rows (k,) of a motion that a rapid move leads to, and the moves. The way to its first row is not known."""
+    rows = np.flatnonzero(~motion.deposit[1:]) + 1
+    laid = np.flatnonzero(motion.deposit)
+    before = np.searchsorted(laid, rows)
+    points = np.concatenate([np.full((1, 3), np.nan), motion.position[laid], np.full((1, 3), np.nan)])
+    return rows, Moves(motion.joints[rows - 1], motion.joints[rows], before, points[before], points[before + 1])
 
 
-def _obstacles(motion: Motion, cell: Cell) -> tuple[Array, Index]:
-    """Points (m, 3) of deposit and platform in part coordinates, and the row (m,) from which each is there."""
-    rows = np.flatnonzero(motion.deposit)
-    along = np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0, prepend=motion.position[rows[:1]]), axis=1))
-    kept = np.append(True, np.diff(np.floor(along / GRAIN)) > 0)
-    radius = 0.5 * cell.platform_diameter
-    grid = np.arange(-radius, radius + PLATFORM_GRAIN, PLATFORM_GRAIN)
-    x, y = (values.ravel() for values in np.meshgrid(grid, grid))
-    inside = np.hypot(x, y) <= radius
-    disc = np.stack([x, y, np.zeros(len(x))], axis=1)[inside] @ cell.mount[:3, :3].T + cell.mount[:3, 3]
-    points = np.concatenate([disc, motion.position[rows[kept]]])
-    return points, np.concatenate([np.full(len(disc), -1), rows[kept]])
+def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
+    """Looks along all moves, between which no point of the nozzle goes farther than the largest way, mm."""
+    chain = cell.machine.chain
+    steps = np.where(chain.sliding, SLIDE, STEP)
+    count = 1 + np.ceil((np.abs(moves.end - moves.start) / steps).max(axis=1)).astype(np.intp)
+    looks = _evenly(cell, moves, count)
+    # an arm's tip goes far while its axes hardly turn
+    same = looks.move[1:] == looks.move[:-1]
+    way = np.linalg.norm(np.diff(looks.tip, axis=0), axis=1) + cell.nozzle.length * np.linalg.norm(
+        np.diff(looks.axis, axis=0), axis=1)
+    longest = np.zeros(len(count))
+    np.maximum.at(longest, looks.move[1:][same], way[same])
+    more = count * np.maximum(np.ceil(longest / largest).astype(np.intp), 1)
+    return looks if (more == count).all() else _evenly(cell, moves, more)
+
+
+def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
+    """One look more along each move than the count (k,)."""
+    move = np.repeat(np.arange(len(count)), count + 1)
+    step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)
+    return _looks(cell, moves, move, step / count[move])
+
+
+def _looks(cell: Cell, moves: Moves, move: Index, share: Array) -> Looks:
+    joints = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
+    tip, axis = cell.tip_in_part(cell.machine.chain.forward(joints))
+    return Looks(tip, axis, move, share)
+
+
+def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
+    """A nozzle that holds all that is no farther than so many mm from the nozzle."""
+    return Nozzle(*(
+        replace(solid, radius=solid.radius + more * np.hypot(1.0, solid.slope), low=solid.low - more, high=solid.high + more)
+        for solid in (nozzle.bodies, nozzle.deposit)
+    ))
+
+
+def _segments(points: Array, first: Mask) -> tuple[Array, Index]:
+    """The deposit as segments (k, 2, 3) of about GRAIN, and the row (k,) from which each is there; a bead of one row is a
+    segment without length."""
+    step = np.diff(points, axis=0, append=points[-1:])
+    length = np.linalg.norm(step, axis=1)
+    way = step / np.maximum(length, 1e-12)[:, None]
+    turn = np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=1)
+    passed = np.floor(np.concatenate([[0.0], np.cumsum(length)])[: len(points)] / GRAIN)
+    bent = np.floor(np.cumsum(turn) / BENT)
+    kept = np.flatnonzero(
+        first | np.append(first[1:], True)[: len(points)] | (np.diff(passed, prepend=-1.0) > 0)
+        | (np.diff(bent, prepend=-1.0) > 0)
+    )
+    start = np.where(first[kept], kept, np.append(kept[:1], kept[:-1]))
+    whole = ~first[kept] | np.append(first[1:], True)[kept]
+    return np.stack([points[start], points[kept]], axis=1)[whole], kept[whole]

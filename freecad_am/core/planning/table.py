@@ -298,11 +298,3 @@ def _residual_issue(arm: FiveAxis, cell: Cell, lock: Lock, worst: Stray, allowed
         ERROR, "FOUR_AXES", f"{told}, more than joints.max_residual allows ({most:.3g} deg); lock the other axis, elsewhere "
         "or none", *place,
     )
-
-
-def lifted(cell: Cell, axes: Array, point: Array, tool: Array, lift: float) -> Array:
-    """Axis values (5,) with the tip withdrawn from `point` (3,) by `lift` mm along `tool` (3,): nothing turns."""
-    arm = FiveAxis(cell.machine.chain)
-    above, _ = cell.on_flange((point + lift * tool)[None], tool[None])
-    return np.asarray(arm.placed(axes[None, list(arm.turning)], above, cell.station)[0])
-

@@ -15,7 +15,8 @@ from freecad_am.core.parameters.program import ProgramParameters, StartParameter
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build, check_controller
-from freecad_am.core.planning.rapids import _hits_deposit, collisions
+from freecad_am.core.planning.rapids import Moves as Driven
+from freecad_am.core.planning.rapids import Surroundings, collisions
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
@@ -111,18 +112,26 @@ def test_a_rapid_through_the_part_is_refused(planned):
 def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, met):
     """Tips over, under and beside the platform, upright and laid over: 60 mm of nozzle, opening by 20 deg."""
     _, cell, _, motion = planned()
-    assert _hits_deposit([(np.array([tip]), np.array([axis]))], np.array([0]), motion, cell)[0] == met
+    surroundings = Surroundings(cell, motion.position[motion.deposit], motion.point[motion.deposit] == 0, ())
+    poses = cell.machine.opw.inverse(cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1)))[:, 0]
+    joints = poses[np.isfinite(poses).all(axis=1)][:1]
+    nowhere = np.full((1, 3), np.nan)
+    moves = Driven(joints, joints, np.zeros(1, dtype=int), nowhere, nowhere)
+    assert surroundings.met(moves)[0] == met
+    assert surroundings.names(moves) == ["the platform"] * met
 
 
 def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):
-    """Seams moved for a limited axis send the nozzle across the part; brute force finds it clear at every degree."""
+    """Seams moved for a limited axis send the nozzle across the part, and beads lean on its limits: brute force finds every
+    rapid clear at every degree, and every row within limits."""
     toolpath = sliced("sphere", 5.0)
     cell = cell_of(toolpath, limits="maker")
     joint_path = plan_joints(toolpath, cell, JointParameters())
     motion, issues = assemble(joint_path, cell, ProcessParameters())
-    assert [issue.code for issue in issues] == ["RAPID_LIFTED"]
+    assert [issue.code for issue in issues] == ["RAPID_LIFTED", "RAPID_ASIDE", "RAPID_OTHER"]
+    assert (cell.limits.margin(motion.joints) > 0.0).all()
     nozzle = cell.nozzle
-    for row in np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1:
+    for row in np.flatnonzero(~motion.deposit[1:]) + 1:
         looks = 2 + int(np.degrees(np.abs(motion.joints[row] - motion.joints[row - 1]).max()))
         share = np.linspace(0.0, 1.0, looks)[:, None]
         joints = motion.joints[row - 1] + share * (motion.joints[row] - motion.joints[row - 1])

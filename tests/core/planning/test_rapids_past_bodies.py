@@ -56,7 +56,7 @@ def test_a_body_in_the_way_is_found_and_one_beside_it_is_not(planned):
         body = spike(at, 0.3, "clamp")
         found = {(issue.layer, issue.bead) for issue in collisions(motion, cell, bodies=[body])}
         wanted = {
-            (int(motion.layer[k]), int(motion.bead[k])) for k in travels
+            (int(motion.layer[k]), int(motion.bead[k])) for k in np.flatnonzero(~motion.deposit[1:]) + 1
             if any(inside(corner, *looks(motion, cell, k), cell.nozzle) for corner in body.vertices)
         }
         assert (int(motion.layer[row]), int(motion.bead[row])) in wanted and found == wanted

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Rapids as they are driven: straight in the joints from row to row, through PyKDL, against the deposit by brute force."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import ERROR, has_errors
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.motion import APPROACH, DEPOSIT, RETRACT, TRAVEL
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.kdl.chain import KdlArm
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def straight(start, end, count=15):
+    points = np.linspace(start, end, count)
+    up = np.tile(UP, (count, 1))
+    return Bead(points, up, up, np.linspace(0.0, 1.0, count), np.full(count, 8.0), False)
+
+
+def wall_between():
+    """A wall 24 mm high, and after it one bead on either side of it, at its foot."""
+    beads = [straight([0.0, -40.0, z], [0.0, 40.0, z]) for z in np.arange(1.0, 25.0, 1.0)]
+    beads += [straight([-25.0, 30.0, 1.0], [-25.0, 0.0, 1.0]), straight([25.0, 0.0, 1.0], [25.0, 30.0, 1.0])]
+    return Toolpath(tuple(Layer((bead,)) for bead in beads), np.eye(4), 1.0, 0.02, family="developable")
+
+
+@pytest.fixture(scope="module")
+def on_table():
+    parameters = CellParameters(machine="table-xyzac", setup="rotary-table", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0),
+                                mount="part")
+    cell = cells.resolve(parameters, np.eye(4), "developable")
+    path = plan_joints(wall_between(), cell, JointParameters())
+    assert path.feasible, path.issues
+    return cell, path
+
+
+def lifting(lift):
+    return ProcessParameters(between_layers=BetweenLayersParameters(lift=lift))
+
+
+def places(motion, cell, row, count):
+    """Tips and axes on the move to a row, by another library's kinematics."""
+    share = np.linspace(0.0, 1.0, count)[:, None]
+    joints = motion.joints[row - 1] + share * (motion.joints[row] - motion.joints[row - 1])
+    flange = KdlArm(cell.machine).forward(joints)
+    seen = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
+    return seen[:, :3, 3], seen[:, :3, 2]
+
+
+def deepest(motion, cell, row, count=60):
+    """By how many mm, at the most, a point of the deposit is inside the nozzle on the move to a row; what is within one
+    diameter of the tip and what is behind it left out."""
+    nozzle = cell.nozzle
+    laid = motion.position[:row][motion.deposit[:row]]
+    deep = -np.inf
+    for tip, axis in zip(*places(motion, cell, row, count)):
+        height = (laid - tip) @ axis
+        across = np.linalg.norm(laid - tip - height[:, None] * axis, axis=1)
+        near = np.linalg.norm(laid - tip, axis=1) <= nozzle.diameter
+        inside = 0.5 * nozzle.diameter + height * np.tan(nozzle.half_angle) - across
+        deep = max(deep, inside[(height > 0.0) & (height < nozzle.length) & ~near].max(initial=-np.inf))
+    return deep
+
+
+@pytest.mark.parametrize("lift", [0.0, 5.0, 20.0])
+def test_no_retract_distance_lets_the_nozzle_through_a_wall(on_table, lift):
+    cell, path = on_table
+    motion, issues = assemble(path, cell, lifting(lift))
+    # without a retract the tip goes sideways off the wall's last bead and touches it
+    assert [(issue.code, issue.layer) for issue in issues] == [("RAPID_LIFTED", len(path.beads) - (2 if lift == 0.0 else 1))]
+    assert not has_errors(issues)
+    worst = max(deepest(motion, cell, row) for row in np.flatnonzero(~motion.deposit[1:]) + 1)
+    assert worst < 0.1
+    # and between beads of the wall it goes over as it did
+    here = (motion.layer == 3) & ~motion.deposit
+    assert motion.role[here].tolist() == ([TRAVEL] if lift == 0.0 else [RETRACT, TRAVEL, APPROACH])
+    assert ((motion.role == DEPOSIT) == motion.deposit).all()
+
+
+@pytest.mark.parametrize("lift", [20.0, 200.0])
+def test_a_retract_keeps_to_its_line_however_long(sliced, cell_of, lift):
+    toolpath = sliced("sphere", 15.0, chord_error=0.3)
+    cell = cell_of(toolpath)
+    path = plan_joints(toolpath, cell, JointParameters())
+    motion, issues = assemble(path, cell, lifting(lift))
+    assert not has_errors(issues)
+    rows = np.flatnonzero((motion.role == RETRACT) | (motion.role == APPROACH))
+    laid = np.flatnonzero(motion.deposit)
+    assert len(rows) >= 2 * len(path.beads)
+    counted = 0
+    for row in rows:
+        if row == 0:
+            continue
+        at = laid[laid < row][-1] if motion.role[row] == RETRACT else laid[laid > row][0]
+        tip = places(motion, cell, row, 50)[0] - motion.position[at]
+        away = np.linalg.norm(tip - (tip @ motion.tool[at])[:, None] * motion.tool[at], axis=1)
+        assert away.max() < 0.55, (row, away.max())
+        counted += 1
+    assert counted >= len(rows) - 1
+    if lift == 20.0:  # short ones are one move
+        assert len(rows) == 2 * len(path.beads)
+
+
+def within(cell, axis, low, high):
+    """The cell with other limits of an axis."""
+    lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
+    lower[axis], upper[axis] = low, high
+    return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper))
+
+
+def test_a_limit_that_leaves_room_for_less_is_kept_and_told_and_one_that_leaves_none_refuses(on_table):
+    cell, path = on_table
+    motion, _ = assemble(path, cell, lifting(20.0))
+    deposit, every = motion.joints[motion.deposit], motion.joints
+    # the axis whose range the retracts widen most
+    wider = np.stack([deposit.min(axis=0) - every.min(axis=0), every.max(axis=0) - deposit.max(axis=0)])
+    end, axis = np.unravel_index(wider.argmax(), wider.shape)
+    low, high = cell.limits.lower[axis], cell.limits.upper[axis]
+
+    def leaving(room):
+        ends = (deposit[:, axis].min() - room, high) if end == 0 else (low, deposit[:, axis].max() + room)
+        return within(cell, axis, *ends)
+
+    short = leaving(8.0)
+    motion, issues = assemble(path, short, lifting(20.0))
+    assert "RAPID_OTHER" in [issue.code for issue in issues]
+    assert (motion.joints[:, axis] >= short.limits.lower[axis]).all() and (
+        motion.joints[:, axis] <= short.limits.upper[axis]).all()
+    none = leaving(0.1)
+    _, issues = assemble(path, none, lifting(20.0))
+    wrong = [issue for issue in issues if issue.level == ERROR and issue.code == "RAPID_LIMIT"]
+    assert wrong and all(issue.layer is not None and issue.bead == 0 for issue in wrong)
+    bound = none.limits.lower[axis] if end == 0 else none.limits.upper[axis]
+    assert all(f"{none.limits.labels[axis]} would be at" in issue.message for issue in wrong)
+    assert all(f"{bound:g} mm" in issue.message and "process.between_layers.lift" in issue.message for issue in wrong)
