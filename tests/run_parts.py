@@ -91,4 +91,4 @@ def tell_times(parts: list[Part], wall: float, tests: str) -> None:
     if slowest:
         print(f"freecad-am: the slowest of {len(rows)} tests")
     for took, used, name in slowest:
-        print(f"  {took:7.1f} s {used:7.1f} s  {name}")
+        print(f"  {took:7.1f} s {used:7.1f} s  {name[:160]}")

@@ -31,7 +31,7 @@ process:
 program:
   post: fanuc
 """
-PATIENCE = 120  # s for a command
+PATIENCE = 300  # s for a command, on a machine that may be busy
 
 
 @dataclass

@@ -119,7 +119,7 @@ class Plans:
         done = subprocess.run(
             [str(self.launcher), "plan", str(path), "-o", str(out), "--no-page"], cwd=self.folder, capture_output=True,
             env={**os.environ, "FREECAD_USER_HOME": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}, text=True,
-            encoding="utf-8", timeout=120, check=False, stdin=subprocess.DEVNULL,
+            encoding="utf-8", timeout=300, check=False, stdin=subprocess.DEVNULL,
         )
         assert done.returncode == 0, done.stderr
         return wall_checks.read(out)

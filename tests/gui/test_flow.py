@@ -223,7 +223,7 @@ def test_a_wrong_name_of_a_program_is_told_under_its_field(person, hemisphere):
         person.panel_closed()
 
 
-def test_the_result_is_seen_whole_and_the_next_step_is_told(person, hemisphere):
+def test_the_result_is_seen_whole_and_the_next_step_is_told(person, hemisphere, coarse):
     view = person.gui.activeDocument().activeView()
     view.viewTop()
     person.idle(0.2)
@@ -240,7 +240,7 @@ def test_the_result_is_seen_whole_and_the_next_step_is_told(person, hemisphere):
     assert len(jobs(hemisphere.Document)) == 2
 
 
-def test_a_job_is_a_group_that_can_be_left_and_deleted_whole(person, hemisphere):
+def test_a_job_is_a_group_that_can_be_left_and_deleted_whole(person, hemisphere, coarse):
     doc = hemisphere.Document
     person.select(hemisphere)
     new_job(person)
@@ -274,7 +274,7 @@ def entries(person, obj):
     return {action.objectName().removeprefix("RoboticAM_Menu"): action for action in menu.actions()}, menu
 
 
-def test_context_menus_do_what_they_say(person, hemisphere):
+def test_context_menus_do_what_they_say(person, hemisphere, coarse):
     doc = hemisphere.Document
     person.select(hemisphere)
     new_job(person)
