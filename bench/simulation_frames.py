@@ -49,7 +49,7 @@ def run_of_points(layer_height: float, points: int, document: str):
     return Run(
         document=document, title="frames", objects=(), cell=cell, looks=looks, toolpath=toolpath, width=1.0, motion=motion,
         times=times, pace=kept, watch=watch(motion, cell, kept, unknown, unknown),
-        totals=totals(motion, times, process, toolpath.layer_height),
+        totals=totals(motion, times, process, toolpath),
     )
 
 

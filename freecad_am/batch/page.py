@@ -246,14 +246,16 @@ def _spacing_motion(report: dict[str, Any]) -> str:
     return f"<h2>What spacing gains in motion</h2>{_table(whole)}{_table(axes)}"
 
 
-def _totals(sums: dict[str, float]) -> str:
+def _totals(sums: dict[str, Any]) -> str:
     """What the job takes and deposits."""
     return _pairs("Time and material", {
         "the whole job": _clock(sums["time_s"]), "depositing": _clock(sums["deposit_s"]),
         "rapid moves": _clock(sums["rapid_s"]), "waits and lead times": _clock(sums["wait_s"]),
         "length of the deposit": f"{sums['deposit_mm'] / 1000:.3f} m",
         "length of rapid moves": f"{sums['rapid_mm'] / 1000:.3f} m",
-        "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3", "mass of the deposit": f"{sums['mass_g']:,.1f} g",
+        "volume of the deposit": f"{sums['volume_cm3']:,.2f} cm\u00b3",
+        "volume of the wire fed": "unknown" if sums["fed_cm3"] is None else f"{sums['fed_cm3']:,.2f} cm\u00b3",
+        "mass of the deposit": f"{sums['mass_g']:,.1f} g",
     })
 
 

@@ -31,7 +31,7 @@ def build(
 ) -> dict[str, Any]:
     """The report of a toolpath alone; `add_joints` completes it. Lengths mm, times s; None where there is no value."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
-    sums = totals.totals(motion, times, process, toolpath.layer_height)
+    sums = totals.totals(motion, times, process, toolpath)
     return {
         "version": VERSION,
         "name": name,
@@ -49,7 +49,7 @@ def build(
         "preflight": [],
         "comparison": [],
         "spacing_comparison": [],
-        "process": _process(process),
+        "process": _process(process, toolpath),
         "beads": predicted.beads(toolpath),
         "machine": None,
         "timing_s": {},
@@ -97,10 +97,14 @@ def spread(spacing: Sequence[Array]) -> dict[str, float | None]:
     return {"min": float(values.min()), "mean": float(values.mean()), "max": float(values.max())}
 
 
-def _process(process: ProcessParameters) -> dict[str, Any]:
+def _process(process: ProcessParameters, toolpath: Toolpath) -> dict[str, Any]:
     return {
         "travel_speed_mm_s": process.travel_speed, "bead_width_mm": process.bead_width,
-        "wire": {"diameter_mm": process.wire.diameter, "feed_mm_s": process.wire.feed, "feed_mode": process.wire.feed_mode},
+        "bead_width_counted_mm": toolpath.bead_width,
+        "wire": {
+            "diameter_mm": process.wire.diameter, "feed_mm_s": toolpath.wire_feed, "feed_mode": process.wire.feed_mode,
+            "feed": "auto" if process.wire.feed == "auto" else "given",
+        },
         "density_g_cm3": process.density,
         "temperature": process.temperature, "gas": process.gas, "stand_off_mm": process.stand_off,
     }

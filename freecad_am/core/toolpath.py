@@ -253,6 +253,7 @@ class Toolpath:
     (spacing, tilt-back, clearance). surroundings: bodies in part coordinates that the nozzle is kept clear of. law: what a
     bead model knows of beads at other speeds than theirs, None without one. bead_width: mm that beads count
     as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
+    wire_feed: mm/s, None where it is not known.
     """
 
     layers: tuple[Layer, ...]
@@ -266,6 +267,7 @@ class Toolpath:
     law: SpeedLaw | None = None
     bead_width: float | None = None
     unsupported: float | None = None
+    wire_feed: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

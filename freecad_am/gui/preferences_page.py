@@ -13,6 +13,7 @@ from PySide import QtGui
 from ..core.issues import InputError
 from ..core.kinematics import machine
 from ..objects import preferences, user_machines
+from ..objects.rows import MIXED
 from ..posts import catalogue
 from . import fields, suggestions
 from .texts import tr, translated
@@ -147,15 +148,15 @@ class PreferencesPage:
         else:
             preferences.keep("Machine", "" if name == preferences.builtin_machine() else name)
 
-    def _figures(self) -> dict[str, float]:
-        """The figures that are sound, in outer units by row key."""
-        found = {}
+    def _figures(self) -> dict[str, Any]:
+        """The figures that are sound, in outer units by row key; texts of those that take words."""
+        found: dict[str, Any] = {}
         for key, field in self.process.items():
             try:
                 value = field.value
                 inner = field.row.inner(value, field.label)
                 preferences.check(field.row, inner)
-                found[key] = float(field.row.outer(inner))
+                found[key] = field.row.text(inner) if field.row.form == MIXED else float(field.row.outer(inner))
             except InputError as error:
                 _warn(tr("{}: {}").format(field.label, translated(error.message)))
         return found

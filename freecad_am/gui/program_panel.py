@@ -142,7 +142,7 @@ def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginn
     times = timeline(made.motion, job.process, [layer.wait for layer in made.toolpath.layers])
     return Beginning(
         main, "\n".join(lines), sum(content.count(b"\n") for content in made.files.values()), len(made.files),
-        totals(made.motion, times, job.process, made.toolpath.layer_height), job.parameters.dry_run, stale,
+        totals(made.motion, times, job.process, made.toolpath), job.parameters.dry_run, stale,
         promised(),
     )
 

@@ -138,7 +138,7 @@ def _heights_as_run(path: JointsOfBeads, toolpath: Toolpath, process: ProcessPar
 def _sums(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> tuple[tuple[str, float], ...]:
     """What the job takes and deposits, by property name."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
-    sums = totals(motion, times, process, toolpath.layer_height)
+    sums = totals(motion, times, process, toolpath)
     return (
         ("Duration", float(np.nansum(motion.duration))), ("TotalTime", sums.time), ("DepositTime", sums.deposit_time),
         ("WaitTime", sums.wait_time), ("DepositLength", sums.length), ("DepositVolume", sums.volume / MM3_PER_CM3),

@@ -7,6 +7,7 @@ gives the same program on every computer.
 
 from __future__ import annotations
 
+import math
 import os
 from typing import Any
 
@@ -79,19 +80,22 @@ def label(row: rows.Row) -> str:
 
 def process() -> dict[str, Any]:
     """What is preferred for the process in place of the defaults, by row key in outer units."""
-    found = {}
-    for row in process_rows():
-        default = float(row.outer(row.default))
-        value = App.ParamGet(GROUP).GetFloat(row.name, default) if App.GuiUp else default
-        if value != default:
+    found: dict[str, Any] = {}
+    for row in process_rows() if App.GuiUp else ():
+        number = App.ParamGet(GROUP).GetFloat(row.name, math.nan)
+        value = text(row.name) or number if row.form == rows.MIXED else number  # those that take words were numbers once
+        if value != row.outer(row.default) and value == value:
             found[row.key] = value
     return found
 
 
-def keep_process(values: dict[str, float]) -> None:
-    """Keep figures in outer units by row key; those that are the defaults leave no entry."""
+def keep_process(values: dict[str, Any]) -> None:
+    """Keep figures in outer units by row key, texts of those that take words; those that are the defaults leave no entry."""
     for row in process_rows():
-        if row.key in values and values[row.key] != row.outer(row.default):
+        if row.key in values and row.form == rows.MIXED:
+            App.ParamGet(GROUP).RemFloat(row.name)
+            keep(row.name, "" if values[row.key] == row.outer(row.default) else values[row.key])
+        elif row.key in values and values[row.key] != row.outer(row.default):
             App.ParamGet(GROUP).SetFloat(row.name, values[row.key])
         elif row.key in values:
             App.ParamGet(GROUP).RemFloat(row.name)

@@ -102,6 +102,8 @@ def _differs(obj: Any, row: Row, value: Any) -> bool:
 
 
 def _set(obj: Any, row: Row, value: Any) -> None:
+    if row.form == MIXED and obj.getTypeIdOfProperty(row.name) != _TYPES[MIXED]:
+        _retype(obj, row)
     if row.form in (MIXED, LENGTH_OR_POSE):
         setattr(obj, row.name, row.text(value))
     elif row.form == f.POSE:
@@ -114,6 +116,15 @@ def _set(obj: Any, row: Row, value: Any) -> None:
             # FreeCAD keeps angles within a turn and says nothing
             shown = f.outer_text(row.spec, value)
             raise InputError("BAD_VALUE", f"{obj.Label}.{row.name}", f"{shown} is out of range; give -360 to 360 deg")
+
+
+def _retype(obj: Any, row: Row) -> None:
+    """Make a property a text, which was a quantity in older documents and takes words by now. Until it is set it stays what
+    it was, so that opening such a document changes nothing."""
+    group = obj.getGroupOfProperty(row.name)
+    obj.setExpression(row.name, None)
+    obj.removeProperty(row.name)
+    obj.addProperty(_TYPES[MIXED], row.name, group, tooltip(row, _TYPES[MIXED]))
 
 
 def _has_time(obj: Any) -> bool:

@@ -17,6 +17,8 @@ from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
 from ..core.process import bead_table
+from ..core.process.bead_model import BeadModel
+from ..core.process.wire import fed
 from ..core.strategies import (
     developable,
     platform,
@@ -95,7 +97,7 @@ def planned(
 ) -> CoreToolpath:
     """The toolpath of a wall or of solids, the result of a feature, cut by the strategy of its family; what of it lies over
     nothing is told."""
-    made = _made(wall, strategy, build, process, cell)
+    made = fed(_made(wall, strategy, build, process, cell), process, _model(process))
     progress.report(CHECKED, "looking for beads over nothing")
     has_platform = cell is not None and cell.platform_diameter > 0.0
     stands = _mounted(cell, made) if cell is not None and has_platform else made.frame
@@ -137,6 +139,10 @@ def _made(
     return _kept_clear(toolpath, wall, build, cell)
 
 
+def _model(process: ProcessParameters) -> BeadModel | None:
+    return None if process.bead_model == "none" else bead_table.load(process.bead_model)
+
+
 def _mounted(cell: CellParameters, toolpath: CoreToolpath) -> Any:
     """The frame (4, 4) in part coordinates that sits on the platform."""
     return toolpath.frame if cell.mount == "feature" else np.eye(4)
@@ -151,7 +157,7 @@ def _of_solids(
     cell: CellParameters | None,
 ) -> CoreToolpath:
     """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
-    model = None if process.bead_model == "none" else bead_table.load(process.bead_model)
+    model = _model(process)
     if cell is not None and cell.mount != "feature":  # the feature's own frame is at its lowest end
         platform.refuse_solids_below(solids, np.eye(4), cell.platform_diameter)
     toolpath = developable.plan(solids, strategy, build, process, model, _share)

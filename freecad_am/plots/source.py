@@ -52,7 +52,7 @@ class Source:
     @cached_property
     def volumes(self) -> Array:
         """(n,) mm^3 of each row's segment."""
-        return volumes(self.motion, self.process, self.toolpath.layer_height)
+        return volumes(self.motion, self.process, self.toolpath)
 
     @cached_property
     def pace(self) -> Pace | None:

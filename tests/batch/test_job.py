@@ -13,7 +13,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
 
@@ -98,7 +98,7 @@ def test_the_documented_job_is_all_defaults(read):
     assert job.build_direction == BuildDirectionParameters()
     assert job.cell == dataclasses.replace(CellParameters(), mount="feature")
     assert job.joints == JointParameters()
-    assert job.process == ProcessParameters()
+    assert job.process == ProcessParameters(wire=WireParameters(feed=10.0))  # auto where it is left out
     assert job.program == ProgramParameters()
 
 

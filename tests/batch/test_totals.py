@@ -39,3 +39,28 @@ def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
     assert [sums[key] for key in ("time_s", "deposit_s", "wait_s", "deposit_mm", "volume_cm3", "mass_g")] == pytest.approx(
         [path.TotalTime, path.DepositTime, path.WaitTime, path.DepositLength.Value, path.DepositVolume, path.DepositMass]
     )
+    assert sums["fed_cm3"] == pytest.approx(path.DepositVolume, rel=1e-6)  # the wire balances by default
+    wire = told["process"]["wire"]
+    assert wire["feed"] == "auto" and wire["feed_mm_s"] * np.pi * 0.6**2 == pytest.approx(4.0 * 15.0 * 6.0)
+
+
+def test_solids_on_hubs_count_as_wide_as_they_are_filled(doc):
+    """A box on a rod: near its own volume with beads at a spacing of 4 mm, where 8 mm wide ones would be twice that."""
+    import Part
+    from FreeCAD import Vector
+
+    from freecad_am.core.parameters.process import ProcessParameters
+    from freecad_am.core.simulation import deposit
+
+    rod, box = doc.addObject("Part::Feature", "Rod"), doc.addObject("Part::Feature", "Block")
+    rod.Shape = Part.makeCylinder(20.0, 100.0)
+    solid = Part.makeBox(24.0, 24.0, 40.0, Vector(15.0, -12.0, 30.0)).cut(rod.Shape)
+    box.Shape = solid
+    feature = api.make_developable_feature(doc, box, rod, layer_height=2.0, bead_spacing=4.0, chord_error=0.1)
+    volumes = {}
+    for width, options in ((4.0, {}), (5.0, {"bead_width": 5.0})):
+        toolpath = api.make_toolpath(doc, feature, **options)
+        made, process = api.result(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
+        volumes[width] = deposit.volumes(deposit.alone(made), process, made).sum()
+        assert volumes[width] == pytest.approx(made.length * width * 2.0, rel=1e-9)
+    assert volumes[4.0] == pytest.approx(solid.Volume, rel=0.15)

@@ -224,3 +224,17 @@ def test_old_objects_get_the_properties_they_lack_and_keep_the_others(holder):
     assert properties.read(holder, RevolutionParameters, "strategy") == want
     properties.add(holder, RevolutionParameters, "Group")
     assert properties.read(holder, RevolutionParameters, "strategy") == want
+
+
+def test_a_wire_feed_of_an_older_document_keeps_its_number_and_may_become_auto(holder):
+    """It was a speed and is a text by now; opening the document changes neither value nor type nor fingerprint."""
+    holder.addProperty("App::PropertySpeed", "WireFeed", "Group", "").WireFeed = 10.0
+    properties.add(holder, ProcessParameters, "Group")
+    assert properties.read(holder, ProcessParameters, "process").wire.feed == 10.0
+    assert holder.getTypeIdOfProperty("WireFeed") == "App::PropertySpeed"
+    assert "WireFeed=10" in properties.fingerprint(holder, ProcessParameters)
+    properties.write(holder, rows.build(ProcessParameters, {"wire_feed": 12.5}))
+    assert properties.read(holder, ProcessParameters, "process").wire.feed == 12.5
+    properties.write(holder, ProcessParameters())
+    assert holder.WireFeed == "auto" and holder.getGroupOfProperty("WireFeed") == "Group"
+    assert properties.read(holder, ProcessParameters, "process").wire.feed == "auto"

@@ -108,7 +108,7 @@ def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
     source, _ = dome
     along = rows(source)
     rate, mass = process.deposit(source, along)
-    sums = totals(source.motion, source.times, source.process, source.toolpath.layer_height)
+    sums = totals(source.motion, source.times, source.process, source.toolpath)
     assert mass.curves[0].y[-1] == pytest.approx(sums.mass, rel=1e-12)
     unit = {"min": 60.0, "s": 1.0}[rate.x.unit]
     hours = np.diff(rate.curves[0].x, prepend=0.0) * unit / 3600.0

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from . import field as f
@@ -24,7 +25,10 @@ class WireParameters:
     """The feedstock; carried to the report and to the deposit commands of a post."""
 
     diameter: float = f.parameter(1.2, f.LENGTH, "Diameter of the wire.", low=0.0, open_low=True)
-    feed: float = f.parameter(10.0, f.SPEED, "Speed of the wire.", low=0.0)
+    feed: float | str = f.parameter(
+        "auto", f.SPEED, "Speed of the wire; auto: what makes beads of their width and the layer height at the travel "
+        "speed, or what the beads of the bead model were made with. 0: no wire.", low=0.0, words=("auto",),
+    )
     feed_mode: str = f.parameter(
         "constant", f.CHOICE, "Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so "
         "that beads keep their section.", choices=("constant", "proportional"),
@@ -32,6 +36,11 @@ class WireParameters:
 
     def __post_init__(self) -> None:
         f.check(self, "process.wire")
+
+    @property
+    def section(self) -> float:
+        """Section of the wire, mm2."""
+        return 0.25 * math.pi * self.diameter**2
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from ..issues import NOTE, WARNING, Issue
 from ..parameters.process import ProcessParameters
 from ..toolpath import Array, Bead, Toolpath
 from .bead_model import MINUTE, BeadModel
+from .wire import with_model
 
 HEIGHTS = "BEAD_HEIGHT"
 DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
@@ -93,7 +94,7 @@ def _sections(some: Segments, process: ProcessParameters, model: BeadModel) -> s
     if np.isfinite(some.wire).all():
         low, high = float(some.wire.min()), float(some.wire.max())
         return f". The wire runs in proportion to the speed, at {low:.3g} to {high:.3g} mm/s, and keeps their section"
-    per_mm = process.wire.feed / model.straight_speed(process.bead_width)
+    per_mm = with_model(process, model) / model.straight_speed(process.bead_width)
     slowest, fastest = (per_mm * float(value) / MINUTE for value in (some.speed.min(), some.speed.max()))
     if fastest < 1.05 * slowest:
         return ""

@@ -13,17 +13,29 @@ from ..toolpath import Toolpath
 Array = NDArray[np.float64]
 
 
-def volumes(motion: Motion, process: ProcessParameters, layer_height: float) -> Array:
+def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> Array:
     """(n,) mm^3 that the segment ending at each row leaves, 0 in rapid moves.
 
-    A bead's section is its width, predicted or else `process.bead_width`, times the layer height: what is deposited
-    once it has solidified, not what the wire holds.
+    A bead's section is its width, predicted or else as beads of the toolpath count, times the layer height: what is
+    deposited once it has solidified, not what the wire holds. Toolpaths of older documents do not tell how wide beads count;
+    there it is `process.bead_width`.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
-    width = np.where(np.isfinite(motion.width), motion.width, process.bead_width)
+    counted = process.bead_width if toolpath.bead_width is None else toolpath.bead_width
+    width = np.where(np.isfinite(motion.width), motion.width, counted)
     # the width of a segment is the mean of those at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
-    return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * layer_height
+    return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * toolpath.layer_height
+
+
+def fed(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:
+    """mm^3 of wire fed while depositing, lead times left out; None where the speed of the wire is not known, or there is
+    none."""
+    nominal = toolpath.wire_feed or np.nan
+    feed = np.where(np.isfinite(motion.wire), motion.wire, nominal)
+    seconds = np.where(motion.deposit & motion.moves, np.nan_to_num(motion.duration), 0.0)
+    total = process.wire.section * float((feed * seconds).sum())
+    return total if np.isfinite(total) else None
 
 
 def alone(toolpath: Toolpath, axes: int = 0) -> Motion:

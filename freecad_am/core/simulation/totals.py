@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ..motion import Motion
 from ..parameters.process import ProcessParameters
-from .deposit import volumes
+from ..toolpath import Toolpath
+from .deposit import fed, volumes
 from .timeline import Timeline
 
 Array = NDArray[np.float64]
@@ -20,7 +21,8 @@ MM3_PER_CM3 = 1000.0
 
 @dataclass(frozen=True)
 class Totals:
-    """Times s; length mm; volume mm^3; mass g. Waits are what the machine stands still on purpose, lead times included."""
+    """Times s; length mm; volume mm^3, of beads as they count; mass g of it; fed: mm^3 of wire, None where its speed is not
+    known. Waits are what the machine stands still on purpose, lead times included."""
 
     time: float
     deposit_time: float
@@ -30,16 +32,17 @@ class Totals:
     rapid_length: float
     volume: float
     mass: float
+    fed: float | None
 
 
-def totals(motion: Motion, times: Timeline, process: ProcessParameters, layer_height: float) -> Totals:
+def totals(motion: Motion, times: Timeline, process: ProcessParameters, toolpath: Toolpath) -> Totals:
     """The totals of a motion.
 
     The volume is that of `deposit.volumes`, the mass that by `process.density`.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[: len(motion)]
     deposits = motion.deposit & motion.moves
-    volume = float(volumes(motion, process, layer_height).sum())
+    volume = float(volumes(motion, process, toolpath).sum())
     steps = np.nan_to_num(motion.duration)
     return Totals(
         time=times.total,
@@ -50,13 +53,14 @@ def totals(motion: Motion, times: Timeline, process: ProcessParameters, layer_he
         rapid_length=float(np.nan_to_num(length)[~deposits].sum()),
         volume=volume,
         mass=volume / MM3_PER_CM3 * process.density,
+        fed=fed(motion, process, toolpath),
     )
 
 
-def as_dict(sums: Totals) -> dict[str, float]:
+def as_dict(sums: Totals) -> dict[str, float | None]:
     """The totals as report.json tells them."""
     return {
         "time_s": sums.time, "deposit_s": sums.deposit_time, "rapid_s": sums.rapid_time, "wait_s": sums.wait_time,
         "deposit_mm": sums.length, "rapid_mm": sums.rapid_length, "volume_cm3": sums.volume / MM3_PER_CM3,
-        "mass_g": sums.mass,
+        "mass_g": sums.mass, "fed_cm3": None if sums.fed is None else sums.fed / MM3_PER_CM3,
     }

@@ -20,6 +20,7 @@ from ..parameters.process import ProcessParameters
 from ..parameters.strategy import DevelopableParameters
 from ..process.bead_model import BeadModel
 from ..process.bead_speed import followed, radii
+from ..process.wire import with_model
 from ..toolpath import Bead
 from .hub_layers import period
 from .hub_lean import Course, Lean, Turned, held, unrolled
@@ -134,7 +135,7 @@ def _at_speed(bead: Bead, flat: Array, closed: bool, process: ProcessParameters,
     widths, heights, share = model.widths(speed, radius), model.heights(speed, radius), None
     if process.wire.feed_mode == "proportional":
         heights = model.heights_of_section(widths, process.bead_width)
-        share = process.wire.feed / model.straight_speed(process.bead_width)
+        share = with_model(process, model) / model.straight_speed(process.bead_width)
     at_speed = replace(bead, speed=segment, width=widths, height=heights, wire_share=share)
     return Rolled(at_speed, asked.too_slow | asked.too_fast, asked.too_tight)
 

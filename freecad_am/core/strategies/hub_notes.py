@@ -12,6 +12,7 @@ from ..parameters.process import ProcessParameters
 from ..parameters.strategy import DevelopableParameters
 from ..process.bead_model import MINUTE, BeadModel
 from ..process.predicted import heights_told
+from ..process.wire import with_model
 from ..toolpath import Array, Layer
 from .hub_beads import Rolled
 
@@ -72,10 +73,11 @@ def _of_model(
     )]
     found += _outside(made, length, process.bead_width, model)
     found.append(heights_told([one.bead for one in made], strategy.layer_height, process, model))
-    if abs(process.wire.feed - model.wire_feed) > 0.01 * model.wire_feed:
+    feed = with_model(process, model)
+    if abs(feed - model.wire_feed) > 0.01 * model.wire_feed:
         found.append(Issue(
             WARNING, "WIRE_FEED", f"the table was measured at a wire feed of {model.wire_feed:.4g} mm/s, the job has "
-            f"{process.wire.feed:.4g} mm/s; set process.wire.feed, or measure a table at it",
+            f"{feed:.4g} mm/s; set process.wire.feed to auto or to that, or measure a table at it",
         ))
     return found
 

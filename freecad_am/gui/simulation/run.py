@@ -84,7 +84,7 @@ def prepared(obj: Any) -> Callable[[], Run]:
                 motion, cell, kept, run.condition, run.threshold, run.issues,
                 arm_of(motion, cell, toolpath, process, shapes),
             ),
-            totals=totals(motion, times, process, toolpath.layer_height), stale=stale,
+            totals=totals(motion, times, process, toolpath), stale=stale,
         )
 
     return work

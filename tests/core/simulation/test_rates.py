@@ -2,6 +2,7 @@
 """Rates along beads against polynomials of time, and volumes against the totals."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from freecad_am.core.simulation.deposit import volumes
 from freecad_am.core.simulation.rates import rates
 from freecad_am.core.simulation.timeline import timeline
 from freecad_am.core.simulation.totals import totals
+
+PATH = SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=None)
 
 
 def of_time(motion, step, function):
@@ -48,9 +51,9 @@ def test_motions_of_a_row_or_none(a_motion, count):
 
 def test_volumes_add_up_to_the_totals_and_rapids_leave_none(a_motion):
     motion, process = a_motion(5), ProcessParameters(bead_width=7.0)
-    each = volumes(motion, process, 2.0)
-    assert each.sum() == pytest.approx(totals(motion, timeline(motion, process), process, 2.0).volume, rel=1e-12)
+    each = volumes(motion, process, PATH)
+    assert each.sum() == pytest.approx(totals(motion, timeline(motion, process), process, PATH).volume, rel=1e-12)
     assert not each[~motion.deposit].any() and not each[motion.point == 0].any() and (each[motion.deposit][1:7] > 0.0).all()
     plain = dataclasses.replace(motion, width=np.full(len(motion), np.nan))
     length = np.linalg.norm(np.diff(motion.position, axis=0), axis=1)[(motion.deposit & motion.moves)[1:]].sum()
-    assert volumes(plain, process, 2.0).sum() == pytest.approx(14.0 * length, rel=1e-12)
+    assert volumes(plain, process, PATH).sum() == pytest.approx(14.0 * length, rel=1e-12)

@@ -2,6 +2,7 @@
 """The timeline against the program that is posted, and against a walk through its blocks; totals against the toolpath."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -110,12 +111,13 @@ def test_layers_begin_where_their_rapids_do(a_motion):
 def test_totals_are_sums_over_the_segments(a_motion):
     motion = a_motion(8)
     line = timeline(motion, PROCESS)
-    sums = totals(motion, line, PROCESS, 2.0)
+    sums = totals(motion, line, PROCESS, SimpleNamespace(layer_height=2.0, bead_width=None, wire_feed=10.0))
     beads = [np.flatnonzero(motion.deposit & (motion.layer == k) & (motion.bead == b)) for k in range(4) for b in range(2)]
     length = sum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1).sum() for rows in beads)
     assert sums.length == pytest.approx(length)
     assert sums.volume == pytest.approx(length * 5.0 * 2.0)
     assert sums.mass == pytest.approx(length * 10.0 / 1000.0 * 2.7)
+    assert sums.fed == pytest.approx(sums.deposit_time * 10.0 * np.pi * 0.6**2)
     assert sums.time == pytest.approx(sums.deposit_time + sums.rapid_time + sums.wait_time)
     assert sums.wait_time == pytest.approx(8 * 1.1 + 3 * 3.0)
     whole = np.linalg.norm(np.diff(motion.position, axis=0), axis=1).sum()
@@ -128,7 +130,9 @@ def test_a_width_that_varies_counts_by_the_trapezoid(a_motion):
     motion = dataclasses.replace(motion, width=width)
     rows = np.flatnonzero(motion.deposit)
     steps = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
-    sums = totals(motion, timeline(motion, PROCESS), PROCESS, 1.5)
+    path = SimpleNamespace(layer_height=1.5, bead_width=None, wire_feed=None)
+    sums = totals(motion, timeline(motion, PROCESS), PROCESS, path)
+    assert sums.fed is None
     assert sums.volume == pytest.approx(1.5 * (2.5 * steps[0] + 3.5 * steps[1]))
 
 

@@ -305,7 +305,8 @@ def test_speeds_hold_the_width():
     told = {issue.code: issue for issue in path.issues}
     assert {"BEAD_MODEL", "BEAD_HEIGHT", "TIGHT_BENDS"} <= set(told) and "WIRE_FEED" not in told
     assert told["BEAD_HEIGHT"].level == "warning" and "6 mm" in told["BEAD_HEIGHT"].message
-    other = planned(solids(CONE, box()), process=ProcessParameters(bead_width=14.0), model=model)
+    ten = ProcessParameters(bead_width=14.0, wire=WireParameters(feed=10.0))
+    other = planned(solids(CONE, box()), process=ten, model=model)
     assert {"WIRE_FEED", "OUTSIDE_TABLE"} <= {issue.code for issue in other.issues if issue.level == "warning"}
     assert all(bead.width is None for _, _, bead in planned(solids(CONE, box())))
 
