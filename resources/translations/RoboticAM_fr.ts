@@ -655,13 +655,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire.</source>
-        <translation>Vitesse du fil.</translation>
+        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
+        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
-        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
+        <source>Speed of the wire; auto: what makes beads of their width and the layer height at the travel speed, or what the beads of the bead model were made with. 0: no wire. (mm/s)</source>
+        <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3838,13 +3838,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire.</source>
-        <translation>Vitesse du fil.</translation>
+        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
+        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Speed of the wire: constant, or in proportion to the travel speed that a bead model sets, so that beads keep their section.</source>
-        <translation>Vitesse du fil : constante, ou proportionnelle à la vitesse d&apos;avance que règle un modèle de cordon, pour que les cordons gardent leur section.</translation>
+        <source>Speed of the wire; auto: what makes beads of their width and the layer height at the travel speed, or what the beads of the bead model were made with. 0: no wire.</source>
+        <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -8143,8 +8143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
-        <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed, or measure a table at it</source>
-        <translation>le tableau a été mesuré à un dévidage de {0} mm/s, le travail a {1} mm/s ; réglez process.wire.feed, ou mesurez un tableau à ce dévidage</translation>
+        <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
+        <translation>le tableau a été mesuré avec un dévidage de {0} mm/s, le travail a {1} mm/s ; mettez process.wire.feed à auto ou à cette valeur, ou mesurez un tableau avec celle du travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
@@ -8285,6 +8285,11 @@
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the way of the move, and so its time, is not known</source>
         <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/wire.py"/>
+        <source>the wire feeds {0} mm3/s, {1} mm/s of {2} mm wire, but beads of {3} x {4} mm at {5} mm/s take {6} mm3/s; set process.wire.feed to {7} mm/s, or to auto, or make width, layer height and travel speed what they are</source>
+        <translation>le fil apporte {0} mm3/s, {1} mm/s d&apos;un fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s en demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s, ou à auto, ou donnez à la largeur, à la hauteur de couche et à la vitesse d&apos;avance leurs vraies valeurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
