@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from tests.batch import wall_checks
-from tests.batch.wall_examples import EXAMPLES, LONG, Plans
+from tests.batch.wall_examples import EXAMPLES, Plans
 
 CHORD = 0.01  # mm, the chord error of the jobs
 FINE = 2e-5  # mm, at which chords stand for the curve
@@ -22,21 +22,21 @@ def plans(tmp_path_factory):
     return Plans(Path(__file__).resolve().parents[2], tmp_path_factory.mktemp("walls"))
 
 
-@pytest.fixture(scope="module", params=[*EXAMPLES, *(pytest.param(one, marks=pytest.mark.long) for one in LONG)], ids=str)
+@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda example: example.job.split("/")[-1])
 def example(request):
     return request.param
 
 
 @pytest.fixture(scope="module")
 def planned(example, plans):
-    """The job as it is shipped, or with fewer layers."""
-    return plans.plan(example.job, plans.coarse(example))
+    """The job as it is shipped."""
+    return plans.plan(example.job)
 
 
 @pytest.fixture(scope="module")
 def exact(example, plans):
     """The same without a cell, its points dense."""
-    return plans.plan(example.job, plans.exact(example.job, FINE, plans.coarse(example)))
+    return plans.plan(example.job, plans.exact(example.job, FINE))
 
 
 @pytest.fixture(scope="module")
@@ -124,11 +124,8 @@ def test_the_half_shell_is_deposited_to_and_fro(plans):
     assert (np.sign(towards) == np.sign(towards[0]) * (-1.0) ** np.arange(6)).all()
 
 
-@pytest.mark.parametrize(
-    "branched", [EXAMPLES[-1], pytest.param(LONG[0], marks=pytest.mark.long)], ids=str
-)
-def test_the_front_of_the_branched_tube_splits_in_two(plans, branched):
-    layers = plans.plan(branched.job, plans.coarse(branched)).layers
+def test_the_front_of_the_branched_tube_splits_in_two(plans):
+    layers = plans.plan("walls/branched-tube-on-plate").layers
     closed = [sum(bead.closed for bead in layer) for layer in layers]
     split = closed.index(2)
     assert all(len(layer) == 1 and layer[0].closed for layer in layers[:split])

@@ -44,8 +44,7 @@ def plate(points):
 class Example:
     """A job in resources/examples, the file of its wall, its layer height (mm), the distance of points from the skin of its
     substrate, how far the substrate itself is off that skin, and the
-    largest error of the local distance at and between the points of the fronts (mm). `coarse`: its layer height is not
-    that of the job, for fewer layers."""
+    largest error of the local distance at and between the points of the fronts (mm)."""
 
     job: str
     wall: str
@@ -54,10 +53,6 @@ class Example:
     substrate_error: float = 1e-5
     spacing_error: float = 1e-4
     has_cell: bool = False
-    coarse: bool = False
-
-    def __str__(self) -> str:
-        return self.job.split("/")[-1] + ("-coarse" if self.coarse else "")
 
 
 EXAMPLES = (
@@ -76,9 +71,8 @@ EXAMPLES = (
         "walls/tube-on-scanned-pipe", "tube-on-pipe.step", 5.0, rod(0.0, 0.0, 32.0), substrate_error=0.036,
         spacing_error=1e-3,
     ),
-    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 8.0, plate, spacing_error=1e-3, coarse=True),
+    Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),
 )
-LONG = (Example("walls/branched-tube-on-plate", "walls/branched-tube.step", 4.0, plate, spacing_error=1e-3),)
 
 
 class Plans:
@@ -92,15 +86,9 @@ class Plans:
     def text(self, job):
         return (self.folder / f"{job}.yaml").read_text(encoding="utf-8")
 
-    def coarse(self, example):
-        """The job of an example at its layer height; None where it is that of the file."""
-        text = re.sub(r"(\n  layer_height: ).*", rf"\g<1>{example.height:g} mm", self.text(example.job))
-        assert (text != self.text(example.job)) == example.coarse
-        return text if example.coarse else None
-
-    def exact(self, job, chord_error, text=None):
+    def exact(self, job, chord_error):
         """The job without cell and clearance: the fronts alone, points so dense that chords stand for the curve."""
-        text = (text or self.text(job)).split("\ncell:")[0].replace("  clearance: none\n", "") + "\n"
+        text = self.text(job).split("\ncell:")[0].replace("  clearance: none\n", "") + "\n"
         text = text.replace("build_direction:\n", "build_direction:\n  clearance: none\n")
         return re.sub(r"(  layer_height: .*\n)", rf"\1  chord_error: {chord_error:.6f} mm\n", text)
 
