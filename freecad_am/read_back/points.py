@@ -38,8 +38,6 @@ def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
     """Whether the joints that a text asks for are within the limits of the cell, but for its digits."""
     limits = cell.limits
     over = -limits.margin(text.serial) - np.hstack([text.reach, text.reach @ np.abs(limits.coefficients).T])
-    # rapids beyond a limit are for the planner to find first
-    over[~planned.deposit] = -np.inf
     row, label = np.unravel_index(int(np.argmax(over)), over.shape)
     if over[row, label] <= COMPUTED_AXIS:
         return []

@@ -12,6 +12,7 @@ import Part
 import pytest
 
 from freecad_am.batch.job import read_job
+from tests.batch import row_limits
 
 EXAMPLES = Path(__file__).parents[2] / "resources" / "examples"
 ON_SUBSTRATES = [
@@ -31,6 +32,8 @@ def example(request, workshop, root):
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    cell = read_job(str(workshop.folder / f"{name}.yaml")).cell
+    assert row_limits.beyond(workshop.folder / "out" / "waypoints.csv", cell.machine, cell.limits) <= 0.0
     return name, layers, report, rows
 
 
@@ -69,6 +72,9 @@ def bend_job(workshop, root, change=lambda text: text):
     done = workshop.run("plan", "bend.yaml", "-o", "out")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+    if "cell:" in text:
+        cell = read_job(str(workshop.folder / "bend.yaml")).cell
+        assert row_limits.beyond(workshop.folder / "out" / "waypoints.csv", cell.machine, cell.limits) <= 0.0
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     return report, rows

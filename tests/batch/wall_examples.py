@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.batch import wall_checks
+from freecad_am.batch.job import read_job
+from tests.batch import row_limits, wall_checks
 
 
 def rod(x, z, radius):
@@ -110,4 +111,6 @@ class Plans:
             encoding="utf-8", timeout=300, check=False, stdin=subprocess.DEVNULL,
         )
         assert done.returncode == 0, done.stderr
+        cell = read_job(str(path)).cell
+        assert cell is None or row_limits.beyond(out / "waypoints.csv", cell.machine, cell.limits) <= 0.0
         return wall_checks.read(out)
