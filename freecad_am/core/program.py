@@ -256,8 +256,8 @@ class ReadMoves:
     wire: (n,) value of the analogue output that the text sets, during each move, NaN before the first; None in texts that
     set none. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
     linear: (n,) bool, moves whose tip runs straight, where joints do not. stops: (n,) bool, moves at whose end the machine
-    stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded at the other points, where the text says
-    so. events: what happens between the moves, in order. configuration: of positions of robots.
+    stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded where it does not, if the text says so.
+    events: what happens between the moves, in order. configuration: of positions of robots.
     user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
     of moves of bare axes, which count on none, is left out.
     """

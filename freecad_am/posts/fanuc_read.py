@@ -237,7 +237,8 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
         elif layer := _LAYER.match(statement):
             run.happens("layer", float(layer[1]))
         elif frame := _FRAME.match(statement):
-            run.frame[frame[1]] = frame[2]
+            if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
+                raise _unreadable(f"{listing.file} line {number}", f"a second U{frame[1]} is selected")
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
         elif not _HARMLESS.match(statement):

@@ -128,15 +128,16 @@ def _settled(text: str, state: _State) -> bool:
     """Whether a line sets how corners are passed or which tool counts, or waits; it is done then."""
     if corners := _CORNERS.match(text):
         state.track.exact = text == "G61.1"
-        # G61 keeps to the path without a stop; other rounding of points than of corners is none that was asked for
+        # G61 stops where it must; another tolerance for points than for corners is none that was asked for
         known = corners[2] and corners[2] == corners[3]
-        state.track.rounding = float(corners[2]) if known else 0.0 if text.startswith("G61") else float("inf")
+        state.track.rounding = float(corners[2]) if known else 0.0 if corners[1] else float("inf")
     elif tool := _TOOL.match(text):
         state.track.tool = float(tool[1])
     elif given := _INPUT.match(text):
         state.track.rests()
         state.track.happens("input", float(given[1]) + 1.0)
     elif dwell := _DWELL.match(text):
+        state.track.rests()
         state.track.waits(dwell[1])
     else:
         return False

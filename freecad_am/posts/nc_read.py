@@ -84,8 +84,7 @@ class Track:
         self.events.append(Event(len(self.rows), kind, value, digits))
 
     def waits(self, seconds: str) -> None:
-        """A dwell before the next move; the machine stands still."""
-        self.rests()
+        """A dwell before the next move."""
         self.happens("wait", float(seconds), digits=float(_half_digits([seconds])[0]))
 
     def rests(self) -> None:
@@ -112,7 +111,7 @@ class Track:
         self.deposit.append(self.on)
         self.wires.append(self.wire)
         self.stops.append(stops or self.exact)
-        self.corners.append(self.rounding)
+        self.corners.append(0.0 if self.exact and not math.isnan(self.rounding) else self.rounding)
         self.numbers.append((self.frame if sort == TIP else math.nan, self.tool))
 
     def _check_words(self, sort: str, names: tuple[str, ...], where: str) -> None:
@@ -162,7 +161,7 @@ class Track:
         corners, numbers = np.array(self.corners), np.array(self.numbers)
         read: dict[str, object] = {"tool_frame": numbers[:, 1], "user_frame": numbers[:, 0] if tips.any() else None}
         told = ~np.isnan(corners).all()
-        return {**read, "rounding": np.where(self.stops, np.nan, corners)} if told else read
+        return {**read, "rounding": corners} if told else read
 
     def _wire(self) -> dict[str, object]:
         if not self.output:

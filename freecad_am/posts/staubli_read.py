@@ -84,15 +84,16 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise unreadable("program", "it ends before the last move does")
     read_moves = dataclasses.replace(_moves(run.steps), events=tuple(run.events))
     for app in found.values():
-        _check_stop(app)
+        _check_stop(app, run.output)
     return read_moves
 
 
-def _check_stop(app: Application) -> None:
+def _check_stop(app: Application, output: str) -> None:
     """Stopping an application must end its motion and switch off what it may have switched on."""
     lines = [line for _, line in app.programs.get("stop", [])]
     named = [name for name, data in app.data.items() if data.kind == "dio" and "%Q" in data.values[0].get("link", "")]
-    if lines != ["resetMotion()", *(f"{name}=false" for name in named)]:
+    links = {app.data[name].values[0]["link"] for name in named}
+    if lines != ["resetMotion()", *(f"{name}=false" for name in named)] or links != ({output} if output else set()):
         raise unreadable(f"{app.folder}/stop.pgx", "it does not end the motion and switch the deposit off")
 
 
@@ -126,7 +127,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
             if called is not None:
                 _follow(called, call[2], run, (*callers, here))
             else:
-                run.happens("call", str(call[1]).upper())
+                run.happens("call", str(call[1]).upper() if call[2] == "start" else f"{call[1]}:{call[2]}")
         else:
             _other(app, line, run, where)
 
@@ -323,7 +324,7 @@ def _moves(steps: list[_Step]) -> ReadMoves:
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
         np.radians(joints) if np.isfinite(share).any() else None, float(np.radians(values.digits(AXES))),
-        np.full(total, np.nan), deposit, straight, stops, (), rounding=np.where(stops, np.nan, rounding),
+        np.full(total, np.nan), deposit, straight, stops, (), rounding=rounding,
         position=point[:, :3] if linear else None, rotation=rotations(point[:, 3:]) if linear else None,
         position_digits=values.digits(_LENGTHS),
         rotation_digits=float(np.radians(values.digits(_ANGLES))),

@@ -45,12 +45,11 @@ def _rounded_otherwise(planned: Planned, program: Program, read: ReadMoves) -> M
         return np.asarray((read.stops != planned.stops) | (~planned.stops & (read.blend != program.blend)))
     if read.rounding is None:
         return np.asarray(read.stops != planned.stops)
-    if program.setup == ROTARY_TABLE:
-        off = np.abs(read.rounding - program.nc.tolerance) <= 1e-5
-        return np.asarray((read.stops != planned.stops) | (~planned.stops & ~off))
-    # a rounding of nothing is a stop
-    apart = np.abs(np.where(read.stops, 0.0, read.rounding) - _share_of_shortest(planned, program.blend))
-    return np.where(planned.stops, ~read.stops, ~(apart <= THOUSANDTH))
+    # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
+    table = program.setup == ROTARY_TABLE
+    rounding = np.full(len(read.stops), program.nc.tolerance) if table else _share_of_shortest(planned, program.blend)
+    off = ~(np.abs(read.rounding - np.where(planned.deposit, rounding, 0.0)) <= (1e-5 if table else THOUSANDTH))
+    return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (read.rounding > 0.0) | off)
 
 
 def _share_of_shortest(planned: Planned, blend: float) -> Array:

@@ -87,7 +87,7 @@ def test_a_sinumerik_program_by_hand():
     np.testing.assert_allclose(read.direction[2], [0.0, 0.6, 0.8])
     np.testing.assert_allclose(read.duration, [10.0, 5.0, np.nan, 0.5])  # 5 mm at 60 mm/min
     np.testing.assert_allclose(read.speed, [np.nan, np.nan, 5.0, np.nan])
-    assert read.linear.tolist() == [False, False, True, False] and read.stops.tolist() == [False, True, False, True]
+    assert read.linear.tolist() == [False, False, True, False] and read.stops.tolist() == [False, False, False, True]
     assert read.user_frame.tolist()[2] == 1.0 and np.isnan(read.user_frame[[0, 1, 3]]).all() and read.rounding is None
     assert set(read.tool_frame.tolist()) == {2.0}
     assert [(event.row, event.kind, *event.value) for event in read.events] == [

@@ -127,7 +127,7 @@ def test_an_application_by_hand():
     assert read.deposit.tolist() == read.linear.tolist() == [False, True, True, False]
     assert read.stops.tolist() == [True, False, True, True] and read.rounding[1] == 0.5
     assert [(event.row, event.kind, *event.value) for event in read.events] == [
-        (1, "on", 1.0, "doExtrude"), (3, "off", 1.0, "doExtrude"), (3, "input", 5.0), (3, "call", "GRIPPER"),
+        (1, "on", 1.0, "doExtrude"), (3, "off", 1.0, "doExtrude"), (3, "input", 5.0), (3, "call", "gripper:open"),
         (3, "wait", 2.0),
     ]  # fmt: skip
     np.testing.assert_array_equal(read.speed, [np.nan, 30.5, 6.0, np.nan])

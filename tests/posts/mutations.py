@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kinds of damage to a program's text, one at a random place each; none of them leaves the meaning as it was.
+
+A kind is a pattern and what becomes of one of its matches, or a function of all files. Digits that change are never the last
+one of a number, which is within what rounding explains.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+
+Files = dict[str, bytes]
+Change = str | Callable[[re.Match, np.random.Generator], str]
+NUMBER = r"-?\d*\.\d+"
+
+
+def mutated(files: Files, pattern: str, change: Change, rng: np.random.Generator) -> Files | None:
+    """The files with one match of the pattern, chosen at random, changed; None where there is none, or none that changes."""
+    places = [
+        (name, match) for name in sorted(files) for match in re.finditer(pattern, _text(files, name), re.MULTILINE)
+    ]
+    while places:
+        name, match = places.pop(int(rng.integers(len(places))))
+        new = match.expand(change) if isinstance(change, str) else change(match, rng)
+        if new != match[0]:
+            text = _text(files, name)
+            return {**files, name: _numbered(name, text[: match.start()] + new + text[match.end() :]).encode("utf-8")}
+    return None
+
+
+def _text(files: Files, name: str) -> str:
+    return files[name].decode("utf-8")
+
+
+def _numbered(name: str, text: str) -> str:
+    """Block numbers that rise again, so that nothing but the damage itself can be found."""
+    if not name.endswith((".MPF", ".SPF")):
+        return text
+    lines, number = [], 0
+    for line in text.split("\n"):
+        if line and not line.startswith(";"):
+            number += 10
+            line = f"N{number} {re.sub(r'^N[0-9]+ ', '', line)}"
+        lines.append(line)
+    return "\n".join(lines)
+
+
+# what becomes of a match
+
+
+def digit(match: re.Match, rng: np.random.Generator) -> str:
+    """One digit of the first group changed, not the last one."""
+    text, start = match[1], match.start(1) - match.start()
+    places = [k for k, letter in enumerate(text[:-1]) if letter.isdigit()]
+    where = places[int(rng.integers(len(places)))]
+    other = str((int(text[where]) + int(rng.integers(1, 10))) % 10)
+    changed = text[:where] + other + text[where + 1 :]
+    return match[0][:start] + changed + match[0][start + len(text) :]
+
+
+def moved(step: float) -> Change:
+    """The number of the first group moved by a step, with as many digits and as wide."""
+
+    def change(match: re.Match, rng: np.random.Generator) -> str:
+        text, start = match[1], match.start(1) - match.start()
+        decimals = len(text.partition(".")[2])
+        value = float(text) + step * rng.choice([-1.0, 1.0])
+        return match[0][:start] + f"{value:.{decimals}f}".rjust(len(text)) + match[0][start + len(text) :]
+
+    return change
+
+
+def scaled(factor: float) -> Change:
+    """The number of the first group larger by a factor, by 3 of a whole one at least."""
+
+    def change(match: re.Match, rng: np.random.Generator) -> str:
+        text, start = match[1], match.start(1) - match.start()
+        decimals = len(text.partition(".")[2])
+        value = float(text) * factor if decimals else max(float(text) * factor, float(text) + 3.0)
+        return match[0][:start] + f"{value:.{decimals}f}" + match[0][start + len(text) :]
+
+    return change
+
+
+def one_more(match: re.Match, rng: np.random.Generator) -> str:
+    """The whole number of the first group, and one."""
+    start = match.start(1) - match.start()
+    return match[0][:start] + str(int(match[1]) + 1) + match[0][start + len(match[1]) :]
+
+
+def other(*words: str) -> Change:
+    """The first group as another one of the words."""
+
+    def change(match: re.Match, rng: np.random.Generator) -> str:
+        start = match.start(1) - match.start()
+        chosen = [word for word in words if word != match[1]]
+        return match[0][:start] + str(rng.choice(chosen)) + match[0][start + len(match[1]) :]
+
+    return change
+
+
+def negated(match: re.Match, rng: np.random.Generator) -> str:
+    """The number of the first group with another sign; none where it is all but zero."""
+    start = match.start(1) - match.start()
+    value = match[1].removeprefix("-") if match[1].startswith("-") else f"-{match[1]}"
+    return match[0] if abs(float(match[1])) < 0.5 else match[0][:start] + value + match[0][start + len(match[1]) :]
+
+
+DROP, TWICE, SWAP = "", r"\g<0>\g<0>", r"\2\1"
+
+# FANUC
+_FN = r"^ *\d+:"
+_MOVE = _FN + r"[JL] P\[\d+\][^\n]*\n"
+_DO, _WAIT, _IN, _CLEAN = (
+    _FN + r"  " + word + r"[^\n]*\n" for word in (r"DO\[", r"WAIT +[.\d]+\(sec\)", r"WAIT DI\[", "CALL CLEAN"))
+_VALUE = r"(?:J[1-6]|[XYZWPR] )=( *-?\d*\.\d{3})"
+_RECORD = r"(P\[\d+\]\{)([^}]*)(\};\s*P\[\d+\]\{)([^}]*)"
+FANUC: dict[str, tuple[str, Change]] = {
+    "a point moved": (_VALUE, moved(0.05)),
+    "a digit changed": (_VALUE, digit),
+    "a sign changed": (r"(?:J[1-6]|[XYZ] )= *(-?\d*\.\d{3})", negated),
+    "a turn more": (r"J[1-5]=( *-?\d*\.\d{3})", moved(360.0)),
+    "two points exchanged": (_RECORD, r"\1\4\3\2"),
+    "another point named": (_FN + r"[JL] P\[(\d+)\]", one_more),
+    "a blend added": (r"FINE(?=    ;)", "CNT100"),
+    "a blend of nothing added": (r"FINE(?=    ;)", "CNT0"),
+    "a stop added": (r"CNT\d+(?=    ;)", "FINE"),
+    "a blend changed": (r"CNT(\d+)(?=    ;)", lambda match, rng: "CNT70"),
+    "another acceleration": (r"(?<=FINE|T100)(?=    ;)", " ACC150"),
+    "a move's kind changed": (_FN + r"([JL])(?= P)", other("J", "L")),
+    "a rapid made linear": (_FN + r"(J)(?= P\[\d+\] \d+msec FINE)", other("L")),
+    "an output dropped": (_DO, DROP),
+    "an output switched the other way": (r"DO\[1\]=(ON|OFF)", other("ON", "OFF")),
+    "another output": (r"DO\[(1)\]", one_more),
+    "an output doubled": (_DO, TWICE),
+    "two moves swapped": (rf"({_MOVE})({_MOVE})", SWAP),
+    "a move and an output swapped": (rf"({_DO})({_MOVE})", SWAP),
+    "an output and a wait swapped": (rf"({_DO})({_WAIT})", SWAP),
+    "a move dropped": (_MOVE, DROP),
+    "a move doubled": (_MOVE, TWICE),
+    "an approach dropped": (rf"{_MOVE}(?={_DO})", DROP),
+    "a retract dropped": (rf"({_FN}  DO\[1\]=OFF ;\r\n){_MOVE}", r"\1"),
+    "a speed changed": (r"(\d+(?:\.\d)?)(?=mm/sec)", scaled(1.1)),
+    "a time changed": (r"(\d+)(?=msec)", scaled(1.1)),
+    "a unit of time changed": (r"(msec)", other("sec")),
+    "the first move faster": (r"(10)%", other("100", "50")),
+    "a wait dropped": (_WAIT, DROP),
+    "a wait changed": (r"WAIT +([.\d]+)\(sec\)", moved(0.2)),
+    "an input dropped": (_IN, DROP),
+    "another input": (r"WAIT DI\[(\d+)\]", one_more),
+    "an input the other way": (r"(?<=DI\[3\]=)ON", "OFF"),
+    "a call dropped": (_CLEAN, DROP),
+    "another call": (r"CALL CLEAN\b", "CALL CLEAN2"),
+    "a call doubled": (_CLEAN, TWICE),
+    "a wait and a call swapped": (rf"({_WAIT})({_IN})({_CLEAN})", r"\3\2\1"),
+    "another CONFIG": (r"CONFIG : '[NF] ([UD]) [TB]", other("U", "D")),
+    "another wrist": (r"CONFIG : '([NF]) ", other("N", "F")),
+    "another shoulder": (r"CONFIG : '[NF] [UD] ([TB])", other("T", "B")),
+    "a turn number changed": (r"T, 0, 0, (-?\d)'", other("-2", "-1", "0", "1", "2")),
+    "another turn number changed": (r"T, (0), 0, -?\d'", other("-1", "1")),
+    "another frame selected": (r"UFRAME_NUM=(\d+)", one_more),
+    "another tool selected": (r"UTOOL_NUM=(\d+)", one_more),
+    "another frame recorded": (r"UF : (\d+)", one_more),
+    "another tool recorded": (r"UT : (\d+)", one_more),
+    "another layer": (r"!layer (\d+)", one_more),
+    "a part dropped": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", DROP),
+    "a part doubled": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", TWICE),
+    "parts in another order": (r"^( *\d+:  CALL JOB\d+[^\n]*\n)( *\d+:  CALL JOB\d+[^\n]*\n)", SWAP),
+}
+
+# machines with rotary axes: what both controllers have in common, and what each has of its own
+_AXIS = rf"(?: [XYZABC]=?(?:DC\()?)({NUMBER})"
+_SIEMENS_MOVE = r"^N\d+ (?:G9 )?(?:G9[34] )?G1 [^\n]*\n"
+_SIEMENS_RAPID = r"^N\d+ G9 (?:G9[34] )?G1 [^\n]*\n"
+_N = r"^N\d+ "
+_SWITCH, _DWELL, _LOOP, _CLEANING = (
+    _N + word for word in (r"H1=[01]\n", r"G4 F[.\d]+\n(?!N\d+ ENDWHILE)", r"WHILE[^\n]*\nN\d+ G4[^\n]*\nN\d+ ENDWHILE\n",
+                           r"CLEAN\n"))
+SIEMENS: dict[str, tuple[str, Change]] = {
+    "a point moved": (_AXIS, moved(0.05)),
+    "a digit changed": (_AXIS, digit),
+    "a sign changed": (rf" [XYZAB]({NUMBER})", negated),
+    "a turn more": (rf" [AB]({NUMBER})", moved(360.0)),
+    "a rapid's point moved": (rf"^N\d+ G9 G1 X({NUMBER})", moved(1.0)),
+    "a direction changed": (rf" [ABC]3=({NUMBER})", moved(0.02)),
+    "two values exchanged": (rf" X({NUMBER}) Y({NUMBER})", r" X\2 Y\1"),
+    "a blend added": (r"G9 (?=(?:G9[34] )?G1)", ""),
+    "a stop added": (r"^(N\d+ (?:G9[34] )?)(?=G1 )", r"\1G9 "),
+    "another smoothing": (r"G642", "G64"),
+    "no jerk limit": (r"SOFT", "BRISK"),
+    "a move's kind changed": (r"\bG1\b", "G0"),
+    "another feed": (r"\b(G9[34])\b(?= G1|$)", other("G93", "G94")),
+    "incremental": (r"\bG90\b", "G91"),
+    "in inches": (r"\bG710\b", "G700"),
+    "an output dropped": (_SWITCH, DROP),
+    "an output switched the other way": (r"H1=([01])", other("0", "1")),
+    "another output": (r"H(1)=", one_more),
+    "an output doubled": (_SWITCH, TWICE),
+    "two moves swapped": (rf"({_SIEMENS_MOVE})({_SIEMENS_MOVE})", SWAP),
+    "a move and an output swapped": (rf"({_SIEMENS_MOVE})({_SWITCH})", SWAP),
+    "an output and a wait swapped": (rf"({_SWITCH})({_DWELL})", SWAP),
+    "a move dropped": (_SIEMENS_MOVE, DROP),
+    "a move doubled": (_SIEMENS_MOVE, TWICE),
+    "an approach dropped": (rf"{_SIEMENS_RAPID}(?={_SWITCH}|N\d+ G54)", DROP),
+    "a retract dropped": (rf"({_N}H1=0\n(?:N\d+ (?:TRAFOOF|G500|G93)\n)*){_SIEMENS_RAPID}", r"\1"),
+    "a feed changed": (r" F(\d+\.\d+)$", scaled(1.02)),
+    "a wait dropped": (_DWELL, DROP),
+    "a wait changed": (r"G4 F([.\d]+)\n(?!N\d+ ENDWHILE)", moved(0.2)),
+    "an input dropped": (_LOOP, DROP),
+    "another input": (r"\$A_IN\[(\d+)\]", one_more),
+    "an input the other way": (r"(?<=\$A_IN\[3\]==)0", "1"),
+    "a call dropped": (_CLEANING, DROP),
+    "another call": (r"CLEAN$", "CLEAN_2"),
+    "a call doubled": (_CLEANING, TWICE),
+    "another frame selected": (r"^N\d+ G(54)$", one_more),
+    "a frame for axes": (r"\bG500(?= D1)", "G54"),
+    "another tool selected": (r" D(\d+)$", one_more),
+    "a frame dropped": (_N + r"G54\n", DROP),
+    "the transformation dropped": (_N + r"TRAORI\n", DROP),
+    "the transformation kept": (_N + r"TRAFOOF\n", DROP),
+    "directions in another frame": (r"ORIWKS", "ORIMKS"),
+    "another layer": (r"^; layer (\d+)", one_more),
+    "a part dropped": (_N + r"JOB\d+\n", DROP),
+    "a part doubled": (_N + r"JOB\d+\n", TWICE),
+    "parts in another order": (rf"({_N}JOB\d+\n)({_N}JOB\d+\n)", SWAP),
+}
+
+# what is said again before the next move, in another file at the latest, is not in use
+_USED = r"(?:\n(?!o<|G61|G64)[^\n]*)*?\n(?:G9[34] )?G1 "
+_LINUX_MOVE = r"^(?:G9[34] )?G1 [^\n]*\n"
+_PIN, _G4, _M66, _SUB = r"^M6[45] P0\n", r"^G4 P[.\d]+\n", r"^M66 P\d+ L3[^\n]*\n", r"^o<clean> call\n"
+LINUXCNC: dict[str, tuple[str, Change]] = {
+    "a point moved": (_AXIS, moved(0.05)),
+    "a digit changed": (_AXIS, digit),
+    "a sign changed": (rf" [XYZAB]({NUMBER})", negated),
+    "a turn more": (rf" [ABC]({NUMBER})", moved(360.0)),
+    "two values exchanged": (rf" X({NUMBER}) Y({NUMBER})", r" X\2 Y\1"),
+    "a blend added": (rf"^G61\.1$(?={_USED})", "G64 P0.05000 Q0.05000"),
+    "a blend without bounds": (r"^G64 P[.\d]+ Q[.\d]+$", "G64"),
+    "a stop added": (r"^G64 P[.\d]+ Q[.\d]+$", "G61.1"),
+    "a blend changed": (r"^G64 P([.\d]+) Q", moved(0.02)),
+    "another blend changed": (r"^G64 P[.\d]+ Q([.\d]+)$", moved(0.02)),
+    "a blend dropped": (r"^G64 P[.\d]+ Q[.\d]+\n", DROP),
+    "a move's kind changed": (r"\bG1\b", "G0"),
+    "another feed": (r"\b(G9[34])\b(?= G1|$)", other("G93", "G94")),
+    "incremental": (r"\bG90\b", "G91"),
+    "in inches": (r"\bG21\b", "G20"),
+    "an output dropped": (_PIN, DROP),
+    "an output switched the other way": (r"^M6([45]) P0", other("4", "5")),
+    "another output": (r"^M6[45] P(0)", one_more),
+    "an output doubled": (_PIN, TWICE),
+    "two moves swapped": (rf"({_LINUX_MOVE})({_LINUX_MOVE})", SWAP),
+    "a move and an output swapped": (rf"({_LINUX_MOVE})((?:M428\nG54\n)?G64[^\n]*\n{_PIN[1:]})", SWAP),
+    "an output and a wait swapped": (rf"({_PIN})({_G4})", SWAP),
+    "a move dropped": (_LINUX_MOVE, DROP),
+    "a move doubled": (_LINUX_MOVE, TWICE),
+    "an approach dropped": (rf"{_LINUX_MOVE}(?=(?:M428\nG54\n)?G64)", DROP),
+    "a retract dropped": (rf"(^G61\.1\n(?:M429\nG59\.3\n)?(?:G93\n)?){_LINUX_MOVE}", r"\1"),
+    "a feed changed": (r" F(\d+\.\d+)$", scaled(1.02)),
+    "a wait dropped": (_G4, DROP),
+    "a wait changed": (r"^G4 P([.\d]+)", moved(0.2)),
+    "an input dropped": (_M66, DROP),
+    "another input": (r"^M66 P(\d+)", one_more),
+    "an input the other way": (r"^(M66 P\d+) L3", r"\1 L4"),
+    "a call dropped": (_SUB, DROP),
+    "another call": (r"^o<clean> call", "o<clean2> call"),
+    "a call doubled": (_SUB, TWICE),
+    "another frame selected": (r"^G(54)$", one_more),
+    "a frame for axes": (rf"^G59\.3$(?={_USED})", "G54"),
+    "another tool selected": (rf"^G43 H(\d+)(?={_USED})", one_more),
+    "another kinematics": (r"^M42([89])$", other("8", "9")),
+    "the kinematics dropped": (r"^M428\n", DROP),
+    "the kinematics kept": (r"(?<=^G61\.1\n)M429\n", DROP),
+    "zeros that are none": (r"^(G10 L2 P9) X0", r"\1 X5"),
+    "another layer": (r"^\(layer (\d+)\)", one_more),
+    "a part dropped": (r"^o<job\d+> call\n", DROP),
+    "a part doubled": (r"^o<job\d+> call\n", TWICE),
+    "parts in another order": (r"^(o<job\d+> call\n)(o<job\d+> call\n)", SWAP),
+}
+
+_PLACE = r"(?<= )(?:j[1-6]|x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\""
+_POINT = rf"(?<=<Value )key=\"\d+\" (?:j1|x)[^\n]*?{_PLACE}(?=[^\n]*(?:fStation|tCarried\[|/>))"
+_POINTS = r"(?<=<Value )(key=\"\d+\" )((?:j1|x)[^\n]*)(\n *<Value key=\"\d+\" )((?:j1|x)[^\n]*)"
+_LOOP_OF = r"^  for [^\n]*\n[^\n]*\n  endFor\n  waitEndMove\(\)\n"
+_DEPOSIT, _DELAY, _READY, _GONE = (
+    rf"^  {word}\n" for word in (r"doDeposit=(?:true|false)", r"delay\([.\d]+\)", r"wait\(diInput\d+==true\)",
+                                r"call clean:start\(\)"))
+STAUBLI: dict[str, tuple[str, Change]] = {
+    "a point moved": (rf"key=\"\d+\" j1[^\n]*?{_PLACE}", moved(0.05)),
+    "a position moved": (r"key=\"\d+\" x=\"(-?\d+\.\d+)\"[^\n]*(?=fStation|tCarried\[)", moved(0.05)),
+    "an angle of a position moved": (r"ry=\"(-?\d+\.\d+)\"(?=[^\n]*(?:fStation|tCarried\[))", moved(0.05)),
+    "a digit changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", digit),
+    "a sign changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", negated),
+    "a turn more": (r" j[1-6]=\"(-?\d+\.\d+)\"", moved(360.0)),
+    "two points exchanged": (_POINTS, r"\1\4\3\2"),
+    "a rapid's point moved": (r" j1=\"(-?\d+\.\d+)\"", moved(1.0)),
+    "a loop begins later": (r"^  for l_nI=(\d+) to", one_more),
+    "a loop ends later": (r"^  for l_nI=\d+ to (\d+)", one_more),
+    "another point named": (r"\[(\d+)\],(?:tCarried|mPath)", one_more),
+    "another speed named": (r"mPath\[(\d+)\]", one_more),
+    "a blend added": (r"blend=\"off\" leave=\"0.000\" reach=\"0.000\"", 'blend="joint" leave="5.000" reach="5.000"'),
+    "a stop added": (r"blend=\"(?:joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
+                     'blend="off" leave="0.000" reach="0.000"'),
+    "a blend changed": (r"blend=\"(joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
+                        r'blend="\1" leave="7.000" reach="7.000"'),
+    "a blend that leaves earlier": (r"leave=\"((?!0\.000)[.\d]+)\"", scaled(1.5)),
+    "another acceleration": (r"accel=\"(100)\"", other("150", "50")),
+    "another deceleration": (r"decel=\"(100)\"", other("150", "50")),
+    "a limit of speed": (r"(?<=vel=\")[^\"]*(\" decel=\"100\") tmax=\"99999\"", r'50.00000\1 tmax="10"'),
+    "a move's kind changed": (r"^ *move([jl])\(", other("j", "l")),
+    "an output dropped": (_DEPOSIT, DROP),
+    "an output switched the other way": (r"doDeposit=(true|false)", other("true", "false")),
+    "another output": (r"%Q(\d+)", one_more),
+    "an output doubled": (_DEPOSIT, TWICE),
+    "two moves swapped": (rf"({_LOOP_OF})({_DEPOSIT})", SWAP),
+    "an output and a wait swapped": (rf"({_DEPOSIT})({_DELAY})", SWAP),
+    "moves dropped": (_LOOP_OF, DROP),
+    "moves doubled": (_LOOP_OF, TWICE),
+    "an end of motion dropped": (r"^  waitEndMove\(\)\n(?=  (?:doDeposit|delay))", DROP),
+    "a speed changed": (r"tmax=\"((?!99999)[.\d]+)\"", scaled(1.02)),
+    "a share of speed changed": (r"vel=\"(\d+\.\d+)\"", scaled(0.9)),
+    "the first move faster": (r"key=\"0\" accel=\"100\" vel=\"(10\.00000)\"", scaled(5.0)),
+    "a wait dropped": (_DELAY, DROP),
+    "a wait changed": (r"delay\(([.\d]+)\)", moved(0.2)),
+    "an input dropped": (_READY, DROP),
+    "another input": (r"%I(\d+)", one_more),
+    "an input the other way": (r"(?<=diInput3==)true", "false"),
+    "a call dropped": (_GONE, DROP),
+    "another call": (r"call clean:start", "call clean:stop"),
+    "a call doubled": (_GONE, TWICE),
+    "another frame": (r"x=\"(-?\d+\.\d+)\"(?=[^\n]*world)", moved(0.5)),
+    "another configuration": (r"wrist=\"wsame\"", 'wrist="wpositive"'),
+    "another elbow": (r"elbow=\"esame\"", 'elbow="enegative"'),
+    "stopping leaves the deposit on": (r"(resetMotion\(\)\n)  doDeposit=false\n", r"\1"),
+    "stopping does not stop": (r"  resetMotion\(\)\n", DROP),
+    "in inches": (r"millimeterUnit=\"true\"", 'millimeterUnit="false"'),
+    "another layer": (r"^  // layer (\d+)", one_more),
+    "parts in another order": (r"libLoad\(\"\./job0(\d)\"\)", other("1", "2", "3", "4")),
+}
+
+KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC}

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Small planned jobs for every post, motion and set-up: short beads on three sides of a cone, so that every travel has to
+pass it, with waits, an input, a call and several layers between them."""
+
+import dataclasses
+import functools
+import math
+
+import numpy as np
+
+from freecad_am.core.geometry.developable import Developable
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import has_errors
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
+from freecad_am.core.parameters.program import NcParameters, ProgramParameters
+from freecad_am.core.planning import moving_tool
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.program import build
+from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.posts import catalogue
+
+CHORD_ERROR, SPEED, SIDES = 0.05, 8.0, 3
+# of which the hub is told to the planner; the beads' first layer lies on the larger one
+STEEP, FLAT, SKIN = Developable(60.0, 270.0), Developable(60.0, 60.0), 2.0
+PROCESS = ProcessParameters(
+    travel_speed=SPEED, lead_on=0.5, lead_off=0.25,
+    between_layers=BetweenLayersParameters(wait=2.5, input=3, call="clean", lift=20.0),
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class Setup:
+    """A cell and the cone that stands in it, in part coordinates."""
+
+    cell: CellParameters
+    hub: Developable
+    top: float
+
+
+SETUPS = {
+    "fanuc tool-on-robot": Setup(CellParameters(
+        setup="tool-on-robot", mount="part", deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0), limits="maker",
+        branch=("front", "up", "flip"), nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+    ), STEEP, 90.0),
+    "fanuc part-on-robot": Setup(CellParameters(mount="part", limits="paper"), FLAT, 50.0),
+    "staubli tool-on-robot": Setup(CellParameters(
+        machine="staubli-rx60bl", setup="tool-on-robot", mount="part", platform_diameter=100.0,
+        deposition_point=(480.0, 0.0, -150.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 120.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
+    "staubli part-on-robot": Setup(CellParameters(
+        machine="staubli-rx60bl", mount="part", platform_diameter=60.0,
+        deposition_point=(300.0, 0.0, 300.0, np.pi, 0.0, 0.0),
+    ), FLAT, 50.0),
+    "table": Setup(CellParameters(
+        machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
+    ), STEEP, 90.0),
+    "head": Setup(CellParameters(
+        machine="head-table-xyzbc", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
+    ), STEEP, 90.0),
+}  # fmt: skip
+
+# post, motion, feed, set-up
+WAYS = (
+    ("fanuc", "joint", "time", "fanuc part-on-robot"), ("fanuc", "joint", "time", "fanuc tool-on-robot"),
+    ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),
+    *(("staubli", motion, "time", f"staubli {setup}") for motion in ("joint", "cartesian")
+      for setup in ("part-on-robot", "tool-on-robot")),
+    *(("siemens", motion, feed, setup) for setup in ("table", "head")
+      for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
+    *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
+)  # fmt: skip
+
+
+def _bead(hub, side, layer):
+    """A short bead on one side: along the cone and a little around it."""
+    skin, share = hub.offset(SKIN + 3.0 * layer), np.linspace(0.0, 1.0, 9)
+    theta, z = 2.0 * math.pi * side / SIDES + 0.3 * share, 12.0 + 18.0 * share
+    rho = skin.radius * (1.0 - z / skin.height)
+    points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
+    up = skin.normals(points)
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    return Bead(points, up, up, 2.0 * math.pi * length / length[-1], np.full(len(points), SPEED), False)
+
+
+def body(setup):
+    """The cone as triangles."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    rings = [
+        np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(48, z)], axis=1)
+        for radius, z in ((setup.hub.radius, 0.0), (setup.hub.radius * (1.0 - setup.top / setup.hub.height), setup.top))
+    ]
+    vertices = np.vstack([*rings, [[0.0, 0.0, 0.0], [0.0, 0.0, setup.top]]])
+    low = np.arange(48)
+    next_low, high, next_high = np.roll(low, -1), low + 48, np.roll(low, -1) + 48
+    middle, top = np.full(48, 96), np.full(48, 97)
+    sides = [(low, next_low, next_high), (low, next_high, high), (middle, next_low, low), (top, high, next_high)]
+    return Body("hub", vertices, np.concatenate([np.stack(corners, axis=1) for corners in sides]))
+
+
+@functools.cache
+def planned(name):
+    """The cell, the beads and the motion of a set-up."""
+    setup = SETUPS[name]
+    cell = cells.resolve(setup.cell, np.eye(4), "developable")
+    layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in range(SIDES))) for k in range(2))
+    path = plan_joints(Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters(degree=1))
+    assert path.feasible, [issue.message for issue in path.issues]
+    motion, issues = assemble(path, cell, PROCESS, [body(setup)])
+    assert not has_errors(issues), [issue.message for issue in issues]
+    return cell, [bead.bead for bead in path.beads], motion
+
+
+@functools.cache
+def written(way, max_points=2000):
+    """The cell, the motion, the program and its files."""
+    post, kind, feed, name = way
+    cell, beads, motion = planned(name)
+    if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
+        motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
+    parameters = ProgramParameters(post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed))
+    program = build(motion, cell, PROCESS, parameters, "job")
+    return cell, motion, program, catalogue.load(post).write(program)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts of planned jobs with one thing changed at a random place: every one is refused, by the reader or by verifying.
+
+None of these may pass: a program that passes is driven.
+"""
+
+import zlib
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import ERROR, InputError
+from freecad_am.posts import catalogue
+from freecad_am.verify import verify
+from tests.posts.mutations import KINDS, mutated
+from tests.posts.planned_jobs import CHORD_ERROR, WAYS, written
+
+DRAWS = 2
+PARTS = 40  # points: the same job in parts
+
+
+def found(way, files, most):
+    """What is said about the files of a job: codes of errors."""
+    cell, motion, program, _ = written(way, most)
+    try:
+        result = verify(cell, motion, program, files, catalogue.load(way[0]), CHORD_ERROR)
+    except InputError as error:
+        return {error.code}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
+
+
+def spoilt(way, kind, draw):
+    """A text with that kind of damage, and the size of its parts; None where the text has nothing of that kind."""
+    pattern, change = KINDS[way[0]][kind]
+    rng = np.random.default_rng([zlib.crc32(repr((way, kind)).encode()), draw])
+    most = PARTS if draw % 2 or "part" in kind else 2000
+    return mutated(written(way, most)[3], pattern, change, rng), most
+
+
+@pytest.mark.parametrize("way", WAYS, ids=" ".join)
+@pytest.mark.parametrize("most", [2000, PARTS])
+def test_what_is_written_passes(way, most):
+    assert found(way, written(way, most)[3], most) == set()
+    assert (len(written(way, most)[3]) > (4 if way[0] == "staubli" else 1)) == (most == PARTS)
+
+
+@pytest.mark.parametrize("way", WAYS, ids=" ".join)
+def test_what_is_damaged_is_refused(way):
+    passed, tried = [], set()
+    for kind in KINDS[way[0]]:
+        for draw in range(DRAWS):
+            files, most = spoilt(way, kind, draw)
+            if files is None:
+                continue
+            assert files != written(way, most)[3]
+            tried.add(kind)
+            if not found(way, files, most):
+                before = written(way, most)[3]
+                for name in files:
+                    lines = zip(before[name].decode().split("\n"), files[name].decode().split("\n"))
+                    passed += [(kind, draw, name, old, new) for old, new in lines if old != new][:1]
+    assert not passed
+    assert len(tried) >= 20
+
+
+def test_every_kind_of_damage_was_done():
+    for post, kinds in KINDS.items():
+        done = {kind for way in WAYS if way[0] == post for kind in kinds if spoilt(way, kind, 0)[0] is not None}
+        assert done == set(kinds), post
