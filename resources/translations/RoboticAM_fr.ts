@@ -5067,6 +5067,11 @@
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>a second U{0} is selected</source>
+        <translation>un deuxième U{0} est choisi</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>a second analogue output is set</source>
         <translation>une seconde sortie analogique est réglée</translation>
