@@ -116,7 +116,8 @@ def _planned(wall: Any, job: Job, spacing: str) -> dict[str, Any]:
     toolpath = planned(wall, strategy, job.build_direction, job.process, job.cell)
     cell = cells.resolve(job.cell, toolpath.frame, toolpath.family, user_machines.folders())
     path = plan_joints(toolpath, cell, replace(job.joints, compare=()))
-    return motion_of(path, assemble(path, cell, job.process, toolpath.surroundings, job.joints)[0], cell, job.joints)
+    motion, _ = assemble(path, cell, job.process, toolpath.surroundings, job.joints, toolpath.layer_height)
+    return motion_of(path, motion, cell, job.joints)
 
 
 def _row(one: Compared | Refused) -> dict[str, Any]:

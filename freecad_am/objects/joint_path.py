@@ -117,7 +117,9 @@ class JointPath(Stage):
                 toolpath, cell, job.parameters, lambda fraction, text: progress.report(JOINTS * fraction, text)
             )
             progress.report(JOINTS, "joining the beads by rapid moves")
-            motion, rapid_issues = assemble(joint_path, cell, process, toolpath.surroundings, job.parameters)
+            motion, rapid_issues = assemble(
+                joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height
+            )
             issues = (*joint_path.issues, *rapid_issues, *_heights_as_run(joint_path, toolpath, process))
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0

@@ -46,7 +46,7 @@ class _Rows:
 
 def assemble(
     joint_path: JointPath, cell: Cell, process: ProcessParameters, bodies: Sequence[Body] = (),
-    parameters: JointParameters | None = None,
+    parameters: JointParameters | None = None, layer_height: float = 0.0,
 ) -> tuple[Motion, tuple[Issue, ...]]:
     """The motion of a joint path with its rapids, and what is wrong with the rapids.
 
@@ -56,9 +56,11 @@ def assemble(
     platform or one of the bodies (in part coordinates) on its way it is retracted further, as far as it takes, up to beyond
     the sphere about all of these, then in other directions. Where nothing helps, that is an issue.
 
-    parameters: those the joint path was planned with, for the least condition; the usual ones where left out.
+    parameters: those the joint path was planned with, for the least condition; the usual ones where left out. layer_height:
+    mm, how high beads are that do not tell it.
     """
-    ways = RapidWays(joint_path, cell, process.between_layers.lift, bodies, parameters or JointParameters())
+    ways = RapidWays(joint_path, cell, process.between_layers.lift, bodies, parameters or JointParameters(),
+                      process.bead_width, layer_height)
     parts: list[_Rows] = []
     for number, path in enumerate(joint_path.beads):
         parts += [_rapid(path, ways.ways[number], ways.legs[2 * number], cell), _deposit(path)]

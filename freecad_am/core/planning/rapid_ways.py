@@ -15,7 +15,7 @@ from ..kinematics.cell import Cell
 from ..motion import APPROACH, RETRACT, TRAVEL
 from ..parameters.joints import JointParameters
 from .joint_path import BeadPath, JointPath
-from .rapids import Moves, Surroundings
+from .rapids import Deposit, Moves, Surroundings
 from .retract_choices import DIRECTIONS
 from .retracts import STRAY_MM, Ends, Failure, Leg, Retracts, branch_of
 
@@ -60,8 +60,10 @@ class RapidWays:
     """Ways for all beads of a joint path; way k leads to bead k, the last one away from the last bead."""
 
     def __init__(
-        self, joint_path: JointPath, cell: Cell, lift: float, bodies: Sequence[Body], parameters: JointParameters
+        self, joint_path: JointPath, cell: Cell, lift: float, bodies: Sequence[Body], parameters: JointParameters,
+        width: float = 0.0, height: float = 0.0,
     ) -> None:
+        """width, height: mm, of beads that do not tell theirs."""
         self.beads, self.cell, self.lift = joint_path.beads, cell, lift
         self.retracts = Retracts(cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters)
         # by number of the end of a bead, as `Ends` counts them
@@ -70,13 +72,20 @@ class RapidWays:
         if lift > 0.0:
             self._ask()
         self.ways = [self._way(k, self.legs) for k in range(len(self.beads) + 1)]
-        points = np.concatenate([path.bead.points for path in self.beads])
-        first = np.zeros(len(points), dtype=bool)
         self.rows = np.concatenate([[0], np.cumsum([len(path.bead) for path in self.beads])])
-        first[self.rows[:-1]] = True
-        self.surroundings = Surroundings(cell, points, first, bodies)
+        self.surroundings = Surroundings(cell, self._deposit(width, height), bodies)
         self.lifted: list[int] = []
         self.met = self._clear(self._attempts(bodies))
+
+    def _deposit(self, width: float, height: float) -> Deposit:
+        beads = [path.bead for path in self.beads]
+        first = np.zeros(int(self.rows[-1]), dtype=bool)
+        first[self.rows[:-1]] = True
+        return Deposit(
+            np.concatenate([bead.points for bead in beads]), np.concatenate([bead.build for bead in beads]),
+            np.concatenate([np.full(len(bead), width) if bead.width is None else bead.width for bead in beads]),
+            np.concatenate([np.full(len(bead), height) if bead.height is None else bead.height for bead in beads]), first,
+        )
 
     def _ask(self) -> None:
         """The legs as asked for, or what comes nearest where the machine cannot go them."""
@@ -153,7 +162,14 @@ class RapidWays:
         entered = self.beads[k].bead.points[0] if k < len(self.beads) else nowhere
         count = max(len(joints) - 1, 0)
         return Moves(joints[:-1], joints[1:], np.full(count, self.rows[k], dtype=np.intp),
-                     np.tile(left, (count, 1)), np.tile(entered, (count, 1)))
+                     np.tile(left, (count, 1)), np.tile(entered, (count, 1)), self._over(way))
+
+    def _over(self, way: Way) -> NDArray[np.bool_]:
+        """Which moves of a way lead from above one bead to above the next."""
+        role = way.role if way.start is not None else way.role[1:]
+        travels = role == TRAVEL
+        # without retract or approach a travel begins or ends in a bead
+        return travels if APPROACH in role and (RETRACT in role or way.start is None) else np.zeros(len(role), dtype=bool)
 
     def _met(self, some: Sequence[int], ways: Sequence[Way]) -> list[int]:
         """The ways, of those numbered, on which anything is met."""

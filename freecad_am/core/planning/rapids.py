@@ -15,15 +15,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.bodies import Bodies
+from ..collision.deposit import of_beads
 from ..collision.frustum import beside_tip
 from ..collision.nozzle import Nozzle, travelling
 from ..collision.obstacles import Obstacles
-from ..collision.scene import Scene, scene
+from ..collision.scene import scene
 from ..collision.tolerances import ABOVE_FACES
 from ..geometry.surroundings import Body, disc
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
-from ..motion import Motion
+from ..motion import DEPOSIT, TRAVEL, Motion
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -46,17 +48,19 @@ MOVES = 4096
 
 class Moves(NamedTuple):
     """Rapid moves: joints (k, axes) they start and end at, how many deposit rows (k,) are there by then, and the points
-    (k, 3) mm at which the bead before ends and the next starts, NaN where there is none."""
+    (k, 3) mm at which the bead before ends and the next starts, NaN where there is none. over: (k,) whether the move leads
+    from above the one to above the other."""
 
     start: Array
     end: Array
     laid: Index
     left: Array
     entered: Array
+    over: Mask
 
     def of(self, rows: Index) -> Moves:
         """Those of the rows."""
-        return Moves(self.start[rows], self.end[rows], self.laid[rows], self.left[rows], self.entered[rows])
+        return Moves(self.start[rows], self.end[rows], self.laid[rows], self.left[rows], self.entered[rows], self.over[rows])
 
 
 class Looks(NamedTuple):
@@ -68,9 +72,22 @@ class Looks(NamedTuple):
     share: Array
 
 
+class Deposit(NamedTuple):
+    """Deposit rows in order: points and build directions (m, 3), width and height (m,) mm of the beads, and whether each is
+    the first of one (m,)."""
+
+    points: Array
+    build: Array
+    width: Array
+    height: Array
+    first: Mask
+
+
 class Surroundings:
-    """What is in the way of rapids: deposit as the lines it is laid along, with the row from which it is there, platform and
-    bodies.
+    """What is in the way of rapids: deposit with the row from which it is there, platform and bodies.
+
+    Moves from above one bead to above another are looked at among beads of their width and height. On the way off a bead and
+    onto one they are the lines they are laid along, as while depositing.
 
     Where the nozzle retracts from the end of a bead or comes to the start of one, it touches what it has laid and what that
     stands on, as while depositing: there its part below a height is left out, that at which its side is one diameter of the
@@ -79,14 +96,15 @@ class Surroundings:
     wherever the move leads.
     """
 
-    def __init__(self, cell: Cell, points: Array, first: Mask, bodies: Sequence[Body]) -> None:
-        """points: (m, 3) of all deposit rows in order. first: (m,) whether each is the first of a bead."""
+    def __init__(self, cell: Cell, deposit: Deposit, bodies: Sequence[Body]) -> None:
         self.cell = cell
         platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
         self.bodies = (*bodies, *platform)
-        self.deposit = Obstacles(*_segments(points, first))
+        self.lines = Obstacles(*_segments(deposit.points, deposit.first))
+        self.solid = of_beads(
+            deposit.points, deposit.build, deposit.width, deposit.height, deposit.first, grain=GRAIN)
         self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
-        self._scene = Scene(scene((), points, 0.0).bodies)
+        self._bodies = scene((), deposit.points, 0.0).bodies
 
     def met(self, moves: Moves) -> Mask:
         """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
@@ -101,26 +119,39 @@ class Surroundings:
         """What is met on any of the moves: deposit, bodies by their names and the platform."""
         looks = _driven(self.cell, moves, FINE)
         nozzle = self._nozzle(moves, looks)
-        alone = [("the deposit", Scene(scene((), looks.tip, 0.0).bodies, self.deposit))]
-        alone += [(body.name, scene((body,), looks.tip, nozzle.reach)) for body in self.bodies]
-        moment = moves.laid[looks.move]
-        return [name for name, one in alone if one.touched(nozzle, looks.tip, looks.axis, moment).any()]
+        found = ["the deposit"] if self._deposit_touched(nozzle, looks, moves).any() else []
+        near = [(body.name, scene((body,), looks.tip, nozzle.reach).bodies) for body in self.bodies]
+        return found + [name for name, one in near if one.touched(nozzle.bodies, looks.tip, looks.axis).any()]
 
     def _met(self, moves: Moves) -> Mask:
         looks = _driven(self.cell, moves, COARSE)
-        around = self._around(looks.tip)
-        thick = _thicker(self._nozzle(moves, looks), 0.5 * COARSE)
-        near = around.touched(thick, looks.tip, looks.axis, moves.laid[looks.move])
+        near = self._touched(_thicker(self._nozzle(moves, looks), 0.5 * COARSE), looks, moves)
         before = np.flatnonzero((looks.move[1:] == looks.move[:-1]) & (near[1:] | near[:-1]))
         parts = int(np.ceil(COARSE / FINE))
         step = np.linspace(0.0, 1.0, parts + 1)
         share = looks.share[before, None] + step * (looks.share[before + 1] - looks.share[before])[:, None]
         close = _looks(self.cell, moves, np.repeat(looks.move[before], parts + 1), share.ravel())
-        touched = around.touched(self._nozzle(moves, close), close.tip, close.axis, moves.laid[close.move])
+        touched = self._touched(self._nozzle(moves, close), close, moves)
         return np.bincount(close.move, touched, minlength=len(moves.start)) > 0
 
-    def _around(self, tip: Array) -> Scene:
-        """All that nozzles at the tips (k, 3) may meet. Trees of bodies take long: they are kept for the next moves."""
+    def _touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
+        found = self._deposit_touched(nozzle, looks, moves)
+        rows = np.flatnonzero(~found)
+        if len(rows):
+            tip = looks.tip[rows]
+            found[rows] = self._around(tip).touched(nozzle.bodies.rows(rows), tip, looks.axis[rows])
+        return found
+
+    def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
+        found = np.zeros(len(looks.tip), dtype=bool)
+        over, laid = moves.over[looks.move], moves.laid[looks.move]
+        for deposit, some in ((self.lines, ~over), (self.solid, over)):
+            rows = np.flatnonzero(some)
+            found[rows] = deposit.touched(nozzle.deposit.rows(rows), looks.tip[rows], looks.axis[rows], laid[rows])
+        return found
+
+    def _around(self, tip: Array) -> Bodies:
+        """The bodies that nozzles at the tips (k, 3) may meet. Trees of bodies take long and are kept for the next moves."""
         low, high = tip.min(axis=0), tip.max(axis=0)
         if (low < self._box[0]).any() or (high > self._box[1]).any():
             # larger at once by half where it is too small, so that it seldom is again
@@ -130,8 +161,8 @@ class Surroundings:
             self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
             nozzle = self.cell.nozzle
             reach = float(np.hypot(nozzle.length, 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * nozzle.length))
-            self._scene = scene(self.bodies, self._box, reach, self.deposit)
-        return self._scene
+            self._bodies = scene(self.bodies, self._box, reach).bodies
+        return self._bodies
 
     def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
         """The nozzle at each look, less what touches rightly near the ends of beads."""
@@ -146,7 +177,7 @@ def collisions(
     motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | None = None, bodies: Sequence[Body] = ()
 ) -> list[Issue]:
     """An issue for every bead on the rapid way to which, or after the last one, the nozzle would meet deposit, platform or
-    bodies.
+    bodies; beads are lines here.
 
     Only the ways to the beads `among` (layer, bead) are looked at, where they are given.
     """
@@ -155,7 +186,9 @@ def collisions(
         chosen = np.array([(int(motion.layer[row]), int(motion.bead[row])) in among for row in rows], dtype=bool)
         rows, moves = rows[chosen], moves.of(np.flatnonzero(chosen))
     laid = motion.deposit
-    surroundings = Surroundings(cell, motion.position[laid], motion.point[laid] == 0, bodies)
+    none = np.zeros(int(laid.sum()))  # a motion does not tell how high its beads are
+    deposit = Deposit(motion.position[laid], motion.build[laid], none, none, motion.point[laid] == 0)
+    surroundings = Surroundings(cell, deposit, bodies)
     met = surroundings.met(moves)
     places: dict[tuple[int, int], list[int]] = {}
     for k in np.flatnonzero(met).tolist():
@@ -181,7 +214,15 @@ def moves_of(motion: Motion) -> tuple[Index, Moves]:
     laid = np.flatnonzero(motion.deposit)
     before = np.searchsorted(laid, rows)
     points = np.concatenate([np.full((1, 3), np.nan), motion.position[laid], np.full((1, 3), np.nan)])
-    return rows, Moves(motion.joints[rows - 1], motion.joints[rows], before, points[before], points[before + 1])
+    return rows, Moves(motion.joints[rows - 1], motion.joints[rows], before, points[before], points[before + 1],
+                       _over(motion.role, rows))
+
+
+def _over(role: Index, rows: Index) -> Mask:
+    """Which of the rapid rows lead from above one bead to above the next."""
+    onward = np.append(role[1:], DEPOSIT)[rows]
+    over: Mask = (role[rows] == TRAVEL) & (role[rows - 1] != DEPOSIT) & (onward != DEPOSIT)
+    return over
 
 
 def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:

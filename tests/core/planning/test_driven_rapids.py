@@ -86,6 +86,19 @@ def test_no_retract_distance_lets_the_nozzle_through_a_wall(on_table, lift):
     assert ((motion.role == DEPOSIT) == motion.deposit).all()
 
 
+def test_beads_have_their_width_where_the_nozzle_goes_over(on_table):
+    """A lift that clears the wall's middle line by 1 mm: the cone would go into the flank of beads of 8 mm."""
+    cell, path = on_table
+    lift = 24.0
+    lines, issues = assemble(path, cell, lifting(lift))
+    assert not issues
+    moved, issues = assemble(path, cell, ProcessParameters(
+        between_layers=BetweenLayersParameters(lift=lift), bead_width=8.0), layer_height=4.0)
+    assert [issue.code for issue in issues] == ["RAPID_LIFTED"]
+    over = [np.flatnonzero((m.role == TRAVEL) & (m.layer == len(path.beads) - 1)) for m in (lines, moved)]
+    assert lines.position[over[0], 2].max() < 28.0 <= moved.position[over[1], 2].min()
+
+
 @pytest.mark.parametrize("lift", [20.0, 200.0])
 def test_a_retract_keeps_to_its_line_however_long(sliced, cell_of, lift):
     toolpath = sliced("sphere", 15.0, chord_error=0.3)

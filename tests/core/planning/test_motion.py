@@ -15,8 +15,8 @@ from freecad_am.core.parameters.program import ProgramParameters, StartParameter
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build, check_controller
+from freecad_am.core.planning.rapids import Deposit, Surroundings, collisions
 from freecad_am.core.planning.rapids import Moves as Driven
-from freecad_am.core.planning.rapids import Surroundings, collisions
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
@@ -112,11 +112,14 @@ def test_a_rapid_through_the_part_is_refused(planned):
 def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, met):
     """Tips over, under and beside the platform, upright and laid over: 60 mm of nozzle, opening by 20 deg."""
     _, cell, _, motion = planned()
-    surroundings = Surroundings(cell, motion.position[motion.deposit], motion.point[motion.deposit] == 0, ())
+    some = motion.deposit
+    flat = np.zeros(int(some.sum()))
+    deposit = Deposit(motion.position[some], motion.build[some], flat, flat, motion.point[some] == 0)
+    surroundings = Surroundings(cell, deposit, ())
     poses = cell.machine.opw.inverse(cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1)))[:, 0]
     joints = poses[np.isfinite(poses).all(axis=1)][:1]
     nowhere = np.full((1, 3), np.nan)
-    moves = Driven(joints, joints, np.zeros(1, dtype=int), nowhere, nowhere)
+    moves = Driven(joints, joints, np.zeros(1, dtype=int), nowhere, nowhere, np.array([True]))
     assert surroundings.met(moves)[0] == met
     assert surroundings.names(moves) == ["the platform"] * met
 
