@@ -24,6 +24,7 @@ part: {{file: {step}}}
 strategy: {{kind: revolution, layer_height: {height} mm, chord_error: {chord} mm}}
 cell: {{machine: fanuc-arcmate120ic, limits: paper, deposition_point: [1045.747, -630.155, 653.167, 0, 0, 0],
        platform: 5 mm, branch: [front, up, flip]}}
+process: {{travel_speed: 1.5 mm/s}}
 program: {{post: fanuc}}
 """
 # points there are about so many: layer height and chord error in mm

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
 _TITLE = 1000  # bytes that hold the first line
+_SECONDS = {"sec": 1.0, "msec": 0.001}
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
     r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+))$"
@@ -74,7 +75,8 @@ def _floats() -> array[float]:
 class _Run:
     """What happened so far while the programs are followed: packed, for a list of floats takes four times the memory.
 
-    pending: records of the listing at hand that were moved to and are not among `values` yet.
+    pending: records of the listing at hand that were moved to and are not among `values` yet. recorded, numbers: frames of
+    the record that was looked at last, and the numbers of those selected.
     """
 
     cartesian: bool = False
@@ -92,6 +94,8 @@ class _Run:
     tool_frame: array[float] = field(default_factory=_floats)
     events: list[Event] = field(default_factory=list)
     frame: dict[str, str] = field(default_factory=dict)
+    recorded: tuple[str, str] = ("", "")
+    numbers: tuple[float, float] = (np.nan, np.nan)
     output: str = ""
     on: bool = False
 
@@ -117,7 +121,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     named = {_name(file, files[file]): file for file in sorted(files)}
     if len(named) < len(files):
         raise _unreadable("program", "two files hold a program of the same name")
-    called = {call.upper() for content in files.values() for call in _CALLS.findall(content.decode("latin-1"))}
+    calling = [content.decode("latin-1") for content in files.values() if b"CALL " in content]
+    called = {call.upper() for content in calling for call in _CALLS.findall(content)}
     main = [name for name in named if name not in called]
     if len(main) != 1:
         raise _unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
@@ -239,6 +244,7 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
         elif frame := _FRAME.match(statement):
             if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
                 raise _unreadable(f"{listing.file} line {number}", f"a second U{frame[1]} is selected")
+            run.recorded = ("", "")
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
         elif not _HARMLESS.match(statement):
@@ -248,32 +254,43 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
 
 def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> None:
     letter, point, value, unit, fine, corner = motion.groups()
-    row = listing.index.get(int(point))
-    where = f"{listing.file} line {number}"
+    row, straight = listing.index.get(int(point)), letter == "L"
     if row is None:
-        raise _unreadable(where, f"P[{point}] is not recorded")
-    if run.duration and run.cartesian != listing.cartesian:
-        raise _unreadable(where, "joint and Cartesian positions are mixed")
-    if letter == "L" and not listing.cartesian:
-        raise _unreadable(where, "a position is moved to in another way than it is recorded")
-    if (unit == "mm/sec" and letter == "J") or (unit == "%" and letter == "L") or (corner and float(corner) > 100.0):
-        raise _unreadable(where, f"{unit} or CNT{corner} is not understood here")
-    numbers = []
+        raise _unreadable(_at(listing, number), f"P[{point}] is not recorded")
+    if run.cartesian != listing.cartesian and run.duration:
+        raise _unreadable(_at(listing, number), "joint and Cartesian positions are mixed")
+    if straight and not listing.cartesian:
+        raise _unreadable(_at(listing, number), "a position is moved to in another way than it is recorded")
+    if (unit == ("%" if straight else "mm/sec")) or (corner and float(corner) > 100.0):
+        raise _unreadable(_at(listing, number), f"{unit} or CNT{corner} is not understood here")
+    if listing.frames[row] != run.recorded:
+        _select(listing, row, run, number)
+    run.cartesian, told = listing.cartesian, float(value)
+    run.pending.append(row)
+    run.duration.append(told * _SECONDS.get(unit, np.nan))
+    run.speed.append(told if unit == "mm/sec" else np.nan)
+    run.share.append(0.01 * told if unit == "%" else np.nan)
+    run.deposit.append(run.on)
+    run.linear.append(straight)
+    run.blend.append(np.nan if fine else float(corner))
+    run.user_frame.append(run.numbers[0])
+    run.tool_frame.append(run.numbers[1])
+
+
+def _select(listing: _Listing, row: int, run: _Run, number: int) -> None:
+    """Look at the frames that a position is recorded in; those like it need not be looked at until others are selected."""
     for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row], strict=True):
         if recorded not in ("F", run.frame.get(word)):
-            raise _unreadable(where, f"P[{point}] is recorded in another U{word} than the one selected")
-        numbers.append(float(run.frame.get(word, "nan")))
-    run.cartesian = listing.cartesian
-    seconds = {"sec": 1.0, "msec": 0.001}.get(unit, np.nan)
-    run.pending.append(row)
-    run.duration.append(float(value) * seconds)
-    run.speed.append(float(value) if unit == "mm/sec" else np.nan)
-    run.share.append(0.01 * float(value) if unit == "%" else np.nan)
-    run.deposit.append(run.on)
-    run.linear.append(letter == "L")
-    run.blend.append(np.nan if fine else float(corner))
-    run.user_frame.append(numbers[0])
-    run.tool_frame.append(numbers[1])
+            point = next(point for point, found in listing.index.items() if found == row)
+            raise _unreadable(
+                _at(listing, number), f"P[{point}] is recorded in another U{word} than the one selected"
+            )
+    run.recorded = listing.frames[row]
+    run.numbers = float(run.frame.get("FRAME", "nan")), float(run.frame.get("TOOL", "nan"))
+
+
+def _at(listing: _Listing, number: int) -> str:
+    return f"{listing.file} line {number}"
 
 
 def _unreadable(where: str, why: str) -> InputError:

@@ -17,7 +17,7 @@ from .points import TURN, Points, unwrapped
 
 Array = NDArray[np.float64]
 
-PIECE = 1 << 14  # poses whose Jacobians are held together
+PIECE = 4096  # poses whose Jacobians are held together
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
