@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 
 class Row(NamedTuple):
-    """`ours` and `peer` in `unit`, medians or least times; peer None where it is not installed. The peer must cost at least
-    `required` times what we do."""
+    """`ours` and `peer` in `unit`, medians of rounds in turns; peer None where it is not installed. The peer must cost at
+    least `required` times what we do."""
 
     name: str
     ours: float

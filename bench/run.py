@@ -16,7 +16,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
 PEERS = ("eaik", "trimesh")
-BENCHMARKS = ("filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface", "whole")
+BENCHMARKS = ("filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface",
+              "threads", "whole")
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
@@ -39,7 +40,7 @@ def environment_python() -> Path | None:
 
 
 def main(names: list[str]) -> int:
-    """Print a line per comparison."""
+    """Print a line per comparison, and how busy the machine is before each benchmark: medians forgive some of that."""
     sys.path[:0] = [str(HERE.parent), str(HERE)]
     from freecad_am.batch import host
 
@@ -49,7 +50,7 @@ def main(names: list[str]) -> int:
         if name not in BENCHMARKS:
             print(f"error[USAGE] bench: there is no benchmark {name!r}; use {', '.join(BENCHMARKS)}", file=sys.stderr)
             return 2
-        print(f"{name}", flush=True)
+        print(f"{name} (load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors)", flush=True)
         for row in importlib.import_module(name).run():
             short |= row.short
             print(row.line(), flush=True)

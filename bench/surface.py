@@ -34,14 +34,14 @@ def run() -> list[Row]:
     """All comparisons of this file."""
     torus = Torus(60.0, 15.0)
     first = on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS))
-    times = []
+    times, peers = [], []
     for _ in range(ROUNDS):
         start = perf_counter()
         layers = constant_distance.layers(torus, first, HEIGHT, 0.5 * np.pi, POINTS)
         times.append(perf_counter() - start)
-    peer = np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1)
+        peers.append(np.mean([_bisected(torus, layers[i - 1], layers[i]) for i in SAMPLED]) * (len(layers) - 1))
     name = f"constant distance, {len(layers)} layers of {POINTS} points, {TOLERANCE:g} mm, against bisection"
-    return [Row(name, float(np.median(times)), float(peer), "s", 50.0), *_doublings(torus), _fronts()]
+    return [Row(name, float(np.median(times)), float(np.median(peers)), "s", 50.0), *_doublings(torus), _fronts()]
 
 
 def _doublings(torus: Torus) -> list[Row]:
@@ -51,15 +51,16 @@ def _doublings(torus: Torus) -> list[Row]:
         on_implicit(torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, points))
         for points in grids
     ]
-    best = [np.inf] * len(grids)
+    times: list[list[float]] = [[] for _ in grids]
     for _ in range(ROUNDS):  # in turn, so that what else the machine does meets all of them
         for i, (points, first) in enumerate(zip(grids, firsts)):
             start = perf_counter()
             layers = constant_distance.layers(torus, first, 5.0 * HEIGHT, 0.5 * np.pi, points)
-            best[i] = min(best[i], (perf_counter() - start) / sum(len(layer.v) for layer in layers))
+            times[i].append((perf_counter() - start) / sum(len(layer.v) for layer in layers))
+    middle = [float(np.median(some)) for some in times]
     return [
-        Row(f"constant distance, time per point of {points} points around against {grids[i]}", 1e6 * best[i + 1],
-            1e6 * best[i], "us", LINEAR)
+        Row(f"constant distance, time per point of {points} points around against {grids[i]}", 1e6 * middle[i + 1],
+            1e6 * middle[i], "us", LINEAR)
         for i, points in enumerate(DOUBLED)
     ]
 
@@ -67,17 +68,16 @@ def _doublings(torus: Torus) -> list[Row]:
 def _fronts() -> Row:
     """Time per point of fronts over the mesh of the same bend, layers half as far apart on edges half as long."""
     pipe = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
-    best = []
-    for height in FRONTS:
-        wall = bend(pipe, 0.3, 0.5 * np.pi, 0.25 * height)
-        times = []
-        for _ in range(ROUNDS):
+    walls = [bend(pipe, 0.3, 0.5 * np.pi, 0.25 * height) for height in FRONTS]
+    times: list[list[float]] = [[] for _ in FRONTS]
+    for _ in range(ROUNDS):
+        for some, wall, height in zip(times, walls, FRONTS):
             start = perf_counter()
             layers = fronts.layers(wall, height).fronts
-            times.append((perf_counter() - start) / sum(len(front.w) for layer in layers for front in layer))
-        best.append(min(times))
+            some.append((perf_counter() - start) / sum(len(front.w) for layer in layers for front in layer))
+    coarse, fine = (float(np.median(some)) for some in times)
     name = f"fronts, time per point of layers {FRONTS[1]:g} mm apart against {FRONTS[0]:g} mm (4 times the points)"
-    return Row(name, 1e6 * best[1], 1e6 * best[0], "us", LINEAR)
+    return Row(name, 1e6 * fine, 1e6 * coarse, "us", LINEAR)
 
 
 def _bisected(torus: Torus, below: WallLayer, above: WallLayer) -> float:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a point of a job takes of memory at the peak of each stage: twice the points, twice the memory, and no more of it than
-docs promise. `bench load` measures the same of whole processes and a million points."""
+"""What a point of a job takes of memory at the peak of each stage, told by two sizes of it. `bench load` measures whole
+processes, and a million points."""
 
 import tracemalloc
 
