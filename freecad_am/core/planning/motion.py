@@ -18,7 +18,7 @@ from ..parameters.process import ProcessParameters
 from .joint_path import BeadPath, JointPath
 from .rapid_findings import findings
 from .rapid_ways import RapidWays, Way
-from .retracts import Leg
+from .retract_ways import Leg
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,7 @@ from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .rapid_ways import RapidWays
 from .rapids import collision
-from .retract_choices import ASKED
-from .retracts import LIMIT, SINGULAR, Failure, Leg
+from .retract_ways import ASKED, LIMIT, SINGULAR, Failure, Leg
 
 
 def findings(ways: RapidWays) -> tuple[Issue, ...]:

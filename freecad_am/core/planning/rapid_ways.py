@@ -16,8 +16,8 @@ from ..motion import APPROACH, RETRACT, TRAVEL
 from ..parameters.joints import JointParameters
 from .joint_path import BeadPath, JointPath
 from .rapids import Deposit, Moves, Surroundings
-from .retract_choices import DIRECTIONS
-from .retracts import STRAY_MM, Ends, Failure, Leg, Retracts, branch_of
+from .retract_ways import DIRECTIONS, Ends, Failure, Leg
+from .retracts import STRAY_MM, Retracts, branch_of
 
 Array = NDArray[np.float64]
 

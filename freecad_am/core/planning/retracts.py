@@ -13,7 +13,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +22,20 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..kinematics.five_axis import FiveAxis
 from ..parameters.joints import JointParameters
-from .joint_path import BeadPath
-from .retract_choices import ASKED, LEANS_RAD, SIDES, Choice, groups
+from .retract_ways import (
+    ASKED,
+    LEANS_RAD,
+    LIMIT,
+    SIDES,
+    SINGULAR,
+    UNREACHABLE,
+    Choice,
+    Ends,
+    Failure,
+    Leg,
+    Ways,
+    groups,
+)
 from .task import CONDITION_FLOOR, RESERVE
 
 Array = NDArray[np.float64]
@@ -44,71 +55,6 @@ ROUNDING_RAD = 1e-9
 # a direction must lead away from the bead: least cosine of its angle to the tool axis
 AWAY = 0.2
 SAME_DIRECTION = 1e-6
-LIMIT, UNREACHABLE, SINGULAR = "LIMIT", "UNREACHABLE", "SINGULAR"
-
-
-class Ways(NamedTuple):
-    """Ways off ends of beads: the numbers (k,) of the ends, heights (k,) mm, directions (k, 3), turns (k,) rad, and what is
-    added to the tool axes at the far end (k, 3)."""
-
-    end: Index
-    height: Array
-    direction: Array
-    turn: Array
-    lean: Array
-
-    def of(self, rows: Index) -> Ways:
-        """Those of the rows."""
-        return Ways(*(column[rows] for column in self))  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
-class Leg:
-    """A way off a bead that the machine can go.
-
-    joints: (m, axes) at the ends of its moves, outwards, counted on from the bead. position: (m, 3) mm, the tip there.
-    height: mm. choice: how it differs from the way asked for.
-    """
-
-    joints: Array
-    position: Array
-    height: float
-    choice: Choice
-
-
-@dataclass(frozen=True)
-class Failure:
-    """Why the way asked for cannot be gone: LIMIT, UNREACHABLE or SINGULAR, the index of the limit among the labels of the
-    limits, the value there and the bound, rad or mm, or the condition and the least allowed."""
-
-    kind: str
-    label: int = 0
-    value: float = 0.0
-    bound: float = 0.0
-
-
-@dataclass(frozen=True)
-class Ends:
-    """The first (even) and last (odd) points of all beads, n = twice their number: rows of points, directions, rotations
-    (n,) rad and joints (n, axes)."""
-
-    point: Array
-    tool: Array
-    build: Array
-    phi: Array
-    joints: Array
-
-    @classmethod
-    def of(cls, beads: Sequence[BeadPath]) -> Ends:
-        """The ends of the beads of a joint path."""
-        both = [0, -1]
-        return cls(
-            np.concatenate([path.bead.points[both] for path in beads]),
-            np.concatenate([path.bead.tool[both] for path in beads]),
-            np.concatenate([path.bead.build[both] for path in beads]),
-            np.concatenate([path.phi[both] for path in beads]),
-            np.concatenate([path.joints[both] for path in beads]),
-        )
 
 
 @dataclass(frozen=True)
