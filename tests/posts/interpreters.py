@@ -86,9 +86,9 @@ KINEMATICS = (428, 429, 430)
 def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: float = 0.0) -> tuple[list[dict], list[str]]:
     """What LinuxCNC's interpreter makes of a program: its moves in order, and what it complains of.
 
-    A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset), analogue
-    (values of outputs). seconds come from the feed as LinuxCNC counts it: of the linear axes where they move, else of the
-    rotary ones.
+    A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset),
+    corner (mm it is rounded by at most, 0 for an exact stop), analogue (values of outputs). seconds come from the feed as
+    LinuxCNC counts it: of the linear axes where they move, else of the rotary ones.
     """
     command, environment = rs274()
     for name, content in files.items():
@@ -108,6 +108,7 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
     moves, complaints, ended = [], [], False
     at, feed, deposit, kinematics, offset = np.full(6, np.nan), 0.0, False, None, 0
     analogue: dict[int, tuple[float, bool]] = {}
+    corner: float | None = None
     for line in (result.stdout + result.stderr).splitlines():
         found = re.match(r" *\d+ N\S* +(\w+)\((.*)\)\s*$", line)
         if found is None:
@@ -119,6 +120,9 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
             feed = float(inside)
         elif word == "SET_G5X_OFFSET":
             offset = int(inside.split(",")[0])
+        elif word == "SET_MOTION_CONTROL_MODE":
+            mode, _, bound = inside.partition(",")
+            corner = {"CANON_EXACT_STOP": 0.0, "CANON_CONTINUOUS": float(bound or "inf")}.get(mode)
         elif word in ("SET_AUX_OUTPUT_BIT", "CLEAR_AUX_OUTPUT_BIT"):
             deposit = word.startswith("SET")
         elif word in ("SET_AUX_OUTPUT_VALUE", "SET_MOTION_OUTPUT_VALUE"):
@@ -131,7 +135,8 @@ def run_rs274(folder: Path, files: dict[str, bytes], main: str, tool_length: flo
             step = place - at
             way = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
             moves.append({"at": place, "way": way, "feed": feed, "seconds": 60.0 * way / feed if feed else np.nan,
-                          "deposit": deposit, "kinematics": kinematics, "offset": offset, "rapid": word != "STRAIGHT_FEED",
+                          "deposit": deposit, "kinematics": kinematics, "offset": offset, "corner": corner,
+                          "rapid": word != "STRAIGHT_FEED",
                           "analogue": dict(analogue)})
             at = place
         ended |= word == "PROGRAM_END"

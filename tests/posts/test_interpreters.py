@@ -55,6 +55,8 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
         if np.isfinite(wire):
             value, queued = move["analogue"][6]
             assert value == pytest.approx(0.15 * wire, rel=5.1e-5) and not (first and queued)
+    # an exact stop at every point of a rapid, and corners rounded in beads alone
+    assert [move["corner"] for move in moves] == [0.05 if on else 0.0 for on in deposit_of(of)]
     tip = [motion == "cartesian" and on for on in deposit_of(of)]
     assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in tip]
     assert [move["offset"] for move in moves] == [of.user_frame if on else 9 for on in tip]
@@ -104,8 +106,9 @@ def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     joints, deposit = columns(of, "joints"), np.array(deposit_of(of))
     tip = deposit & (motion == "cartesian")
     assert len(places) == len(joints)
-    for place, axes, is_tip, position, run_on, wire in zip(
-        places, joints, tip, columns(of, "position") if motion == "cartesian" else joints, deposit, wires(of)[0], strict=True
+    for place, axes, is_tip, position, run_on, wire, stops in zip(
+        places, joints, tip, columns(of, "position") if motion == "cartesian" else joints, deposit, wires(of)[0],
+        columns(of, "stops"), strict=True,
     ):
         row = rows[place]
         assert np.isnan(wire) or row["O7"] == pytest.approx(0.15 * wire, rel=5.1e-5)
@@ -120,6 +123,7 @@ def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
         assert (row["gg01_motion"], row["gg07_tool_radius"], row["gg06_plane_select"]) == ("G1", "G40", "G17")
         assert row["gg08_work_offset"] == (siemens._offset(of.user_frame) if is_tip else "G500")
         assert (row.get("H4") == 1.0) == run_on
+        assert (row["gg10_exact_stop_mode"], row["gg11_exact_stop_non_modal"] == "G9") == ("G642", stops)
 
 
 @sinumerik_is_here
