@@ -42,7 +42,7 @@ OURS = {
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},
     "read_back": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "kdl"},
     "verify": {"core/issues", "core/geometry", "core/kinematics", "core/motion", "core/program", "posts", "read_back"},
-    "brep": {"core/issues", "core/geometry", "core/one_thread"},
+    "brep": {"core/issues", "core/geometry", "core/one_thread", "core/collision"},
     "objects": {"core", "brep", "posts", "verify", "kdl"},
     "interop": {"core", "objects"},
     "api": {"core", "brep", "objects", "posts", "interop"},

@@ -194,7 +194,7 @@ def _write(
 ) -> Result:
     """Everything but the page, which is drawn last."""
     from freecad_am import api
-    from freecad_am.core.process import spacing
+    from freecad_am.core.process import deposit_balance, spacing
     from freecad_am.core.simulation import deposit
 
     from . import report, waypoints
@@ -221,6 +221,9 @@ def _write(
         compared = _compare_spacings(job, stages, content, toolpath, distances, planned, cell, session)
     with stages.timed("preflight", session):
         content["preflight"] = [one.as_dict() for one in _preflight(stages, distances)]
+    content["deposit"] = deposit_balance.as_dict(
+        deposit_balance.of_feature(api.result(stages.feature), job.process.bead_width)
+    )
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])

@@ -21,6 +21,7 @@ from .turning import normals_of, surely_off
 from .wire import pieces_of_edges
 
 SLIVER = 1e-3  # mm; faces narrower than this are ignored
+MOSTLY = 0.5  # of the surface of several solids, that the one with a wall has at least
 JUDGED = 24  # faces that are off an axis, looked at for the one to tell of
 
 Named = tuple[str, Any]
@@ -34,7 +35,7 @@ def find_wall(
     faces: names such as 'Face3' of the wall's faces; all when left out: of a solid or closed shell then the outer or
     inner wall without its flat end faces, or the middle, halfway between the two. axis: point and direction, needed by
     wires and sketches, found on surfaces. Raises InputError 'NO_WALL', 'NOT_REVOLUTION' (naming face and deviation in
-    mm), 'NO_AXIS', 'UNKNOWN_FACE', 'SEVERAL_SOLIDS'.
+    mm), 'NO_AXIS', 'UNKNOWN_FACE', 'SEVERAL_SOLIDS', 'NOT_OF_REVOLUTION' where most of several solids are not.
     """
     if shape is None or shape.isNull():
         raise InputError("NO_WALL", label, "the shape is empty; choose an object with a shape")
@@ -57,21 +58,30 @@ def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]
 
 
 def _only_solid(shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str) -> RevolvedWall:
-    """The wall of the one solid that has one."""
-    found: list[tuple[str, RevolvedWall]] = []
+    """The wall of the one solid that has one, where that is most of the shape."""
+    found: list[tuple[str, RevolvedWall, float]] = []
+    area = sum(solid.Area for solid in shape.Solids)
     for index, solid in enumerate(shape.Solids, start=1):
         own = [(name, face) for name, face in named if any(face.isSame(other) for other in solid.Faces)]
         try:
-            found.append((f"Solid{index} ({own[0][0]} to {own[-1][0]})", _from_faces(own, wall, axis, label, False)))
+            made = _from_faces(own, wall, axis, label, False)
+            found.append((f"Solid{index} ({own[0][0]} to {own[-1][0]})", made, solid.Area / area))
         except InputError:
             continue
     if len(found) == 1:
-        return found[0][1]
+        name, made, share = found[0]
+        if share < MOSTLY:
+            raise InputError(
+                "NOT_OF_REVOLUTION", label, f"of its {len(shape.Solids)} solids {name} alone turns about an axis, "
+                f"{share:.0%} of its surface; name the faces of that one to deposit it alone, and deposit the others as "
+                "walls on a part or solids on a hub",
+            )
+        return made
     if not found:
         raise InputError(
             "NO_WALL", label, f"none of its {len(shape.Solids)} solids is of revolution; name the faces of the wall"
         )
-    names = ", ".join(name for name, _ in found)
+    names = ", ".join(name for name, *_ in found)
     raise InputError("SEVERAL_SOLIDS", label, f"{names} all have a wall; name the faces of the one to deposit")
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from ..core.issues import AmError, Issue
 from ..core.parameters.strategy import RevolutionParameters
 from ..core.strategies.revolution import Slices, sliced
+from ..objects import deposit
 from ..objects.feature import RevolutionFeature
 from ..objects.stage import Outcome
 from . import inputs
@@ -29,6 +30,7 @@ class FeaturePanel(PreviewPanel):
         title = tr("Feature") if obj is None else obj.Label
         super().__init__(title, inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
         self.say("")  # what is missing is told where the preview will be
+        self.tell(self.choices[0].label, self.choices[0].note, wrong=False)
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
         draft.check()
@@ -48,7 +50,7 @@ class FeaturePanel(PreviewPanel):
             "Layers: {}, along {:.4g} mm of wall"
         )
         count = int(slices.layer.max(initial=-1)) + 1
-        found = (sentence(issue.message) for issue in (*made.issues, *issues))
+        found = (sentence(issue.message) for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues))
         return "\n".join([told.format(count, made.value.meridian.length), *found])
 
     def _draw_without(self) -> None:

@@ -10,15 +10,21 @@ from typing import Any
 import numpy as np
 
 from ..brep import hub as hubs
-from ..brep import kernel
+from ..brep import kernel, part_depths
 from ..brep.revolution import find_wall
-from ..core.issues import InputError
-from ..objects.shapes import global_shape, taken
+from ..brep.wall_on import named_faces
+from ..core.issues import InputError, Issue
+from ..core.parameters.strategy import DevelopableParameters
+from ..core.process import deposit_balance
+from ..objects import deposit
+from ..objects.developable_feature import found_in
+from ..objects.shapes import Taken, global_shape, taken
 from . import picking
 from .picking import Pick
 from .texts import tr, translated
 
 REVOLUTION, SURFACE, DEVELOPABLE = "revolution", "surface", "developable"  # as macros and job files call them
+COARSE = 0.3  # mm; of triangles that a look at solids is content with
 _TOUCHING = 0.05  # mm from the surface of a hub
 _LEAST = 3  # corners of a solid that lie on what it stands on
 _ROUND = ("Part::GeomCylinder", "Part::GeomCone")
@@ -33,6 +39,16 @@ class Guess:
     parts: tuple[Pick, ...] = ()
     ground: Pick | None = None
     missing: str = ""
+
+
+def taken_whole(guess: Guess, picks: Sequence[Pick]) -> str:
+    """That all of an object is deposited of which one face was clicked; '' where none was."""
+    clicked = {pick.obj.Name for pick in picks if len(_faces(pick)) == 1}
+    for part in guess.parts:
+        if guess.kind != DEVELOPABLE and not part.names and part.obj.Name in clicked:
+            return tr("The whole of {} is taken. For faces alone, click several with Ctrl; for a single one, use the panel "
+                      "of Feature or Wall on Part.").format(part.obj.Label)
+    return ""
 
 
 def of_several(picks: Sequence[Pick]) -> Guess:
@@ -51,7 +67,7 @@ def of_several(picks: Sequence[Pick]) -> Guess:
     assert wall is not None and ground is not None  # there are two, and not both meshes
     named = tr("faces of {} are picked") if wall.names else tr("{} is no solid on a cylinder or cone")
     reason = tr("{}; {} is what they grow on") if wall.names else tr("{}; {} is what it grows on")
-    return Guess(SURFACE, reason.format(named.format(wall.obj.Label), ground.obj.Label), (wall,), ground)
+    return Guess(SURFACE, reason.format(named.format(wall.obj.Label), ground.obj.Label), (picking.whole(wall),), ground)
 
 
 def of_one(pick: Pick) -> Guess | Callable[[], Guess]:
@@ -60,6 +76,7 @@ def of_one(pick: Pick) -> Guess | Callable[[], Guess]:
     if picking.is_mesh(pick.obj):
         return Guess(DEVELOPABLE, tr("{} is a mesh, which may be deposited on a hub").format(label), (pick,), None,
                      tr("Select also, with Ctrl, the hub it grows on; or the faces of a wall that grows on it."))
+    clicked, pick = pick, picking.whole(pick)
     shape, faces = global_shape(pick.obj).copy(False), _faces(pick)
     if len(shape.Solids) > 1 and not faces:
         reason = tr("{} holds {} solids").format(label, len(shape.Solids))
@@ -72,9 +89,9 @@ def of_one(pick: Pick) -> Guess | Callable[[], Guess]:
         except InputError as error:
             if error.code == kernel.FAULTY:
                 raise
-            return _not_turned(pick, label, shape, faces, error)
+            return _not_turned(clicked, label, shape, _faces(clicked), error)
         told = tr("the faces picked turn about one axis") if faces else tr("{} turns about one axis").format(label)
-        return Guess(REVOLUTION, told, (picking.with_faces(pick),))
+        return Guess(REVOLUTION, told, (pick,))
 
     return work
 
@@ -88,8 +105,20 @@ def _not_turned(pick: Pick, label: str, shape: Any, faces: Sequence[str], error:
     if chosen and shape.Solids and all(face.Surface.TypeId in _ROUND for face in chosen):
         return Guess(DEVELOPABLE, tr("cylinders and cones of {} are picked as hub").format(label),
                      (Pick(pick.obj),), pick)
-    return Guess(SURFACE, tr("{} is not of revolution, so it is a wall").format(label),
-                 (picking.with_faces(pick),), None, tr("Select also, with Ctrl, the part that it grows on."))
+    part = Pick(pick.obj) if len(chosen) == 1 and len(shape.Faces) > 1 else picking.with_faces(pick)
+    missing = tr("Select also, with Ctrl, the part that it grows on.")
+    if shape.Solids and not part.names and not _has_wall(shape, label):
+        missing = tr("A solid on a flat base cannot be built up yet. Select, with Ctrl, faces of it that are one wall, and "
+                     "the part that they grow on.")
+    return Guess(SURFACE, tr("{} is not of revolution, so it is a wall").format(label), (part,), None, missing)
+
+
+def _has_wall(shape: Any, label: str) -> bool:
+    """Whether the faces of a solid tell which of them are its wall."""
+    try:
+        return bool(named_faces(shape, (), label))
+    except InputError:
+        return False
 
 
 def as_kind(kind: str, picks: Sequence[Pick], reason: str) -> Guess:
@@ -98,13 +127,13 @@ def as_kind(kind: str, picks: Sequence[Pick], reason: str) -> Guess:
         if picking.is_mesh(picks[0].obj):
             return Guess(kind, reason, (), None, tr("A part of revolution needs exact faces; {} is a mesh.")
                          .format(picks[0].obj.Label))
-        return Guess(kind, reason, (picking.with_faces(picks[0]),))
+        return Guess(kind, reason, (picking.whole(picks[0]),))
     if kind == SURFACE:
         wall, ground, unclear = picking.proposal(picks)
         missing = unclear or ("" if ground is not None else tr("Select also, with Ctrl, the part that it grows on."))
         if wall is None:
             missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(picks[0].obj.Label)
-        return Guess(kind, reason, () if wall is None else (wall,), ground, missing)
+        return Guess(kind, reason, () if wall is None else (picking.whole(wall),), ground, missing)
     faced = [pick for pick in picks if _faces(pick)]
     if len(picks) == 1:
         mesh = picking.is_mesh(picks[0].obj)
@@ -113,6 +142,42 @@ def as_kind(kind: str, picks: Sequence[Pick], reason: str) -> Guess:
         return Guess(kind, reason, (Pick(picks[0].obj),), picking.with_faces(faced[0]) if faced else None, missing)
     ground = faced[0] if len(faced) == 1 else picks[-1]
     return Guess(kind, reason, tuple(Pick(one.obj) for one in picks if one is not ground), picking.with_faces(ground))
+
+
+def left_out(guess: Guess) -> Callable[[], tuple[Issue, ...]]:
+    """The work, which touches no document, that finds what of the part would not be deposited as it is understood.
+    What refuses the job is told by who makes it."""
+    parts, ground, width = [taken(pick.obj) for pick in guess.parts], guess.ground, deposit.bead_width()
+    names = guess.parts[0].names
+    own = ground is not None and ground.obj == guess.parts[0].obj
+    under = None if ground is None or own else taken(ground.obj)
+
+    def work() -> tuple[Issue, ...]:
+        try:
+            return deposit_balance.issues(_balance(guess, parts, names, under, width))
+        except (InputError, *kernel.FAULTS):
+            return ()
+
+    return work
+
+
+def _balance(
+    guess: Guess, parts: Sequence[Taken], names: tuple[str, ...], under: Taken | None, width: float
+) -> deposit_balance.Balance | None:
+    first, depths = parts[0], None
+    if guess.kind == DEVELOPABLE:
+        chosen = () if guess.ground is None else guess.ground.names
+        base = None if under is None or not chosen else (under, chosen)
+        faces = chosen if under is None else ()
+        solids = found_in(parts, faces, under, base, DevelopableParameters(chord_error=COARSE))
+        return deposit_balance.of_feature(solids, width)
+    shape = first.shape.copy(False)
+    if guess.kind == REVOLUTION:
+        depths = part_depths.of_revolved(shape, find_wall(shape, names, label=first.label), first.label)
+    else:
+        faces = tuple(name for name, _ in named_faces(shape, names, first.label))
+        depths = part_depths.of_faces(shape, faces, first.label, None if under is None else under.body())
+    return None if depths is None else deposit_balance.of_wall(depths, width)
 
 
 def _faces(pick: Pick) -> tuple[str, ...]:

@@ -11,10 +11,12 @@ import numpy as np
 from ..core.issues import AmError, Issue
 from ..core.parameters.strategy import DevelopableParameters
 from ..core.strategies import size
+from ..objects import deposit
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.shapes import FIXTURES
 from ..objects.stage import Link, Outcome
 from . import picking, recorded
+from .guess import COARSE
 from .hub_nodes import NOTHING, Drawing, HubNodes, drawing
 from .lines import Array
 from .pick_field import PickField
@@ -31,7 +33,6 @@ HUB = Link(
     marked("The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid."),
     required=False, type_name="App::PropertyLinkSub",
 )
-COARSE = 0.3  # mm
 _SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
 _OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_plane")
 _NO_BASE = ("NO_HUB", "NO_BASE")
@@ -155,7 +156,7 @@ class HubPanel(PickPanel):
 
     def _draw(self, made: Outcome, drawing: Drawing) -> str:
         self.nodes.set(drawing)
-        return _told(made, drawing.contours)
+        return _told(made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues))
 
     def _draw_without(self) -> None:
         self.nodes.set(NOTHING)
@@ -169,7 +170,7 @@ def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
     return [*([] if source is None else [source]), *obj.Further], hub, obj.Fixtures
 
 
-def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]]) -> str:
+def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]) -> str:
     lines = []
     for group, solids in zip(made.value.groups, contours, strict=True):
         surface, count = group.base.surface, len(group.bodies)
@@ -183,5 +184,4 @@ def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]]) -> str:
         stands = tr("1 solid on {1} ({2})") if count == 1 else tr("{0} solids on {1} ({2})")
         first = tr("first layer: {} contours, {:.1f} mm").format(sum(map(len, solids)), length)
         lines.append(f"{stands.format(count, group.base.name, shape)}; {first}")
-    findings: tuple[Issue, ...] = made.issues
     return "\n".join([*lines, *(sentence(issue.message) for issue in findings)])

@@ -91,7 +91,9 @@ class StageChoice(Input):
 
 class ShapeChoice(Input):
     """A shape with some of its faces, or an axis: what is selected, renewed by a button; what is not required is none again
-    where nothing is selected. `present`: as the link holds it."""
+    where nothing is selected. `present`: as the link holds it. note: what a panel that opens tells about it."""
+
+    note = ""
 
     def __init__(self, link: Link, present: Any, take_now: bool) -> None:
         self.link, self.label, self.present = link, translated(link.label), present
@@ -112,8 +114,16 @@ class ShapeChoice(Input):
         row.addWidget(self.text)
         row.addWidget(button)
         if take_now and present is None:
-            self.take()
+            self._propose_selected()
         self._show()
+
+    def _propose_selected(self) -> None:
+        """Take what was selected before the panel was opened, where a click on one face stands for all of it."""
+        found = self._selected()
+        pick = found if found is None or self.link.name == "Axis" else picking.whole(found)
+        self._take(pick)
+        if found is not None and pick is not None and found.names and not pick.names:
+            self.note = tr("The whole of {} is taken; Use selection takes faces alone.").format(pick.obj.Label)
 
     def _take_selected(self, *_: Any) -> None:
         """The button was pressed, perhaps after the document was closed."""
@@ -124,7 +134,9 @@ class ShapeChoice(Input):
 
     def take(self, *_: Any) -> None:
         """Take what is selected now; what cannot be taken is told, and what was taken before stays."""
-        found = self._selected()
+        self._take(self._selected())
+
+    def _take(self, found: picking.Pick | None) -> None:
         wrong = "" if found is not None else self._refusal()
         if found is not None:
             self.present = (found.obj, list(found.names))

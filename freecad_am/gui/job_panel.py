@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -11,7 +12,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from .. import api
-from ..core.issues import AmError
+from ..core.issues import AmError, Issue
 from ..core.parameters.cell import CellParameters
 from ..objects import preferences
 from ..objects.progress import Cancelled
@@ -25,7 +26,7 @@ from .later import Background
 from .picking import Pick
 from .signals import connect
 from .stage_panel import CLOSED
-from .texts import tr, translated, translated_error
+from .texts import sentence, tr, translated, translated_error
 from .wheel import scrolls
 from .worker import Worker
 
@@ -59,8 +60,8 @@ class JobPanel:
         self.form.setWindowTitle(tr("New job"))
         self.form.setWindowIcon(QtGui.QIcon(icons.path("new_job")))
         column = QtGui.QVBoxLayout(self.form)
-        self.error, self.reason = QtGui.QLabel(), QtGui.QLabel()
-        for label, name in ((self.error, "error"), (self.reason, "reason")):
+        self.error, self.reason, self.left_out = QtGui.QLabel(), QtGui.QLabel(), QtGui.QLabel()
+        for label, name in ((self.error, "error"), (self.reason, "reason"), (self.left_out, "left_out")):
             label.setObjectName(name)
             label.setWordWrap(True)
             label.hide()
@@ -94,7 +95,7 @@ class JobPanel:
         hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
                                "double-click one in the tree to change it."))
         hint.setWordWrap(True)
-        for widget in (self.error, self.fold.widget, self.reason, hint):
+        for widget in (self.error, self.fold.widget, self.reason, self.left_out, hint):
             column.addWidget(widget)
         column.addStretch(1)
         scrolls(self.form)
@@ -146,7 +147,7 @@ class JobPanel:
         if isinstance(found, Guess):
             self._understood(found)
         else:
-            self.guess = Guess(guess.REVOLUTION, tr("looking at the shape"), (picking.with_faces(self.picks[0]),))
+            self.guess = Guess(guess.REVOLUTION, tr("looking at the shape"), (picking.whole(self.picks[0]),))
             self._show()
             self.background.start(found, self._look)
 
@@ -164,11 +165,24 @@ class JobPanel:
             pass
 
     def _understood(self, found: Guess) -> None:
+        """Show it, and find out what of the part would be left out."""
         self.guess = found
         self._show()
+        if found.parts and not found.missing:
+            with contextlib.suppress(AmError):  # told when the job is made
+                self.background.start(guess.left_out(found), self._look_at_left_out)
+
+    def _look_at_left_out(self, worker: Worker) -> None:
+        with contextlib.suppress(AmError, Cancelled, RuntimeError):  # so is this; or the panel is closed
+            self._tell_left_out(worker.result())
+
+    def _tell_left_out(self, issues: Sequence[Issue]) -> None:
+        self.left_out.setText("\n".join(sentence(issue.message) for issue in issues))
+        self.left_out.setVisible(bool(issues))
 
     def _show(self) -> None:
         """Show how the selection is understood, and what is missing."""
+        self._tell_left_out(())
         found = self.guess
         if found.kind:
             self.kind.setCurrentIndex(self.kind.findData(found.kind))
@@ -182,7 +196,8 @@ class JobPanel:
             "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
         )
         reason = tr("{}: {}.").format(self.kinds[found.kind], found.reason) if found.reason else ""
-        self.reason.setText("\n".join(filter(None, (reason, missing))))
+        whole = guess.taken_whole(found, self.picks)
+        self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
         self.reason.setStyleSheet(f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}")
         self.reason.setVisible(bool(self.reason.text()))
         parts = found.parts

@@ -128,6 +128,14 @@ def with_faces(pick: Pick) -> Pick:
     return Pick(pick.obj, tuple(name for name in pick.names if name.startswith(FACE)))
 
 
+def whole(pick: Pick) -> Pick:
+    """What a click on something to be deposited means: one face of several stands for all of its object, for that is what a
+    click in the 3D view selects; several faces are meant themselves."""
+    faces = with_faces(pick)
+    lone = len(faces.names) == 1 and len(global_shape(pick.obj).Faces) > 1
+    return Pick(pick.obj) if lone else faces
+
+
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     """Wall and substrate of a selection, None for what it does not tell, and what is unclear about it.
 

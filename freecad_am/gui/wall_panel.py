@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..core.issues import Issue
+from ..objects import deposit
 from ..objects.shapes import taken
 from ..objects.stage import Outcome
 from ..objects.surface_feature import SurfaceFeature
@@ -26,6 +27,7 @@ _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
 class WallPanel(PickPanel):
     """Makes a wall on a part of what is selected, or changes one."""
 
+    note = ""  # about what was selected before it was opened
     stage, icon, function, draft = SurfaceFeature, "wall_on_part", "make_surface_feature", "Wall"
 
     def __init__(self, obj: Any = None) -> None:
@@ -37,9 +39,14 @@ class WallPanel(PickPanel):
             for link in SurfaceFeature.links
         ]
         super().__init__(tr("Wall on part") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+        self.tell(self._field("Source").label, self.note, wrong=False)
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         wall, substrate, unclear = picking.proposal(picks)
+        whole = None if wall is None else picking.whole(wall)
+        if wall is not None and whole is not None and wall.names and not whole.names:
+            self.note = tr("The whole of {} is taken; Pick takes faces alone, click by click.").format(wall.obj.Label)
+            wall = whole
         for name, pick in (("Source", wall), ("Substrate", substrate)):
             if pick is not None:
                 self._field(name).take(pick)
@@ -86,7 +93,7 @@ class WallPanel(PickPanel):
         self.nodes.set_first(curves)
         self.nodes.faces.show(True)
         self.nodes.faces.set(*drawing)
-        return _told(curves, made.issues)
+        return _told(curves, (*deposit.expected(made.value, self.obj), *made.issues))
 
     def _draw_without(self) -> None:
         wall = self._field("Source").picks

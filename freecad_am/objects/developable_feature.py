@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..brep.hub import SHARE, Bodies, bodies_of, given, seats
-from ..core.geometry.on_hub import Seat, SolidsOnHub
+from ..core.collision.depths import places_within
+from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub
+from ..core.geometry.solid_mesh import SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
@@ -104,6 +106,15 @@ class _Given:
         )
 
 
+def found_in(
+    objects: Sequence[Taken], faces: Sequence[str], substrate: Taken | None,
+    base_faces: tuple[Taken, tuple[str, ...]] | None, strategy: DevelopableParameters,
+) -> SolidsOnHub:
+    """Solids and hub of objects, faces of the first of them, hub and faces of it, as a feature would find them; the
+    InputErrors that it would raise."""
+    return _solids(_Given(objects[0].label, tuple(objects), tuple(faces), substrate, base_faces), strategy)
+
+
 def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
     found = [_bodies(one, strategy.chord_error) for one in of.objects]
     solid = [body for one in found for body in one.bodies]
@@ -113,7 +124,28 @@ def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
     named = "" if of.substrate is None else of.substrate.label
     meshes = [body for one, own in zip(of.objects, found, strict=True) if one.shape is None for body in own.bodies]
     solids = on_hub(rest, bases, SHARE * strategy.chord_error, of.objects[0].label, issues, named, meshes)
-    return solids if hub is None else dataclasses.replace(solids, surroundings=(hub,))
+    if hub is not None:
+        return dataclasses.replace(solids, surroundings=(hub,), own=_apart(solid, hub))
+    return dataclasses.replace(solids, own=_within(solids)) if of.faces and of.base_faces is None else solids
+
+
+def _apart(solids: Sequence[Body], hub: Body) -> OwnHub:
+    """The hub that is one of the solids."""
+    volume = [SolidMesh(body.vertices, body.triangles).volume for body in solids]
+    own = next(one for one, body in zip(volume, solids, strict=True) if body is hub)
+    return OwnHub(sum(volume), own, ((hub.name, own),))
+
+
+def _within(solids: SolidsOnHub) -> OwnHub:
+    """The hub that is of one solid with what stands on it: all that lies within its faces."""
+    total = within = 0.0
+    for group in solids.groups:
+        for body in group.bodies:
+            volume, points = SolidMesh(body.vertices, body.triangles).volume, places_within(body)
+            total += volume
+            if len(points):
+                within += volume * float((group.base.surface.distance(group.base.inside(points)) < 0.0).mean())
+    return OwnHub(total, within)
 
 
 def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) -> tuple[list[Seat], Body | None]:

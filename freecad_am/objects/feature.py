@@ -8,6 +8,7 @@ from typing import Any
 
 import FreeCAD as App
 
+from ..brep.part_depths import of_revolved
 from ..brep.revolution import find_wall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
@@ -51,7 +52,9 @@ class RevolutionFeature(Stage):
             wall = find_wall(shape, faces, strategy.wall, axis, label)
             size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
-            return Outcome(dataclasses.replace(wall, surroundings=bodies(fixtures)), wall.issues, figures)
+            depths = of_revolved(shape, wall, label)
+            made = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)
+            return Outcome(made, wall.issues, figures)
 
         return work
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+from ..brep.part_depths import of_faces
 from ..brep.wall_on import wall_on
 from ..core.geometry.patch_wall import PatchWall
 from ..core.issues import InputError
@@ -59,7 +60,8 @@ class SurfaceFeature(Stage):
                 solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
             wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges)
             size.refuse_absurd(size.of_wall(wall, strategy), strategy)
-            wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)))
+            depths = of_faces(shape, wall.faces, label, ground[0] if ground else None)
+            wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)), depths=depths)
             kind = "patches" if isinstance(wall, PatchWall) else wall.kind
             return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", kind)))
 

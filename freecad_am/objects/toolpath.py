@@ -16,7 +16,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
-from ..core.process import bead_table
+from ..core.process import bead_table, deposit_balance
 from ..core.process.bead_model import BeadModel
 from ..core.process.wire import fed
 from ..core.strategies import (
@@ -71,6 +71,8 @@ class Toolpath(Stage):
 
         def work() -> Outcome:
             toolpath = planned(wall, strategy, build, process, carried)
+            told = deposit_balance.issues(deposit_balance.of_feature(wall, process.bead_width))
+            toolpath = dataclasses.replace(toolpath, issues=(*told, *toolpath.issues))
             figures = (
                 ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),
                 ("Length", toolpath.length),

@@ -24,7 +24,8 @@ IN_ROWS = {
     "JointPath": "66cc8fb7123c35847e5a3021e02e9d578c0ded93ada6d05a2e8a365f51c443b6",
     "Program": "112b574e451870c0bc54f0d48b88b99bb7533aedd47e25faf14f1fa2da69d313",
 }
-ADDED = ("role", "bead_width", "unsupported", "wire_feed")  # what there was not then: derived, or None where nobody knows
+# what there was not then: derived, or None where nobody knows
+ADDED = ("role", "bead_width", "unsupported", "wire_feed", "depths")
 
 
 def fingerprint(value):

@@ -78,15 +78,26 @@ class Group:
 
 
 @dataclass(frozen=True)
+class OwnHub:
+    """A hub that belongs to the part: volume of the whole part and of the hub, mm3; apart: name and mm3 of the solid that it
+    is, where it is one of its own."""
+
+    volume: float
+    hub: float
+    apart: tuple[tuple[str, float], ...] = ()
+
+
+@dataclass(frozen=True)
 class SolidsOnHub:
     """What is to be deposited, group by group. surroundings: hub and fixtures. chord_error: mm within which the triangles
-    stand for the solids."""
+    stand for the solids. own: the hub, where it is of the part and not deposited."""
 
     label: str
     groups: tuple[Group, ...]
     chord_error: float
     surroundings: tuple[Body, ...] = ()
     issues: tuple[Issue, ...] = ()
+    own: OwnHub | None = None
 
 
 def middle_azimuth(base: Base, points: Array) -> float:

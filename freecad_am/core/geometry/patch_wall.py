@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 from ..issues import Issue
 from .edge_runs import tangents
 from .mesh import Index, Mesh
+from .part_depths import PartDepths
 from .patch import Patch
 from .space_curve import SpaceCurve
 from .surface import dot
@@ -75,7 +76,7 @@ class PatchWall:
     vertices (n, 3) on the wall and triangles (m, 3), counter-clockwise seen from the wall's outer side, of the whole wall.
     patch: (m,) the number in `patches` of each triangle's own; uv: (m, 3, 2) the parameters of its corners there.
     first: where layers start. behind: (n,) True for vertices on the substrate's side of that, which are not deposited.
-    surroundings: bodies to keep the nozzle clear of, the substrate first.
+    surroundings: bodies to keep the nozzle clear of, the substrate first. depths: how the part lies about the wall.
     """
 
     vertices: Array
@@ -90,6 +91,7 @@ class PatchWall:
     faces: tuple[str, ...] = ()
     issues: tuple[Issue, ...] = ()
     surroundings: tuple[Body, ...] = ()
+    depths: PartDepths | None = None
 
     @cached_property
     def mesh(self) -> Mesh:

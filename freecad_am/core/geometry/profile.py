@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..issues import Issue
+from .part_depths import PartDepths
 from .surroundings import Body
 
 Array = NDArray[np.float64]
@@ -175,6 +176,7 @@ class RevolvedWall:
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). start, end: azimuths in
     rad about the axis, end > start; `full` when the wall closes on itself. issues: what was found out on the way.
     label: what the user calls the part. faces: names of the wall's faces, from the platform up. surroundings: fixtures.
+    depths: how the part lies about the wall, where it has faces.
     """
 
     meridian: Meridian
@@ -186,6 +188,7 @@ class RevolvedWall:
     label: str = "part"
     faces: tuple[str, ...] = ()
     surroundings: tuple[Body, ...] = ()
+    depths: PartDepths | None = None
 
     def __post_init__(self) -> None:
         frame = np.array(self.frame, dtype=np.float64)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import Issue
+from .part_depths import PartDepths
 from .surface import Cone, Surface, Torus
 from .surroundings import Body
 from .tabulated import Tabulated
@@ -26,6 +27,7 @@ class SurfaceWall:
     and the points table (n, m, 3). frame: (4, 4) pose of the surface's own frame in the part. end: u of the upper edge;
     layers rise from the substrate to it. first: (m, 3) closed chain of points in part coordinates in which the wall leaves
     the substrate, the first not repeated. faces: names of the wall's faces. surroundings: the substrate, then fixtures.
+    depths: how the part lies about the wall.
     """
 
     kind: str
@@ -41,6 +43,7 @@ class SurfaceWall:
     faces: tuple[str, ...] = ()
     issues: tuple[Issue, ...] = ()
     surroundings: tuple[Body, ...] = ()
+    depths: PartDepths | None = None
 
     def surface(self) -> Placed:
         """The wall as slicing wants it, in part coordinates."""

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How deep a part lies under the surface that its beads run on, and how far it reaches there, at places spread evenly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..geometry.part_depths import Surface
+from ..geometry.solid_mesh import spread
+from ..geometry.surroundings import Body
+from .inside import Inside, inside_of
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+PLACES = 800  # within the part
+TRIES = 20_000  # at most, to find so many in the box about a thin part
+AT_ONCE = 2000
+SHARES = 128  # steps that a distribution is kept in
+PROBES = 250  # places of the surface at which the part's thickness is looked for
+HALVINGS = 7  # of the step in which a probe leaves the part
+STEPS = 14  # of a probe into the part
+REACH = 64.0  # mm; no bead is wider
+ASIDE = 1.5  # distances between places of the surface; what lies farther beside its edge is not under it
+# three irrational steps, by which places spread evenly in a box (Roberts 2018, the generalised golden ratio)
+EVENLY = 1.0 / 1.22074408460575947536 ** np.arange(1, 4)
+
+
+def measured(
+    part: Body, owner: Index, faces: Sequence[str], surface: Surface, slack: float, excluded: Body | None = None
+) -> tuple[Array, Array, Array, float]:
+    """Depths, thickness and depths of faces as `PartDepths` has them, and the share of the part that is not in `excluded`.
+
+    part: its closed triangles, owner (m,) the number in `faces` of each. slack: mm that the surface may be off them.
+    """
+    inside = inside_of(part)
+    ground = None if excluded is None else inside_of(excluded)
+    spacing = float(np.sqrt(surface.areas.mean()))
+    probes = _probes(surface)
+    way, half = _inward(probes, inside, slack)
+    inward = way * surface.normals
+    middles, of = spread(part.corners(), 2.0 * spacing if len(faces) < 200 else np.inf)
+    deep = _depths(middles, surface, inward, half, spacing)
+    weight = _areas(part)[of] / np.bincount(of, minlength=len(part.triangles))[of]
+    if ground is not None:
+        weight = np.where(ground.holds(middles), 0.0, weight)
+    by_face = np.array([_median(deep[owner[of] == k], weight[owner[of] == k]) for k in range(len(faces))])
+    if inside is None:
+        return np.zeros(0), np.zeros(0), by_face, 1.0
+    points = _places(inside)
+    kept = points if ground is None else points[~ground.holds(points)]
+    depths = _shares(_depths(kept, surface, inward, half, spacing)) if len(kept) else np.zeros(0)
+    free = np.ones(len(probes.points), dtype=bool) if ground is None else ~ground.holds(probes.points)
+    thickness = _thickness(probes.points[free], way * probes.normals[free], half, inside, slack)
+    return depths, np.sort(thickness), by_face, len(kept) / max(len(points), 1)
+
+
+def _probes(surface: Surface) -> Surface:
+    """Places of a surface that stand for equal areas."""
+    ends = np.cumsum(surface.areas)
+    of = np.minimum(np.searchsorted(ends, (np.arange(PROBES) + 0.5) / PROBES * ends[-1]), len(ends) - 1)
+    return Surface(surface.points[of], surface.normals[of], np.full(PROBES, ends[-1] / PROBES))
+
+
+def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float, bool]:
+    """Which way, 1.0 or -1.0, normals of a surface lead into the part, and whether both ways do."""
+    if inside is None:
+        return 1.0, True
+    ahead, behind = (float(inside.holds(probes.points + way * slack * probes.normals).mean()) for way in (1.0, -1.0))
+    return (1.0 if ahead >= behind else -1.0), min(ahead, behind) > 0.5 * max(ahead, behind)
+
+
+def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing: float) -> Array:
+    """How wide (k,) a bead on the nearest place of the surface must be to hold each point (k, 3), inf beside it."""
+    _, nearest = cKDTree(surface.points).query(points, eps=0.02)  # in the middle of a ball all are alike
+    away = points - surface.points[nearest]
+    along = (away * inward[nearest]).sum(axis=1)
+    across = np.linalg.norm(away - along[:, None] * inward[nearest], axis=1)
+    deep = 2.0 * np.abs(along) if half else np.where(along > -spacing, np.maximum(along, 0.0), np.inf)
+    found: Array = np.where(across <= ASIDE * spacing + 0.1 * np.abs(along), deep, np.inf)
+    return found
+
+
+def places_within(body: Body) -> Array:
+    """Points (n, 3) spread evenly inside of a body; none where it leaves an opening."""
+    inside = inside_of(body)
+    return np.zeros((0, 3)) if inside is None else _places(inside)
+
+
+def _places(inside: Inside) -> Array:
+    """Points spread evenly inside of a body."""
+    found: list[Array] = []
+    for start in range(0, TRIES, AT_ONCE):
+        share = np.mod(0.5 + np.arange(start + 1, start + AT_ONCE + 1)[:, None] * EVENLY, 1.0)
+        points = inside.low + share * (inside.high - inside.low)
+        found.append(points[inside.holds(points)])
+        if sum(map(len, found)) >= PLACES:
+            break
+    return np.vstack(found)
+
+
+def _thickness(start: Array, way: Array, half: bool, inside: Inside, slack: float) -> Array:
+    """How far (m,) mm the part reaches under places (m, 3) of a surface along unit vectors (m, 3); with `half` twice as far
+    as it does where it reaches less far, of both ways."""
+    depth = _reach(start, way, inside, slack)
+    return 2.0 * np.minimum(depth, _reach(start, -way, inside, slack)) if half else depth
+
+
+def _reach(start: Array, way: Array, inside: Inside, slack: float) -> Array:
+    """How far (m,) mm lines from points along unit vectors, (m, 3) each, stay inside of a body, once they are in it."""
+    steps = np.geomspace(slack, REACH, STEPS)
+    held = inside.holds((start[:, None] + steps[None, :, None] * way[:, None]).reshape(-1, 3)).reshape(len(start), STEPS)
+    through, never = held.all(axis=1), ~held[:, 0]
+    out = np.argmin(held, axis=1)
+    low, high = steps[np.maximum(out - 1, 0)], steps[out]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        within = inside.holds(start + middle[:, None] * way)
+        low, high = np.where(within, middle, low), np.where(within, high, middle)
+    return np.where(through, REACH, np.where(never, 0.0, 0.5 * (low + high)))
+
+
+def _shares(values: Array) -> Array:
+    """The values (n,) at the middles of SHARES equal shares of them, sorted."""
+    found: Array = np.sort(values)[((np.arange(SHARES) + 0.5) / SHARES * len(values)).astype(int)]
+    return found
+
+
+def _areas(part: Body) -> Array:
+    a, b, c = (part.corners()[:, k] for k in range(3))
+    found: Array = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return found
+
+
+def _median(values: Array, weights: Array) -> float:
+    """The value that half of the weight is below; 0 where there is no weight."""
+    order = np.argsort(values)
+    total = np.cumsum(weights[order])
+    if not len(values) or total[-1] <= 0.0:
+        return 0.0
+    return float(values[order][np.searchsorted(total, 0.5 * total[-1])])

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What of a part its beads do not deposit, and what of them lies beside it: figures and findings, before there is a bead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..geometry.on_hub import SolidsOnHub
+from ..geometry.part_depths import PartDepths
+from ..issues import WARNING, Issue
+
+LEFT_OUT, BESIDE = "NOT_DEPOSITED", "DEPOSITED_BESIDE"
+CODES = (LEFT_OUT, BESIDE)
+ROOM = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
+LITTLE = 0.02  # of a part
+SMALL = 0.01  # of the area of the faces that beads do not run on
+MOST = 8  # faces and solids named in a message
+MM3 = 1000.0  # in a cm3
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Volumes in mm3, estimates but for solids; None where the part has none. faces: those left out; solids: those left out,
+    with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there."""
+
+    label: str
+    part: float | None
+    left_out: float | None
+    beads: float | None = None
+    beside: float | None = None
+    faces: tuple[str, ...] = ()
+    solids: tuple[tuple[str, float], ...] = ()
+    width: float = 0.0
+    thick: float = 0.0
+
+
+def of_feature(value: Any, width: float) -> Balance | None:
+    """Of what a feature has found, its wall or its solids, with beads of a width, mm; None where nothing is known."""
+    if isinstance(value, SolidsOnHub):
+        return _of_solids(value)
+    return None if value.depths is None else of_wall(value.depths, width)
+
+
+def of_wall(depths: PartDepths, width: float) -> Balance:
+    """Of a wall of one bead of a width, mm."""
+    total = sum(depths.face_areas)
+    faces = tuple(
+        name for name, deep, area in zip(depths.faces, depths.face_depths, depths.face_areas, strict=True)
+        if deep > ROOM * width and area > SMALL * total
+    )
+    if not depths.volume:
+        return Balance(depths.label, None, None, faces=faces, solids=depths.aside, width=width)
+    beside, beads = depths.beside(width), depths.area * width
+    thick = float(depths.thickness[len(depths.thickness) // 2]) if len(depths.thickness) else 0.0
+    left = depths.volume - depths.within(width)
+    if not faces and not depths.aside and depths.volume - depths.within(ROOM * width) < LITTLE * depths.volume:
+        left = 0.0
+    if beside < (ROOM - 1.0) / ROOM * beads:
+        beside = 0.0
+    return Balance(depths.label, depths.volume, left, beads, beside, faces, depths.aside, width, thick)
+
+
+def _of_solids(solids: SolidsOnHub) -> Balance | None:
+    """Of solids that are filled: all but the hub."""
+    if solids.own is None:
+        return None
+    own = solids.own
+    return Balance(solids.label, own.volume, own.hub, solids=own.apart)
+
+
+def issues(balance: Balance | None) -> tuple[Issue, ...]:
+    """What is to be told, at most one finding of each kind."""
+    if balance is None:
+        return ()
+    found = []
+    left = balance.left_out or 0.0
+    share = left > LITTLE * (balance.part or 0.0) and left > 0.0
+    if balance.solids or balance.faces or share:
+        why = f"a wall of one bead, {balance.width:.4g} mm wide, is planned" if balance.width else (
+            "solids are built up on the hub, which is there before"
+        )
+        found.append(Issue(WARNING, LEFT_OUT, f"{_left_out(balance, share)}: {why}"))
+    if balance.beside:
+        assert balance.beads is not None
+        found.append(Issue(
+            WARNING, BESIDE, f"about {balance.beside / MM3:.3g} of {balance.beads / MM3:.3g} cm3 of beads lie beside "
+            f"{balance.label}, which is {balance.thick:.2g} mm thick there, and beads are {balance.width:.4g} mm wide; give "
+            "process.bead_width, or machine it off",
+        ))
+    return tuple(found)
+
+
+def as_dict(balance: Balance | None) -> dict[str, Any] | None:
+    """The key `deposit` of report.json: volumes in cm3, None where the part has none."""
+    if balance is None:
+        return None
+    left = None if balance.part is None or balance.left_out is None else balance.part - balance.left_out
+    volumes = {
+        "part_cm3": balance.part, "deposited_cm3": left, "left_out_cm3": balance.left_out, "beside_cm3": balance.beside,
+    }
+    return {
+        **{key: None if volume is None else volume / MM3 for key, volume in volumes.items()},
+        "faces_left_out": list(balance.faces), "solids_left_out": [name for name, _ in balance.solids],
+        "estimate": balance.width > 0.0,
+    }
+
+
+def _left_out(of: Balance, share: bool) -> str:
+    """What is not deposited, as the beginning of a sentence."""
+    left, part = (of.left_out or 0.0) / MM3, (of.part or 0.0) / MM3
+    if not of.width and not of.solids:
+        return f"about {left:.3g} of the {part:.3g} cm3 of {of.label}, all that lies within its hub, are not deposited"
+    if not of.width:
+        return f"{_names([name for name, _ in of.solids])}, {left:.4g} of {part:.4g} cm3 of {of.label}, are not deposited"
+    if of.solids:
+        what = f"{len(of.solids)} solid(s) ({_names([name for name, _ in of.solids])})"
+    else:
+        what = f"{len(of.faces)} face(s) ({_names(of.faces)})"
+    if not share:
+        return f"{what} of {of.label} are not deposited"
+    if of.solids or of.faces:
+        return f"{what}, about {left:.3g} cm3 of the {part:.3g} cm3 of {of.label}, are not deposited"
+    return f"about {left:.3g} cm3 of the {part:.3g} cm3 of {of.label} are not deposited"
+
+
+def _names(names: Sequence[str]) -> str:
+    return ", ".join(names[:MOST]) + (", ..." if len(names) > MOST else "")

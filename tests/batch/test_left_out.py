@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a job does not deposit of its part stands in report.json, or the job is refused."""
+
+import json
+import math
+
+import FreeCAD
+import Part
+import pytest
+
+JOB = """\
+version: 1
+name: part
+part: {{file: part.step{faces}}}
+strategy: {{kind: {kind}, layer_height: 5 mm, chord_error: 0.1 mm}}
+"""
+
+
+def bracket():
+    bend = Part.makeCylinder(15, 50, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 90).cut(Part.makeCylinder(10, 50))
+    plates = Part.makeBox(60, 5, 50, FreeCAD.Vector(-60, 10, 0)), Part.makeBox(5, 60, 50, FreeCAD.Vector(10, -60, 0))
+    return Part.Compound([plates[0], bend, plates[1]])
+
+
+@pytest.fixture
+def planned(workshop):
+    """Plan a part; how the command ended, and its report or None."""
+
+    def run(shape, kind="revolution", faces=""):
+        shape.exportStep(str(workshop.folder / "part.step"))
+        job = workshop.write_job(JOB.format(kind=kind, faces=faces))
+        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        report = workshop.folder / "out" / "part" / "report.json"
+        report = report if report.exists() else workshop.folder / "out" / "report.json"
+        return done, json.loads(report.read_text(encoding="utf-8")) if report.exists() else None
+
+    return run
+
+
+def of_code(report, code):
+    return [issue for issue in report["issues"] if issue["code"] == code]
+
+
+def test_a_solid_that_becomes_a_skin_is_told(planned):
+    done, report = planned(Part.makeCylinder(30, 40))
+    assert done.status == 0
+    (issue,) = of_code(report, "NOT_DEPOSITED")
+    whole, skin = (math.pi * area * 40 / 1000 for area in (900, 900 - 22**2))
+    found = report["deposit"]
+    assert found["part_cm3"] == pytest.approx(whole, rel=1e-6) and found["estimate"]
+    assert found["deposited_cm3"] == pytest.approx(skin, rel=0.03)
+    assert found["left_out_cm3"] == pytest.approx(whole - skin, rel=0.03) and found["beside_cm3"] == 0.0
+    assert issue["level"] == "warning" and "113 cm3" in issue["message"] and "one bead, 8 mm wide" in issue["message"]
+
+
+def test_a_bracket_is_refused_as_a_part_of_revolution_and_told_of_as_solids_on_its_bend(planned):
+    done, report = planned(bracket())
+    assert done.status == 2 and report is None and "error[NOT_OF_REVOLUTION]" in done.err and "Solid2" in done.err
+    done, report = planned(bracket(), "developable")
+    assert done.status == 0
+    (issue,) = of_code(report, "NOT_DEPOSITED")
+    bend = math.pi * (15**2 - 10**2) / 4 * 50 / 1000
+    assert report["deposit"]["left_out_cm3"] == pytest.approx(bend, rel=0.01)
+    assert report["deposit"]["deposited_cm3"] == pytest.approx(30.0, rel=1e-3)
+    assert "solid 2" in issue["message"] and "34.9" in issue["message"]
