@@ -1107,6 +1107,11 @@
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>A solid on a flat base cannot be built up yet. Select, with Ctrl, faces of it that are one wall, and the part that they grow on.</source>
+        <translation>Un solide sur une base plane ne peut pas encore être construit. Sélectionnez, avec Ctrl, de ses faces qui forment une paroi, et la pièce sur laquelle elles poussent.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
         <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
@@ -4357,6 +4362,21 @@
         <translation>Tout le travail</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>The whole of {} is taken. For faces alone, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
+        <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <source>The whole of {} is taken; Pick takes faces alone, click by click.</source>
+        <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inputs.py"/>
+        <source>The whole of {} is taken; Use selection takes faces alone.</source>
+        <translation>{} est pris en entier ; Prendre la sélection prend des faces seules.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens.py"/>
         <source>The words that switch the deposit and the inputs are taken up in the PLC</source>
         <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
@@ -5140,6 +5160,21 @@
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>a {0} in {1} lacks {2}</source>
         <translation>il manque {2} à un élément {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} cm3 of the {1} cm3 of {2} are not deposited</source>
+        <translation>environ {0} cm3 des {1} cm3 de {2} ne sont pas déposés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} of the {1} cm3 of {2}, all that lies within its hub, are not deposited</source>
+        <translation>environ {0} des {1} cm3 de {2}, tout ce qui est à l’intérieur de son moyeu, ne sont pas déposés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} of {1} cm3 of beads lie beside {2}, which is {3} mm thick there, and beads are {4} mm wide; give process.bead_width, or machine it off</source>
+        <translation>environ {0} des {1} cm3 de cordons sont à côté de {2}, qui y a {3} mm d’épaisseur, et les cordons ont {4} mm de large ; donnez process.bead_width, ou enlevez-les par usinage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -7132,6 +7167,11 @@
         <translation>objet {0} de {1} : {2} objets, ou objets imbriqués {3} fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/revolution.py"/>
+        <source>of its {0} solids {1} alone turns about an axis, {2} of its surface; name the faces of that one to deposit it alone, and deposit the others as walls on a part or solids on a hub</source>
+        <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>of the shape</source>
         <translation>de la forme</translation>
@@ -8907,6 +8947,16 @@
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0} face(s) ({1}) of {2} are not deposited</source>
+        <translation>{0} face(s) ({1}) de {2} ne sont pas déposées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0} face(s) ({1}), about {2} cm3 of the {3} cm3 of {4}, are not deposited</source>
+        <translation>{0} face(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposées</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/expressions.py"/>
         <source>{0} follows the expression {1}, which gives nothing any more; give {2} a value or another one</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
@@ -9532,6 +9582,16 @@
         <translation>{0} ligne {1} (ligne {2} du fichier)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0} solid(s) ({1}) of {2} are not deposited</source>
+        <translation>{0} solide(s) ({1}) de {2} ne sont pas déposés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0} solid(s) ({1}), about {2} cm3 of the {3} cm3 of {4}, are not deposited</source>
+        <translation>{0} solide(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
@@ -9617,9 +9677,19 @@
         <translation>{0}, en {1} endroits,</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0}, {1} of {2} cm3 of {3}, are not deposited</source>
+        <translation>{0}, {1} des {2} cm3 de {3}, ne sont pas déposés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>{0}/{1}.pgx line {2}</source>
         <translation>{0}/{1}.pgx ligne {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0}: a wall of one bead, {1} mm wide, is planned</source>
+        <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
@@ -9635,6 +9705,11 @@
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>{0}: of no effect on a machine with two rotary axes, which leaves no rotation about the tool to choose; leave out what is meant for robots</source>
         <translation>{0} : sans effet sur une machine à deux axes rotatifs, qui ne laisse pas de rotation autour de l&apos;outil à choisir ; retirez ce qui est fait pour les robots</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0}: solids are built up on the hub, which is there before</source>
+        <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
