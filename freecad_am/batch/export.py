@@ -28,13 +28,12 @@ def export(path: str, folder: str | None, names: tuple[str, ...], session: Any, 
     paths.require_freecad()
     import FreeCAD
 
+    from freecad_am.objects import document_file
+
     target = folder or os.path.join(os.path.dirname(os.path.abspath(path)), "out", os.path.splitext(label)[0])
     with outputs.Outputs(target, session) as files:
         session.progress("opening ...")
-        try:
-            document = FreeCAD.openDocument(path, True)
-        except (OSError, RuntimeError, ValueError, AttributeError):
-            raise InputError("BAD_FILE", label, "it cannot be read as a FreeCAD document; save it again") from None
+        document = document_file.opened(path, label)
         try:
             if wires:
                 _write_wires(_chosen(document, label, names, _PATHS, "NO_PATH"), wires, files, session)

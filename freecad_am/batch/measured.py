@@ -112,14 +112,12 @@ def _of_document(path: str, name: str) -> tuple[Any, Any]:
     import FreeCAD
 
     from freecad_am import api
+    from freecad_am.objects import document_file
 
     label = os.path.basename(path)
     if not os.path.isfile(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
-    try:
-        document = FreeCAD.openDocument(path, True)
-    except (OSError, RuntimeError, ValueError, AttributeError):
-        raise InputError("BAD_FILE", label, "it cannot be read as a FreeCAD document; save it again") from None
+    document = document_file.opened(path, label)
     known = api.stages_of(document, "feature") if not name else list(document.Objects)
     found = known if not name else [one for one in known if one.Name == name] or [one for one in known if one.Label == name]
     if len(found) != 1:

@@ -10,9 +10,13 @@ from typing import Any
 import FreeCAD as App
 
 from freecad_am import api
+from freecad_am.brep.apart import apart
 from freecad_am.core.issues import InputError
+from freecad_am.objects import document_file
 
 from .job import PartSource
+
+PATIENCE = 100.0  # times as long as reading a document may take; building a part of other values may be long work
 
 
 def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = False) -> Any:
@@ -29,16 +33,13 @@ def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = Fal
         return api.open_part(document, part.file, part.object or "", part.scale)
     with tempfile.TemporaryDirectory() as folder:
         changed = os.path.join(folder, os.path.basename(part.file))
-        _save_changed(part, changed, key)
+        apart(lambda _: _save_changed(part, changed, key), part.file, patience=PATIENCE)
         return api.open_part(document, changed, part.object or "")
 
 
 def _save_changed(part: PartSource, path: str, section: str) -> None:
     active = App.ActiveDocument
-    try:
-        source = App.openDocument(part.file, True)
-    except (OSError, RuntimeError, ValueError, AttributeError):
-        raise InputError("BAD_FILE", part.file, "it cannot be read as a FreeCAD document; save it again") from None
+    source = document_file.open_here(part.file, part.file)
     try:
         for name, key, text in part.settings:
             _set(source, name, key, text, section)

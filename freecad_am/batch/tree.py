@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
+from freecad_am.core.geometry.file_content import content
 from freecad_am.core.issues import InputError
 
 _INTEGER = re.compile(r"[-+]?\d{1,18}", re.ASCII)
@@ -19,7 +20,7 @@ _FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 _INFINITE = re.compile(r"[-+]?\.?inf", re.IGNORECASE)
 _TAG = "tag:yaml.org,2002:"
 _MOST_VALUES = 100_000  # aliases of aliases can stand for more values than fit in memory
-_LARGEST = 4_000_000  # bytes; a job is a page of text, so a larger file is not one
+_LARGEST = 4  # MB; a job is a page of text, so a larger file is not one
 
 
 @dataclass
@@ -81,14 +82,13 @@ def scalar(text: str, where: str) -> Any:
 def text_of(path: str, label: str) -> str:
     """The text of a file in UTF-8. Raises InputError NO_FILE or BAD_FILE, named `label`."""
     try:
-        if os.path.getsize(path) > _LARGEST:
-            raise InputError("BAD_FILE", label, "the file is too large; is it the right one?")
-        with open(path, "rb") as stream:
-            data = stream.read()
+        data = content(path, _LARGEST, "BAD_FILE", label)
     except FileNotFoundError:
         raise InputError("NO_FILE", path, "there is no such file; check the path") from None
     except OSError as error:
         raise InputError("NO_FILE", path, f"the file cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise InputError("NO_FILE", path, f"there can be no such file ({error}); check the path") from None
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

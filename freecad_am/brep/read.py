@@ -12,13 +12,16 @@ from typing import Any
 
 import FreeCAD  # before Part, which crashes the process without
 import Mesh
+import numpy as np
 import Part
 
 from ..core.issues import InputError
 from . import three_mf
+from .apart import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 MESHES = (".stl", ".obj", ".3mf")
+FARTHEST = 1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
 
 
 def read_shape(path: str | os.PathLike[str]) -> Any:
@@ -48,7 +51,7 @@ def read_shape(path: str | os.PathLike[str]) -> Any:
         raise InputError("BAD_FILE", where, f"it cannot be read: {error.strerror}") from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
-    return _shape(file, where)
+    return apart(_shape, file, where)
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
@@ -60,9 +63,14 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
         raise InputError("NO_FILE", where, "there is no such file; check the name and the folder")
     if file.stat().st_size == 0:
         raise InputError("EMPTY_FILE", where, "it is empty; export the part again")
+    return apart(_mesh, file, where, scale)
+
+
+def _mesh(file: Path, where: str, scale: float) -> Any:
     mesh = Mesh.Mesh()
     if file.suffix.lower() == ".3mf":
         points, corners = three_mf.triangles(file)
+        _refuse_far(float(np.abs(points).max()), where)
         mesh.addFacets(([FreeCAD.Vector(*point) for point in points.tolist()], [tuple(row) for row in corners.tolist()]))
         return mesh
     try:
@@ -72,6 +80,7 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
         raise InputError("BAD_FILE", where, "it is damaged or not what its ending says; export the part again") from error
     if not mesh.CountFacets:
         raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
+    _refuse_far(_reach(mesh.BoundBox) * scale, where)
     if scale != 1.0:
         larger = FreeCAD.Matrix()
         larger.scale(scale, scale, scale)
@@ -91,7 +100,21 @@ def _shape(file: Path, where: str) -> Any:
         raise bad
     if not (shape.Faces or shape.Edges):
         raise InputError("EMPTY_FILE", where, "it holds no shape; export the part again")
+    _refuse_far(_reach(shape.BoundBox), where)
     return shape
+
+
+def _reach(box: Any) -> float:
+    """The largest coordinate of a box, nan where one is."""
+    return float(np.abs([box.XMin, box.XMax, box.YMin, box.YMax, box.ZMin, box.ZMax]).max())
+
+
+def _refuse_far(reach: float, where: str) -> None:
+    if not reach <= FARTHEST:
+        raise InputError(
+            "BAD_FILE", where, f"it reaches to {reach:.3g} mm, farther than {FARTHEST:.3g} mm; a coordinate is damaged, or "
+            "its unit is wrong; export the part again",
+        )
 
 
 @contextmanager

@@ -36,6 +36,7 @@ LARGEST = 1 << 29  # bytes of a file of the zip, unpacked
 MOST = 20_000_000  # triangles of all items together
 MOST_PLACED, DEEPEST = 100_000, 100  # objects of all items together, and one inside the other
 CHUNK = 1 << 20
+LONGEST = 4 << 20  # bytes of one element
 
 Key = tuple[str, int]  # file of the zip, id
 
@@ -61,6 +62,8 @@ def triangles(path: Path) -> tuple[Array, Index]:
         raise _bad(where, f"it is no sound zip file ({error})") from None
     except expat.ExpatError as error:
         raise _bad(where, f"its XML is damaged ({error})") from None
+    except OverflowError:
+        raise _bad(where, "a triangle in it has a point with a number of more than 64 bits") from None
 
 
 class _Package:
@@ -136,6 +139,8 @@ class _Package:
                 if size > LARGEST:
                     raise InputError("UNSUPPORTED_FILE", self.where, f"{name} unpacks to more than {LARGEST >> 20} MB")
                 parser.Parse(chunk, False)
+                if size - max(parser.CurrentByteIndex, 0) > LONGEST:  # it would be read again with each chunk
+                    raise _bad(self.where, f"an element of {name} is longer than {LONGEST >> 20} MB")
             parser.Parse(b"", True)
 
     def _refuse_doctype(self, *_: object) -> None:
@@ -166,6 +171,8 @@ class _Package:
         own, some = np.array(made.points).reshape(-1, 3), np.array(made.triangles, dtype=np.intp)
         if some.min() < 0 or some.max() >= len(own):
             raise _bad(self.where, f"object {key[1]} of {key[0]} has triangles with points that it has not")
+        if self.points + len(own) > 3 * MOST:
+            raise InputError("UNSUPPORTED_FILE", self.where, f"it builds more than {3 * MOST:,} points; simplify it")
         turned = np.linalg.det(moved[:3])
         if abs(turned) <= 1e-12 * np.abs(moved[:3]).max() ** 3:
             raise _bad(self.where, f"object {key[1]} of {key[0]} is moved by a matrix that flattens it")

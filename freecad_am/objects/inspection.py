@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..brep.distance import skin
+from ..core.geometry.file_content import content
 from ..core.geometry.profile import RevolvedWall
 from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
@@ -82,9 +83,9 @@ class Inspection(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         path = file_of(obj)
         # a file that is gone is taken to be what it was: the result has its points
-        content = _digest(path, f"{obj.Label}.File") if os.path.isfile(path) else obj.FileDigest
+        digest = _digest(path, f"{obj.Label}.File") if os.path.isfile(path) else obj.FileDigest
         shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
-        return [os.path.basename(path), content, *shape]
+        return [os.path.basename(path), digest, *shape]
 
 
 def file_of(obj: Any) -> str:
@@ -96,10 +97,9 @@ def file_of(obj: Any) -> str:
 
 def _digest(path: str, where: str) -> str:
     try:
-        with open(path, "rb") as file:
-            return hashlib.sha256(file.read()).hexdigest()
-    except OSError as error:
-        why = (error.strerror or "no access").lower()
+        return hashlib.sha256(content(path, point_file.LARGEST, "BAD_FILE", where)).hexdigest()
+    except (OSError, ValueError) as error:
+        why = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError("NO_FILE", where, f"{path} cannot be read ({why}); choose the file again") from None
 
 

@@ -8,9 +8,11 @@ from typing import Any
 
 import FreeCAD as App
 
+from ..brep.apart import apart
 from ..brep.read import MESHES, read_mesh, read_shape
 from ..core.geometry.file_unit import refuse_scale
 from ..core.issues import InputError
+from . import document_file
 from .feature import global_shape
 
 
@@ -31,11 +33,12 @@ def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[An
     for document in App.listDocuments().values():
         if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
             return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
+    return apart(_shape_of_file, path, object_name)
+
+
+def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
     active = App.ActiveDocument
-    try:
-        document = App.openDocument(path, True)
-    except (OSError, RuntimeError, ValueError, AttributeError):
-        raise InputError("BAD_FILE", path, "it cannot be read as a FreeCAD document; save it again") from None
+    document = document_file.open_here(path, path)
     try:
         return _shape_in(document, path, object_name)
     finally:

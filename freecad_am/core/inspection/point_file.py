@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.file_content import content
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.inspection import AUTO, UNITS
 from . import mesh_file
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 
 TABLES, MESHES = (".csv", ".txt", ".xyz", ".asc"), {".stl": mesh_file.stl, ".obj": mesh_file.obj, ".ply": mesh_file.ply}
 MOST = 200_000  # points that are kept of a larger scan, evenly
+LARGEST = 1000  # MB
 LOOK = 200  # rows by which a table's signs are told
 _MARKS = ("#", "//", "%", "!", "'", '"#')
 _SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
@@ -47,9 +49,9 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
         known = ", ".join((*TABLES, *MESHES))
         raise InputError("UNSUPPORTED_FILE", file.name, f"{suffix or 'no ending'} is not read as points; use {known}")
     try:
-        data = file.read_bytes()
-    except OSError as error:
-        why = (error.strerror or "no access").lower()
+        data = content(file, LARGEST, "BAD_FILE", file.name)
+    except (OSError, ValueError) as error:
+        why = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError("NO_FILE", str(path), f"the measured points cannot be read ({why}); check the path") from None
     return parse(data, file.name, unit)
 

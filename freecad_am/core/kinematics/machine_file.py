@@ -15,8 +15,12 @@ from typing import Any
 import numpy as np
 
 from ..geometry import frames
+from ..geometry.file_content import content
 from ..geometry.frames import Array
 from ..issues import InputError
+
+LARGEST = 16  # MB
+LARGEST_NUMBER = 1e300
 
 
 class Node:
@@ -71,16 +75,15 @@ class Node:
 
     def number(self) -> float:
         """A finite number."""
-        if isinstance(self.value, bool) or not isinstance(self.value, (int, float)) or not math.isfinite(self.value):
+        if isinstance(self.value, bool) or not isinstance(self.value, (int, float)) or not abs(self.value) <= LARGEST_NUMBER:
             raise self.bad(f"{_short(self.value)} is not a number")
         return float(self.value)
 
     def numbers(self, length: int) -> Array:
         """A list of finite numbers (length,)."""
-        if isinstance(self.value, list) and len(self.value) == length and {type(v) for v in self.value} <= {int, float}:
-            numbers = np.array(self.value, float)
-            if np.isfinite(numbers).all():
-                return numbers
+        are_numbers = isinstance(self.value, list) and {type(value) for value in self.value} <= {int, float}
+        if are_numbers and len(self.value) == length and all(abs(value) <= LARGEST_NUMBER for value in self.value):
+            return np.array(self.value, float)
         # something is wrong: find which
         return np.array([item.number() for item in self.items(length)])
 
@@ -105,7 +108,9 @@ class Node:
 def read(path: Path) -> Node:
     """The content of a machine file; InputError 'BAD_MACHINE' when it cannot be read as JSON."""
     try:
-        return Node(json.loads(path.read_text(encoding="utf-8")), path)
+        return Node(json.loads(content(path, LARGEST, "BAD_MACHINE", str(path)).decode("utf-8")), path)
+    except RecursionError:
+        raise InputError("BAD_MACHINE", str(path), "it is nested too deeply to be a machine file") from None
     except (OSError, ValueError) as error:
         raise InputError("BAD_MACHINE", str(path), f"cannot be read as a machine file: {error}") from None
 

@@ -12,10 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from ..geometry import frames
+from ..geometry.file_content import content
 from ..geometry.frames import Array
 from ..issues import InputError
 
 CODE = "BAD_URDF"
+LARGEST = 64  # MB
 QUARTER = 0.5 * math.pi
 
 
@@ -112,7 +114,7 @@ def read(path: Path) -> Element:
     parser.EndElementHandler = lambda _: stack.pop()
     parser.EntityDeclHandler = refuse
     try:
-        parser.Parse(path.read_bytes(), True)
+        parser.Parse(content(path, LARGEST, CODE, str(path)), True)
     except OSError as error:
         raise InputError(CODE, str(path), f"cannot be read: {error.strerror or error}") from None
     except xml.parsers.expat.ExpatError as error:

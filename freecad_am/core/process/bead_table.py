@@ -13,10 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.file_content import content
 from ..issues import InputError
 from .bead_model import MINUTE, Array, BeadModel, fit, row_name
 
 BUILT_IN = {"csw": "dai-2020.csv"}
+LARGEST = 16  # MB
 FOLDER = Path(__file__).resolve().parents[2] / "beads"
 COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_feed_m_min")
 
@@ -46,13 +48,13 @@ def measured(name: str, folder: Path | None = None) -> Measured:
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeError) as error:
+        text = content(path, LARGEST, "BAD_TABLE", name).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
         if isinstance(error, UnicodeError):
             raise InputError(
                 "BAD_TABLE", name, "it is no table: it holds bytes that are no text in UTF-8; save it as CSV in UTF-8",
             ) from None
-        why = (error.strerror or "no access").lower()
+        why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
         raise InputError(
             "NO_FILE", name, f"the calibration table cannot be read ({why}); give none, csw or the path of one",
         ) from None

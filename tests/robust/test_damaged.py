@@ -1,0 +1,375 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Damaged and hostile inputs: each is answered by one message and status 2, within 10 s of the processor and 1 GB."""
+
+import os
+import random
+import re
+import resource
+import subprocess
+import threading
+import time
+import zipfile
+
+import FreeCAD
+import Part
+import pytest
+
+from freecad_am.brep import apart, three_mf
+from freecad_am.brep.read import read_mesh, read_shape
+from freecad_am.core.issues import InputError
+from freecad_am.objects import document_file
+from freecad_am.objects.part_file import part_shape
+from tests.robust import damage
+
+SECONDS, MEMORY = 10.0, 1000.0  # s of the processor, MB
+CORE = three_mf.CORE
+MESH = (
+    '<object id="1" type="model"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="9" y="0" z="0"/>'
+    '<vertex x="0" y="9" z="0"/><vertex x="0" y="0" z="9"/></vertices><triangles>'
+    '<triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3"/>'
+    '<triangle v1="1" v2="2" v3="3"/><triangle v1="2" v2="0" v3="3"/></triangles></mesh></object>'
+)
+BOMB = "<?xml version='1.0' encoding='utf-8'?>\n<!DOCTYPE a [<!ENTITY b0 'lol'>{}]>\n".format(
+    "".join(f"<!ENTITY b{k} '{f'&b{k - 1};' * 10}'>" for k in range(1, 10))
+)
+
+
+def used(process):
+    """Status, s of the processor, and MB of memory at most, of a command that ended."""
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3
+
+
+def assert_refused(workshop, *words, says=""):
+    """One error line and status 2, within the limits; the line."""
+    errors = workshop.folder / "errors.txt"
+    with errors.open("wb") as stream:
+        process = subprocess.Popen(
+            [str(workshop.launcher), *map(str, words)], cwd=workshop.folder, env=workshop.environment(),
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=stream,
+        )
+        watch = threading.Timer(120.0, process.kill)
+        watch.start()
+        status, seconds, memory = used(process)
+        watch.cancel()
+    text = errors.read_text(encoding="utf-8")
+    errors.unlink()
+    assert status == 2, (status, text)
+    assert re.fullmatch(r"error\[[A-Z_]+\] [^\n]+\n", text) and "INTERNAL" not in text, text
+    assert says in text, text
+    assert seconds < SECONDS and memory < MEMORY, (seconds, memory)
+    assert not list(workshop.folder.rglob(".unfinished*")) and not (workshop.folder / "out").exists()
+    return text
+
+
+def refused(read, *given):
+    """The InputError of reading, within the limit of time; the largest process that was started is within that of memory."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+    with pytest.raises(InputError) as told:
+        read(*given)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+    assert sum(b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime for a, b in zip(before, after, strict=True)) < SECONDS
+    assert after[0].ru_maxrss / 1e3 < MEMORY
+    return told.value
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory, root):
+    """Sound files, by their endings."""
+    folder = tmp_path_factory.mktemp("sound")
+    cup = Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360)
+    cup.exportStep(str(folder / "cup.step"))
+    cup.exportIges(str(folder / "cup.igs"))
+    cup.exportBrep(str(folder / "cup.brep"))
+    document = FreeCAD.newDocument("Sound")
+    document.addObject("Part::Feature", "Cup").Shape = cup
+    document.saveAs(str(folder / "cup.FCStd"))
+    FreeCAD.closeDocument(document.Name)
+    with zipfile.ZipFile(folder / "cup.3mf", "w") as archive:
+        archive.writestr(three_mf.MODEL, model(MESH))
+    return {path.suffix: path for path in folder.iterdir()}
+
+
+def model(resources, items='<item objectid="1"/>'):
+    return f'<model unit="millimeter" xmlns="{CORE}"><resources>{resources}</resources><build>{items}</build></model>'
+
+
+def zipped(path, text):
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        entry = archive.open(three_mf.MODEL, "w")
+        for piece in [text] if isinstance(text, str) else text:
+            entry.write(piece.encode())
+        entry.close()
+    return path
+
+
+def opened(path):
+    if path.suffix == ".FCStd":
+        shape, _ = part_shape(str(path))
+        return shape
+    return read_mesh(path) if path.suffix == ".3mf" else read_shape(path)
+
+
+# reading ---------------------------------------------------------------------------------------------------------------
+
+
+def assert_read_or_refused(sound, tmp_path, damages):
+    """How many damaged files of each ending were read, and refused; nothing else comes of one."""
+    told = {suffix: [0, 0] for suffix in sound}
+    for suffix, kind, seed in damages:
+        path = tmp_path / f"damaged{suffix}"
+        path.write_bytes(damage.damaged(sound[suffix].read_bytes(), kind, seed))
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        try:
+            opened(path)
+            told[suffix][0] += 1
+        except InputError as error:
+            assert error.code in ("BAD_FILE", "EMPTY_FILE", "NO_OBJECT", "UNSUPPORTED_FILE"), (suffix, kind, seed, error)
+            told[suffix][1] += 1
+        except Exception as error:
+            raise AssertionError((suffix, kind, seed)) from error
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < SECONDS, (suffix, kind, seed)
+        assert not FreeCAD.listDocuments()
+    return told
+
+
+def test_damaged_files_are_read_or_refused(sound, tmp_path):
+    damages = [(suffix, kind, seed) for suffix in sorted(sound) for kind in damage.KINDS for seed in range(4)]
+    told = assert_read_or_refused(sound, tmp_path, damages)
+    assert all(count[1] for count in told.values()) and sum(count[0] for count in told.values()) > 5, told
+
+
+@pytest.mark.long
+def test_many_damaged_files_are_read_or_refused(sound, tmp_path):
+    first = int(os.environ.get("ROBUST_SEED") or random.SystemRandom().randrange(1 << 30))
+    print(f"seed {first}: ROBUST_SEED={first} makes the same damages")
+    damages = [(suffix, kind, first + n) for suffix in sorted(sound) for kind in damage.KINDS for n in range(25)]
+    print(assert_read_or_refused(sound, tmp_path, damages))
+
+
+def crashing(_):
+    os.abort()
+
+
+def endless(_):
+    while True:
+        pass
+
+
+def growing(_):
+    held = []
+    while True:
+        held.append(bytearray(10_000_000))
+
+
+def waiting(_):
+    time.sleep(1000.0)
+
+
+@pytest.mark.parametrize(("read", "says"), [
+    (crashing, "crashes"), (endless, "more than 1 s of the processor"), (growing, "more than 100 MB of memory"),
+    (waiting, "more than 1 s of the processor"),
+])  # fmt: skip
+def test_limits_are_told(monkeypatch, tmp_path, read, says):
+    monkeypatch.setattr(apart, "SECONDS", 1.0)
+    monkeypatch.setattr(apart, "MEMORY", 100.0)
+    monkeypatch.setattr(apart, "LONGER", 2.0 if read is waiting else 100.0)
+    error = refused(apart.apart, read, tmp_path / "part.step")
+    assert (error.code, error.where) == ("BAD_FILE", "part.step") and says in error.message
+    assert "export it again" in error.message
+
+
+def test_a_sound_file_is_read_as_it_is_in_this_process(sound, root):
+    """Digit for digit, and nearly as soon."""
+    for path in [sound[".step"], sound[".igs"], sound[".brep"], *sorted((root / "resources" / "examples").glob("*.step"))]:
+        here = Part.Shape()
+        here.read(str(path))
+        assert read_shape(path).exportBrepToString() == here.exportBrepToString()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+    read_shape(sound[".step"])
+    after = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+    assert sum(b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime for a, b in zip(before, after, strict=True)) < 0.3
+
+
+def test_nobody_waits_for_a_copy_whose_process_was_killed(tmp_path):
+    """A run that is killed while it reads leaves no process."""
+    pid = os.fork()
+    if not pid:
+        def read(_):
+            (tmp_path / "pid").write_text(str(os.getpid()))
+            time.sleep(1000.0)
+
+        apart.apart(read, "any")
+        os._exit(0)
+    until = time.monotonic() + 20.0
+    while not (tmp_path / "pid").exists() or not (tmp_path / "pid").read_text():
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    os.kill(pid, 9)
+    os.waitpid(pid, 0)
+    copy = int((tmp_path / "pid").read_text())
+    while time.monotonic() < until:
+        try:
+            with open(f"/proc/{copy}/stat", encoding="ascii") as stream:
+                if stream.read().rpartition(")")[2].split()[0] == "Z":
+                    return
+        except (FileNotFoundError, ProcessLookupError):
+            return
+        time.sleep(0.01)
+    pytest.fail("it is still there")
+
+
+@pytest.mark.parametrize("number", ["1.E999", "1.E308", "-1.E300", "1.E12"])
+def test_step_with_a_point_far_away(sound, tmp_path, number):
+    text = sound[".step"].read_text()
+    found = re.findall(r"CARTESIAN_POINT\('',\(([^,)]+),", text)
+    assert len(found) > 3
+    path = tmp_path / "far.step"
+    for at in range(0, len(found), max(1, len(found) // 4)):
+        pieces = re.split(r"(?<=CARTESIAN_POINT\('',\()", text)
+        pieces[at + 1] = re.sub(r"^[^,)]+", number, pieces[at + 1])
+        path.write_text("".join(pieces))
+        try:
+            read_shape(path)  # a point that no face needs
+        except InputError as error:
+            assert error.code in ("BAD_FILE", "EMPTY_FILE")
+
+
+COMPONENT = '<component objectid="{}"/>'
+NESTED = "".join(
+    f'<object id="{k}" type="model"><components>{10 * COMPONENT.format(k - 1)}</components></object>' for k in range(2, 9)
+)
+
+
+@pytest.mark.parametrize(("text", "says"), [
+    (model(MESH.replace('x="9"', 'x="1e20"')), "1e+20 mm"), (model(MESH.replace('x="9"', 'x="nan"')), "nan mm"),
+    (model(MESH.replace('v3="1"', 'v3="99999999999999999999999"')), "64 bits"),
+    (model(MESH + NESTED, '<item objectid="8"/>'), "objects"),
+    (model(MESH, '<item objectid="1" transform="1e15 0 0 0 1e15 0 0 0 1e15 0 0 0"/>'), "mm"),
+], ids=["far", "nan", "64 bits", "nested", "moved far"])  # fmt: skip
+def test_three_mf_made_to_mislead(tmp_path, text, says):
+    error = refused(read_mesh, zipped(tmp_path / "bad.3mf", text))
+    assert error.where == "bad.3mf" and says in error.message, error
+
+
+@pytest.mark.parametrize("where", ["between elements", "in an element"])
+def test_three_mf_of_blanks(tmp_path, where):
+    blanks = " " * 1_000_000
+    before, after = model(MESH).split("<build>") if where == "between elements" else model(MESH).split(' objectid="1"/>')
+    after = f"<build>{after}" if where == "between elements" else f' objectid="1"/>{after}'
+    error = refused(read_mesh, zipped(tmp_path / "blanks.3mf", [before, *[blanks] * 700, after]))
+    assert error.where == "blanks.3mf" and re.search("unpacks to more|longer than 4 MB", error.message), error
+
+
+def with_document_type(sound, path, name="Document.xml", blanks=0):
+    with zipfile.ZipFile(sound[".FCStd"]) as source, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for entry in source.namelist():
+            text = source.read(entry)
+            if entry == name:
+                body = text.decode().partition("?>")[2].replace("Cup", "&b9;")
+                text = (BOMB[: BOMB.index("\n")] + " " * blanks + BOMB[BOMB.index("\n") :] + body).encode()
+            archive.writestr(entry, text)
+    return path
+
+
+@pytest.mark.parametrize("blanks", [0, 200_000, 5_000_000])
+def test_documents_of_entities_are_refused_before_they_are_opened(sound, tmp_path, blanks):
+    path = with_document_type(sound, tmp_path / "bomb.FCStd", blanks=blanks)
+    for read in (lambda: part_shape(str(path)), lambda: document_file.opened(str(path), "bomb")):
+        error = refused(read)
+        assert error.code == "BAD_FILE" and ("document type" in error.message or "begin as XML" in error.message)
+    assert not FreeCAD.listDocuments()
+
+
+# whole commands --------------------------------------------------------------------------------------------------------
+
+
+def test_a_document_of_entities_in_each_command(workshop, sound):
+    path = with_document_type(sound, workshop.folder / "bomb.FCStd")
+    assert_refused(workshop, "export", path, says="document type")
+    workshop.change("cup.step", "bomb.FCStd")
+    assert_refused(workshop, "plan", "cup.yaml", says="document type")
+    workshop.change("{file: cup.step}", "{file: bomb.FCStd, set: {Cup: {Label: x}}}")
+    assert_refused(workshop, "plan", "cup.yaml", says="document type")
+    (workshop.folder / "points.csv").write_text("1,2,3\n")
+    assert_refused(workshop, "inspect", path, "--measured", "points.csv", says="document type")
+
+
+def test_a_part_on_which_the_kernel_crashes(workshop, sound):
+    """A reference to another entity, as in every third damaged file."""
+    whole = sound[".step"].read_bytes()
+    for seed in range(60):
+        (workshop.folder / "cup.step").write_bytes(damage.damaged(whole, "references", seed))
+        try:
+            read_shape(workshop.folder / "cup.step")
+        except InputError as error:
+            if "crashes" in error.message:
+                break
+    else:
+        pytest.skip("this kernel crashes on none of them")
+    assert_refused(workshop, "plan", "cup.yaml", says="cup.step")
+
+
+HUGE = "1" + "0" * 400
+
+
+@pytest.mark.parametrize(("name", "content"), [
+    ("nested", "[" * 200_000 + "]" * 200_000), ("long number", '{"id": ' + HUGE + "}"), ("longer number", "1" * 5000),
+    ("number in a list", '{"joints": [{"origin": [' + HUGE + ', 0, 0]}]}'), ("a device", None),
+], ids=["nested", "long number", "longer number", "number in a list", "a device"])  # fmt: skip
+def test_machine_files(workshop, name, content):
+    if content is None:
+        (workshop.folder / "m.json").symlink_to("/dev/zero")
+    else:
+        (workshop.folder / "m.json").write_text(content)
+    workshop.change("limits: paper", "machine: m.json")
+    assert_refused(workshop, "plan", "cup.yaml", says="m.json")
+
+
+def test_a_machine_file_with_a_number_of_400_digits(workshop, root):
+    text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text()
+    number = re.search(r"\[\s*-?\d+(?:\.\d+)?,", text)
+    (workshop.folder / "m.json").write_text(text[: number.start()] + f"[{HUGE}," + text[number.end() :])
+    workshop.change("limits: paper", "machine: m.json")
+    assert_refused(workshop, "plan", "cup.yaml", says="m.json")
+
+
+BEADS = """\
+strategy: {kind: developable, layer_height: 4 mm}
+process: {bead_model: %s}
+part: {file: cup.step}
+"""
+
+
+@pytest.mark.parametrize("table", ['"a\\0b"', "/dev/zero", "pipe", "nowhere/there.csv"])
+def test_bead_models(workshop, table):
+    os.mkfifo(workshop.folder / "pipe")
+    workshop.write_job(BEADS % table)
+    assert_refused(workshop, "plan", "cup.yaml")
+
+
+@pytest.mark.parametrize("kind", ["/dev/zero", "pipe"])
+def test_devices_and_pipes_in_the_place_of_files(workshop, kind):
+    os.mkfifo(workshop.folder / "pipe")
+    for ending in ("yaml", "csv", "step", "stl"):
+        (workshop.folder / f"odd.{ending}").symlink_to(kind)
+    assert_refused(workshop, "plan", "odd.yaml", says="odd.yaml")
+    assert_refused(workshop, "batch", "odd.csv", "--job", "cup.yaml", says="odd.csv")
+    assert_refused(workshop, "batch", "cup.yaml", "--job", "odd.yaml", says="odd.yaml")
+    assert_refused(workshop, "inspect", "cup.yaml", "--measured", "odd.csv", says="device")
+    workshop.change("cup.step", "odd.step")
+    assert_refused(workshop, "plan", "cup.yaml", says="odd.step")
+
+
+@pytest.mark.parametrize(
+    "words", [["plan", "cup.yaml", "-o", b"\xff\xfe"], ["plan", b"cup\xff.yaml"], ["export", b"\xff.FCStd"]]
+)
+def test_arguments_that_are_not_utf_8(workshop, words):
+    done = subprocess.run(
+        [str(workshop.launcher), *words], cwd=workshop.folder, env=workshop.environment(), capture_output=True, check=False,
+        timeout=60, stdin=subprocess.DEVNULL,
+    )
+    assert done.returncode == 2 and done.stderr.startswith(b"error[USAGE]") and b"UTF-8" in done.stderr
+    assert done.stderr.count(b"\n") == 1 and done.stderr.decode().strip().isprintable()
