@@ -5127,6 +5127,11 @@
         <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>a triangle in it has a point with a number of more than 64 bits</source>
+        <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/rows.py"/>
         <source>a turn per length such as 10 deg/mm</source>
         <translation>une rotation par longueur comme 10 deg/mm</translation>
@@ -5255,6 +5260,11 @@
         <location filename="../../freecad_am/brep/kernel.py"/>
         <source>an edge of the face crosses itself at {0}; draw it without crossings, or divide it there and deposit its parts one after the other</source>
         <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>an element of {0} is longer than {1} MB</source>
+        <translation>un élément de {0} dépasse {1} Mo</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -6073,6 +6083,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
+        <source>it builds more than {0} points; simplify it</source>
+        <translation>il construit plus de {0} points ; simplifiez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>it builds more than {0} triangles; simplify it</source>
         <translation>il construit plus de {0} triangles ; simplifiez-le</translation>
     </message>
@@ -6087,7 +6102,7 @@
         <translation>il s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/part_file.py"/>
+        <location filename="../../freecad_am/objects/document_file.py"/>
         <source>it cannot be read as a FreeCAD document; save it again</source>
         <translation>il ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
     </message>
@@ -6362,6 +6377,21 @@
         <translation>il est endommagé ou n&apos;est pas ce que dit son extension ; exportez la pièce de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/apart.py"/>
+        <source>it is damaged: FreeCAD crashes on it; export it again</source>
+        <translation>il est endommagé : FreeCAD plante en le lisant ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/apart.py"/>
+        <source>it is damaged: it takes more than {0} MB of memory to read, the limit of a file of its size; export it again</source>
+        <translation>il est endommagé : sa lecture demande plus de {0} Mo de mémoire, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/apart.py"/>
+        <source>it is damaged: it takes more than {0} s of the processor to read, the limit of a file of its size; export it again</source>
+        <translation>il est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it is empty</source>
         <translation>il est vide</translation>
@@ -6410,6 +6440,11 @@
         <location filename="../../freecad_am/gui/simulation/run.py"/>
         <source>it is neither a joint path nor a program; select one of them</source>
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <source>it is nested too deeply to be a machine file</source>
+        <translation>ses niveaux sont trop nombreux pour un fichier de machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
@@ -6535,6 +6570,11 @@
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>it needs an extension that is not read ({0}); export plain triangles</source>
         <translation>il demande une extension qui n&apos;est pas lue ({0}) ; exportez des triangles simples</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/read.py"/>
+        <source>it reaches to {0} mm, farther than {1} mm; a coordinate is damaged, or its unit is wrong; export the part again</source>
+        <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -6962,7 +7002,7 @@
         <translation>des triangles voisins regardent en sens opposés, par exemple en {0} ; tournez-les pareillement (Mesh, Harmoniser les normales)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <location filename="../../freecad_am/core/process/bead_table.py"/>
         <source>no access</source>
         <translation>pas d&apos;accès</translation>
     </message>
@@ -7777,6 +7817,11 @@
         <translation>l&apos;élément, la trajectoire d&apos;outil, ou l&apos;objet à forme ou maillage qui a été mesuré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/file_content.py"/>
+        <source>the file is larger than {0} MB, the most that is read; is it the right one?</source>
+        <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; est-ce le bon ?</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>the file is missing</source>
         <translation>le fichier manque</translation>
@@ -8532,6 +8577,11 @@
         <translation>ce n&apos;est pas du XML : {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/file_content.py"/>
+        <source>this is not a file but a device, a pipe or a folder; name a file</source>
+        <translation>ce n&apos;est pas un fichier mais un périphérique, un tube ou un dossier ; nommez un fichier</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>this is xacro; make a URDF of it first, with the program xacro of ROS</source>
         <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
@@ -9005,6 +9055,16 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>{0} in a loop that waits for an input</source>
         <translation>{0} dans une boucle qui attend une entrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/document_file.py"/>
+        <source>{0} in it does not begin as XML; save it again</source>
+        <translation>{0} n&apos;y commence pas comme du XML ; enregistrez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/document_file.py"/>
+        <source>{0} in it has a document type, which no document of FreeCAD has, and is not read; save it again</source>
+        <translation>{0} y a un type de document, qu&apos;aucun document de FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez-le de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
