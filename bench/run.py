@@ -15,9 +15,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
-PEERS = ("eaik", "trimesh")
-BENCHMARKS = ("filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface",
-              "threads", "whole")
+PEERS = ("eaik", "trimesh", "python-fcl")
+BENCHMARKS = (
+    "collision", "filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface",
+    "threads", "whole",
+)
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 

@@ -66,7 +66,7 @@ FOREIGN = {
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
-ALONE = {"core/geometry/region": {"shapely"}}
+ALONE = {"core/geometry/region": {"shapely"}, "core/collision/fcl_obstacles": {"fcl"}}
 
 
 def modules():

@@ -289,6 +289,21 @@ class Toolpath:
         return sum(len(bead) for _, _, bead in self)
 
     @property
+    def widths(self) -> Array:
+        """(n,) mm, how wide beads are at all points in the order of deposit; 0 where nothing is known of it, as in documents
+        of old: they count as lines."""
+        return np.concatenate([
+            np.full(len(bead), self.bead_width or 0.0) if bead.width is None else bead.width for _, _, bead in self
+        ])
+
+    @property
+    def heights(self) -> Array:
+        """(n,) mm, how high beads are at all points in the order of deposit: the layer height where none is predicted, 0
+        where nothing is known of their width either."""
+        known = self.layer_height if self.bead_width else 0.0
+        return np.concatenate([np.full(len(bead), known) if bead.height is None else bead.height for _, _, bead in self])
+
+    @property
     def length(self) -> float:
         """Length of all beads, mm."""
         return float(sum(bead.length for _, _, bead in self))

@@ -23,7 +23,7 @@ def of_beads(
 
     width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
-    this. A piece is there from the moment of the point at its end.
+    this. A piece is there from the moment of the point at its end. Where no bead has a width they are lines.
     """
     n = len(points)
     first = np.zeros(n, dtype=bool)
@@ -42,6 +42,10 @@ def of_beads(
     size = np.linalg.norm(along, axis=1)
     end, along, size = end[size > 0.0], along[size > 0.0], size[size > 0.0]
     begin = end - 1
+    line = np.stack([points[begin], points[end]], axis=1)
+    since = moment[end]
+    if not wide.any():
+        return Obstacles(line, since)
     along /= size[:, None]
     wide, tall = 0.5 * (wide[begin] + wide[end]), 0.5 * (tall[begin] + tall[end])
     round_ = 0.5 * np.minimum(wide, tall)
@@ -55,8 +59,6 @@ def of_beads(
         )
         corners += [middle - flat, middle + flat]
     hull = np.stack(corners, axis=1)
-    line = np.stack([points[begin], points[end]], axis=1)
-    since = moment[end]
     turned = np.flatnonzero((end[:-1] == begin[1:]) & (np.einsum("ij,ij->i", along[:-1], along[1:]) < CORNER))
     wedge = np.concatenate([hull[turned][:, 2:], hull[turned + 1][:, :2]], axis=1)
     return Obstacles(

@@ -48,12 +48,19 @@ class Frustum:
         """The solids of some of the rows."""
         return self if np.ndim(self.low) == 0 else replace(self, low=np.asarray(self.low)[index])
 
-    def near(self, offset: Array, axis: Array, size: Array) -> Mask:
-        """False where a ball of the radius `size` (k,) surely misses the solid."""
+    def near_box(self, offset: Array, axis: Array, half: Array, rounding: Array) -> Mask:
+        """False where boxes about points, of half sizes (k, 3), with a rounding (k,) mm about them, surely miss the solid:
+        they are past one of its ends, or beyond the plane that touches its side nearest to the point."""
         x = np.einsum("ij,ij->i", offset, axis)
-        side = np.sqrt(np.maximum(np.einsum("ij,ij->i", offset, offset) - x * x, 0.0))
-        lean = np.sqrt(1.0 + self.slope**2)
-        near: Mask = (side - self.radius - self.slope * x < size * lean) & (x > self.low - size) & (x < self.high + size)
+        across = offset - x[:, None] * axis
+        side = np.sqrt(np.einsum("ij,ij->i", across, across))
+        size = np.einsum("ij,ij->i", np.abs(axis), half) + rounding
+        near: Mask = (x > self.low - size) & (x < self.high + size)
+        lean = np.hypot(1.0, self.slope)
+        out = across - (self.slope * side)[:, None] * axis
+        far = np.einsum("ij,ij->i", np.abs(out), half)
+        # of the plane with the normal out / (side lean); next to the axis there is none
+        near &= side * (side - self.radius - self.slope * x) <= far + lean * side * (rounding + ROUNDING)
         return near
 
     def nearest(self, offset: Array, axis: Array) -> Array:

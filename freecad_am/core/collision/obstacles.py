@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points, segments, triangles and pieces of beads in a tree of balls: which solids they reach into, and how far off
-they are."""
+"""Points, segments, triangles and pieces of beads in a tree of boxes: which solids they reach into, how far off they are."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,17 @@ from .tolerances import CONVERGED
 
 QUERIES = 16384  # worked on at once
 ALWAYS, NEVER = -1, np.iinfo(np.intp).max
+
+
+class _Level(NamedTuple):
+    """Nodes (n,) of the tree: boxes by their centres and half sizes (n, 3) with a rounding about them, balls about the same
+    centres by their radii, and the earliest moments."""
+
+    centre: Array
+    radius: Array
+    half: Array
+    rounding: Array
+    since: Index
 
 
 class Obstacles:
@@ -33,25 +45,29 @@ class Obstacles:
         self.radius = None if radius is None else radius[order]
         self.line = None if line is None else line[order]
         self.beside = None if beside is None else beside[order]
+        self._sample = np.ascontiguousarray(self.corners[:, 0])
         self._sizes = tree.sizes(len(corners))
-        self._levels = [self._balls(size) for size in self._sizes]
+        self._levels = [self._volumes(size) for size in self._sizes]
         if corners.shape[1] == 3:
             normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
             size = np.linalg.norm(normal, axis=1)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
-    def _balls(self, size: int) -> tuple[Array, Array, Index]:
-        """Centres, radii and earliest moments of the balls about so many obstacles each."""
+    def _volumes(self, size: int) -> _Level:
+        """What bounds so many obstacles each."""
         starts = np.arange(0, len(self.corners), size)
         if not len(starts):
-            return np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
+            return _Level(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))
         low = np.minimum.reduceat(self.corners.min(axis=1), starts)
         high = np.maximum.reduceat(self.corners.max(axis=1), starts)
         centre = 0.5 * (low + high)
         away = np.linalg.norm(self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None], axis=2).max(axis=1)
+        round_ = np.zeros(len(starts))
         if self.radius is not None:
             away = away + self.radius
-        return centre, np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
+            round_ = np.maximum.reduceat(self.radius, starts)
+        radius, since = np.maximum.reduceat(away, starts), np.minimum.reduceat(self.since, starts)
+        return _Level(centre, radius, 0.5 * (high - low), round_, since)
 
     def touched(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
@@ -72,26 +88,29 @@ class Obstacles:
 
     def _touched(self, solid: Frustum, tip: Array, axis: Array, moment: Index, own: Index) -> Mask:
         found = np.zeros(len(tip), dtype=bool)
-        top = len(self._levels[-1][1])
+        top = len(self._levels[-1].radius)
         waiting = [(len(self._levels) - 1, np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip)))]
         while waiting:
             depth, query, node = waiting.pop()
-            left = ~found[query]
-            query, node = query[left], node[left]
-            centre, radius, since = self._levels[depth]
-            near = since[node] < moment[query]
-            query, node = query[near], node[near]
-            near = solid.rows(query).near(centre[node] - tip[query], axis[query], radius[node])
-            query, node = query[near], node[near]
+            left = np.flatnonzero(~found.take(query))
+            query, node = query.take(left), node.take(left)
+            level = self._levels[depth]
+            there = np.flatnonzero(level.since.take(node) < moment.take(query))
+            query, node = query.take(there), node.take(there)
+            offset, along = level.centre.take(node, axis=0) - tip.take(query, axis=0), axis.take(query, axis=0)
+            half, round_ = level.half.take(node, axis=0), level.rounding.take(node)
+            near = np.flatnonzero(solid.rows(query).near_box(offset, along, half, round_))
+            query, node, along = query.take(near), node.take(near), along.take(near, axis=0)
             # one corner inside settles the matter without looking at all the rest
             sample = node * self._sizes[depth]
-            inside = solid.rows(query).holds(self.corners[sample, 0] - tip[query], axis[query])
-            inside &= (self.since[sample] < moment[query]) & (self.since[sample] < own[query])
+            inside = solid.rows(query).holds(self._sample.take(sample, axis=0) - tip.take(query, axis=0), along)
+            since = self.since.take(sample)
+            inside &= (since < moment.take(query)) & (since < own.take(query))
             found[query[inside]] = True
-            left = ~found[query]
-            query, node = query[left], node[left]
+            left = np.flatnonzero(~found.take(query))
+            query, node = query.take(left), node.take(left)
             if depth:
-                query, node = tree.below(query, node, len(self._levels[depth - 1][1]))
+                query, node = tree.below(query, node, len(self._levels[depth - 1].radius))
                 waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
                 continue
             for q, n in tree.parts(query, node):
@@ -104,7 +123,7 @@ class Obstacles:
     def _meets(self, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index) -> Mask:
         """Whether obstacles (k,) reach into solids."""
         kind = self.corners.shape[1]
-        offset = self.corners[node] - tip[:, None]
+        offset = self.corners.take(node, axis=0) - tip[:, None]
         if kind == 1:
             return solid.holds(offset[:, 0], axis)
         if kind == 2:
@@ -138,15 +157,19 @@ class Obstacles:
 
     def _distance(self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float) -> Array:
         low, best = np.full(len(tip), reach), np.full(len(tip), reach)  # bounds of the least distance yet
-        top = len(self._levels[-1][1])
+        top = len(self._levels[-1].radius)
         query, node = np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip))
         for depth in range(len(self._levels) - 1, -1, -1):
-            centre, radius, since = self._levels[depth]
+            level = self._levels[depth]
             kept: list[tuple[Index, Index, Array]] = [(query[:0], node[:0], np.zeros(0))]
             for q, n in tree.parts(query, node):
-                there = since[n] < moment[q]
+                there = level.since[n] < moment[q]
                 q, n = q[there], n[there]
-                least = solid.rows(q).gap(centre[n] - tip[q], axis[q]) - radius[n]
+                offset = level.centre[n] - tip[q]
+                apart = offset - solid.rows(q).nearest(offset, axis[q])
+                gap = np.sqrt(np.einsum("ij,ij->i", apart, apart))
+                wide = np.einsum("ij,ij->i", np.abs(apart), level.half[n]) / np.where(gap > 0.0, gap, 1.0)
+                least = gap - np.minimum(wide + level.rounding[n], level.radius[n])
                 near = least < best[q]
                 q, n, least = q[near], n[near], least[near]
                 sample = n * self._sizes[depth]
@@ -160,7 +183,7 @@ class Obstacles:
             near = away < np.maximum(best[query], CONVERGED)
             query, node, away = query[near], node[near], away[near]
             if depth:
-                query, node = tree.below(query, node, len(self._levels[depth - 1][1]))
+                query, node = tree.below(query, node, len(self._levels[depth - 1].radius))
         # the nearest by their balls first: most of the others are then known to be farther
         order = np.lexsort((away, query))
         query, node, away = query[order], node[order], away[order]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whether the nozzle is clear of bodies and deposit at the points of beads, and halfway between them.
 
-The nozzle is the frustum of `clearance`; its lowest part is left out, up to where its side is one nozzle diameter from the
-deposit point.
+The deposit has its width and height. Its beads that are of the layer being laid, and next to the tip, count as lines, and
+the lowest part of the nozzle is left out (`collision.nozzle`): there it touches what it rightly does.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.bodies import Bodies, of_bodies
-from ..collision.frustum import Frustum, beside_tip
-from ..collision.obstacles import Obstacles
+from ..collision import deposit
+from ..collision.nozzle import Nozzle, depositing
+from ..collision.scene import Scene, scene
 from ..geometry.columns import columns
 from ..geometry.surroundings import Body
 from ..parameters.cell import NozzleParameters
@@ -26,20 +26,18 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-COARSE = 0.2  # mm of height left out more over bodies: their triangles are off the true faces by half of that
 CAP = 1e-9  # rad
-GRAZED = 0.1  # mm of depth that is let pass halfway between points
 
 
 @dataclass(frozen=True)
 class Room:
-    """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit."""
+    """Everything that decides whether an axis at a point is clear: points (n, 3) in the order of deposit, own (n,) the first
+    point of those beads that each overlaps by intention where it is next to them."""
 
     points: Array
-    bodies: Bodies
-    deposit: Obstacles
-    above_bodies: Frustum
-    above_deposit: Frustum
+    own: Index
+    scene: Scene
+    nozzle: Nozzle
     max_tilt: float
 
     def clear(self, at: Index, axis: Array) -> Mask:
@@ -47,29 +45,29 @@ class Room:
         x, y, z = columns(axis)
         clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
         rows = np.flatnonzero(clear)
-        clear[rows] = ~self.bodies.touched(self.above_bodies, self.points[at[rows]], axis[rows])
-        rows = np.flatnonzero(clear)
-        clear[rows] = ~self.deposit.touched(self.above_deposit, self.points[at[rows]], axis[rows], at[rows] + 1)
+        here = at[rows]
+        clear[rows] = ~self.scene.touched(self.nozzle, self.points[here], axis[rows], here + 1, self.own[here])
         return clear
 
 
-def left_out(nozzle: NozzleParameters) -> float:
-    """Height (mm) over the tip plane at which the nozzle's side is one nozzle diameter from the deposit point."""
-    return beside_tip(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)))
+def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0) -> Nozzle:
+    """The nozzle as it is looked at while it deposits beads of up to that height, mm."""
+    return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height)
 
 
 def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float) -> Room:
     """The room of all points of a toolpath, in order, among bodies; max_tilt: rad."""
-    points = np.concatenate([bead.points for _, _, bead in toolpath])
-    ends = np.cumsum([len(bead) for _, _, bead in toolpath])
-    second = np.setdiff1d(np.arange(1, len(points)), ends)
-    a, k, low = 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), left_out(nozzle)
-    near_bodies = Frustum(a, k, low + COARSE, nozzle.length)
-    return Room(
-        points, of_bodies(bodies, points, near_bodies.reach),
-        Obstacles(np.stack([points[second - 1], points[second]], axis=1), second),
-        near_bodies, Frustum(a, k, low, nozzle.length), max_tilt,
-    )
+    beads = [bead for _, _, bead in toolpath]
+    points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
+    counts = np.array([len(bead) for bead in beads])
+    starts = np.cumsum(counts) - counts
+    layer = np.repeat([i for i, _, _ in toolpath], counts)
+    heights = toolpath.heights
+    laid = deposit.of_beads(points, build, toolpath.widths, heights, starts)
+    looked = nozzle_of(nozzle, float(heights.max()))
+    # a bead that closes a gap overlaps those about the gap, of layers below too
+    own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, np.searchsorted(layer, layer))
+    return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)
 
 
 def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
@@ -89,13 +87,7 @@ def touched_between(room: Room, beads: Sequence[Bead], tool: Array, free: Mask) 
     points, axes = halfway(beads, tool)
     both = free & np.r_[free[1:], False]
     both[np.cumsum([len(bead) for bead in beads]) - 1] = False
-    slender = [
-        dataclasses.replace(solid, radius=solid.radius - GRAZED * np.hypot(1.0, solid.slope), high=solid.high - GRAZED)
-        for solid in (room.above_bodies, room.above_deposit)
-    ]
-    midway = dataclasses.replace(
-        room, points=points, above_bodies=slender[0], above_deposit=slender[1], max_tilt=float(np.pi)
-    )
+    midway = dataclasses.replace(room, points=points, nozzle=room.nozzle.halfway(), max_tilt=float(np.pi))
     touched = np.zeros(len(points), dtype=bool)
     rows = np.flatnonzero(both)
     touched[rows] = ~midway.clear(rows, axes[rows])

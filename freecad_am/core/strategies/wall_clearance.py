@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Keeps the nozzle clear of bodies and deposit along any beads, by tilting the tool axis no more than needed.
 
-The nozzle is the frustum of `clearance`. Its lowest part is left out, up to where its side is one nozzle diameter from the
-deposit point: there it touches what it stands on and the bead being laid. Points at or behind the tip plane are free, so
-is what is not deposited yet.
+The nozzle is a frustum. Its lowest part is left out (`collision.nozzle`): there it touches what it stands on, the bead
+being laid and those beside it. The deposit has its width and height at that moment; what is not deposited yet is free, and
+so is what is at or behind the tip plane.
 
 In a bead on which the nozzle would touch, each point has candidate axes on cones about the asked one, in growing angle
-until every point has a clear one; of all ways through clear candidates that is taken for which the integral of tilt^2 +
-(SPREAD d tilt / ds)^2 along the bead is least. Finer candidates about the way found follow, level by level.
+until every point has a clear one, or a few of those without have none on any cone; of all ways through clear candidates
+that is taken for which the integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead is least. Finer candidates about the
+way found follow, level by level.
 
 Halfway between points that are clear the nozzle is looked at too; where it touches there, the bead gets a point.
 """
@@ -21,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.bodies import of_bodies
-from ..collision.frustum import Frustum
 from ..geometry import frames
 from ..geometry.surface import dot
 from ..geometry.surroundings import Body
@@ -32,7 +32,7 @@ from ..parameters.cell import NozzleParameters
 from ..slicing.wall_direction import limited, turn_rates
 from ..toolpath import Toolpath
 from .clearance_notes import place, tilt_issues, turn_issues
-from .clearance_room import CAP, COARSE, Room, halfway, halved, left_out, room_of, touched_between
+from .clearance_room import CAP, Room, halfway, halved, nozzle_of, room_of, touched_between
 from .least_turn import least
 
 Array = NDArray[np.float64]
@@ -41,6 +41,7 @@ Mask = NDArray[np.bool_]
 
 RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
 LARGEST = np.radians(90.0)  # tilt that is tried
+PROBED, PROBES = 7, 16  # before which cone, and at how many points of a bead, all larger ones are tried
 LEVELS = 4  # of finer candidates, each of half the distance
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
 FAR = 4.0  # times SPREAD, beyond which nothing is left of a tilt
@@ -90,7 +91,9 @@ def _tilted(
     lost = np.zeros(len(asked), dtype=bool)
     lost[stuck] = True
     turned = _slowed(room, rows, closed, asked, plane, build.turn(), tool, tilt, lost)
-    between = touched_between(room, beads, tool, ~lost)
+    # no more points for beads that are lost: they are told of at those they have
+    sound = ~np.repeat(np.logical_or.reduceat(lost, begin[:-1]), np.diff(begin))
+    between = touched_between(room, beads, tool, sound)
     if between.any() and not last:
         return toolpath, between
     lost |= between
@@ -168,7 +171,7 @@ def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParamet
     """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
     beads = [bead for _, _, bead in toolpath]
     points, tool = np.concatenate([bead.points for bead in beads]), np.concatenate([bead.tool for bead in beads])
-    around = Frustum(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), left_out(nozzle) + COARSE, nozzle.length)
+    around = nozzle_of(nozzle).bodies
     near = of_bodies(bodies, points, around.reach)
     hit = near.touched(around, points, tool) | near.touched(around, *halfway(beads, tool))
     if not hit.any():
@@ -197,6 +200,7 @@ class _Bench:
         self.asked = asked
         self.counts = np.array([len(row) for row in rows])
         self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
+        self.lost = np.zeros(len(rows), dtype=bool)  # beads that no tilt clears
         self.sides = np.concatenate([_sides(asked[row], plane) for row in rows])
         points = room.points[self.flat]
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
@@ -231,7 +235,14 @@ class _Bench:
         allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
         bead = np.repeat(np.arange(len(self.counts)), self.counts)
         pending = np.ones(len(self.counts), dtype=bool)
-        for number in range(1, round(LARGEST / RING) + 1):
+        last = round(LARGEST / RING)
+        for number in range(1, last + 1):
+            if number == PROBED:
+                # where nothing frees some of a bead's points there is no way, however many candidates the others have
+                self.lost[self._hopeless(allowed, pending, range(number, last + 1))] = True
+                pending &= ~self.lost
+                if not pending.any():
+                    break
             ring = self._ring(number)
             states = np.concatenate([states, ring])
             more = np.zeros((len(self.flat), len(ring)), dtype=bool)
@@ -245,11 +256,24 @@ class _Bench:
                 break
         allowed = self._both_ends(allowed)
         stuck = np.logical_not(allowed.any(axis=1))
+        self.lost |= np.logical_or.reduceat(stuck, self.begin)
         allowed[stuck] = True
         # a closed bead starts where least tilt is needed, and with it
         size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
         anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
         return states[self._least(states[None], allowed, anchor, first_least(size))], stuck
+
+    def _hopeless(self, allowed: Mask, pending: Mask, numbers: range) -> Index:
+        """The beads among those pending of which one of the points looked at is not free on any cone, of points (m, s) and
+        further cones."""
+        barred = ~self._both_ends(allowed).any(axis=1) & self.near
+        chosen = [np.zeros(0, dtype=np.intp)]
+        for bead in np.flatnonzero(pending):
+            rows = self.begin[bead] + np.flatnonzero(barred[self.begin[bead] : self.begin[bead] + self.counts[bead]])
+            chosen.append(rows[np.unique(np.linspace(0, len(rows) - 1, PROBES).astype(int))] if len(rows) else rows)
+        places = np.concatenate(chosen)
+        free = self._clear(places, np.concatenate([self._ring(number) for number in numbers])).any(axis=1)
+        return np.unique(np.searchsorted(self.begin, places[~free], side="right") - 1)
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
         """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
@@ -259,7 +283,7 @@ class _Bench:
         here = len(grid) // 2
         offsets[:, here] = offset
         allowed = np.zeros(offsets.shape[:2], dtype=bool)
-        some = np.flatnonzero(self.near)
+        some = np.flatnonzero(self.near & ~np.repeat(self.lost, self.counts))
         allowed[some] = self._clear(some, offsets[some])
         allowed = self._both_ends(allowed)
         allowed[:, here] = True
@@ -292,46 +316,66 @@ class _Bench:
             need = size[start : start + count - 1]
             least_of_all = np.flatnonzero(need <= need.min() + CAP)
             more = np.flatnonzero(need > need.min() + CAP)
-            apart = np.abs(least_of_all[:, None] - more[None, :])
-            away = np.minimum(apart, count - 1 - apart).min(axis=1, initial=count)
+            away = nearest(more.astype(float), least_of_all.astype(float), float(count - 1))
             anchors.append(int(least_of_all[np.argmax(away)]))
         return np.array(anchors)
 
     def _least(self, states: Array, allowed: Mask, anchor: Index, fixed: Index) -> Index:
         """(m,) the states of least cost; a closed bead is run from the anchor all around, its state there `fixed`."""
-        n, s = int(self.counts.max()), allowed.shape[1]
-        place = np.zeros((len(self.counts), n), dtype=np.intp)  # of the chains' points in the list, the pads at any
+        chosen = np.zeros(len(self.flat), dtype=np.intp)
+        # chains of like lengths together: as long as the longest, all of them would take memory that one needs
+        length = np.ceil(np.log2(self.counts)).astype(int)
+        for beads in (np.flatnonzero(length == some) for some in np.unique(length)):
+            self._least_of(beads, states, allowed, anchor, fixed, chosen)
+        return chosen
+
+    def _least_of(self, beads: Index, states: Array, allowed: Mask, anchor: Index, fixed: Index, chosen: Index) -> None:
+        """Put the states of least cost of some beads where they belong among those chosen (m,)."""
+        n, s = int(self.counts[beads].max()), allowed.shape[1]
+        place = np.zeros((len(beads), n), dtype=np.intp)  # of the chains' points in the list, the pads at any
         weight, change = np.zeros(place.shape), np.zeros((len(place), n - 1))
         free = np.ones((*place.shape, s), dtype=bool)
-        for k, (start, count) in enumerate(zip(self.begin, self.counts, strict=True)):
+        for k, bead in enumerate(beads):
+            start, count = self.begin[bead], self.counts[bead]
             around = np.arange(count)
-            if self.closed[k]:
-                around = np.r_[np.arange(anchor[k], count - 1), np.arange(anchor[k]), anchor[k]]
+            if self.closed[bead]:
+                around = np.r_[np.arange(anchor[bead], count - 1), np.arange(anchor[bead]), anchor[bead]]
             place[k, :count] = start + around
             step = self.step[place[k, : count - 1]]
             weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
             change[k, : count - 1] = self.spread**2 / np.maximum(step, 1e-6)
             free[k, :count] = allowed[place[k, :count]]
-            if self.closed[k]:
-                ends = np.arange(s) == fixed[start + anchor[k]]
+            if self.closed[bead]:
+                ends = np.arange(s) == fixed[start + anchor[bead]]
                 free[k, 0], free[k, count - 1] = ends, ends
         found = least(states[None] if states.shape[0] == 1 else states[place], free, weight, change)
-        chosen = np.zeros(len(self.flat), dtype=np.intp)
-        for k, count in enumerate(self.counts):
+        for k, bead in enumerate(beads):
+            count = self.counts[bead]
             chosen[place[k, :count]] = found[k, :count]
-            if self.closed[k]:
-                chosen[self.begin[k] + count - 1] = chosen[self.begin[k]]
-        return chosen
+            if self.closed[bead]:
+                chosen[self.begin[bead] + count - 1] = chosen[self.begin[bead]]
 
 
 def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
     """Which points of a bead are within `reach` mm, along it, of the blocked ones."""
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    apart = np.abs(length[:, None] - length[None, blocked])
-    if closed:
-        apart = np.minimum(apart, length[-1] - apart)
-    near: Mask = apart.min(axis=1, initial=np.inf) <= reach
+    near: Mask = nearest(length[blocked], length, float(length[-1]) if closed else None) <= reach
     return near
+
+
+def nearest(known: Array, places: Array, length: float | None) -> Array:
+    """(n,) how far places (n,) on a line are from the nearest of those known (k,), rising; infinity where there are none.
+    length: of a line that closes, on which they are all."""
+    if not len(known):
+        return np.full(len(places), np.inf)
+    after = np.searchsorted(known, places)
+    apart = np.minimum(
+        np.abs(places - known[np.maximum(after - 1, 0)]), np.abs(known[np.minimum(after, len(known) - 1)] - places)
+    )
+    if length is None:
+        return apart
+    # the other way round the one that is farthest this way is nearest
+    return np.minimum(apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1])))
 
 
 def _sides(asked: Array, plane: Array | None) -> Array:

@@ -2,19 +2,22 @@
 """The nozzle on walls: clear by brute force (a sampled nozzle, true solids), tilted by the least angle, smoothly."""
 
 import dataclasses
+import tracemalloc
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from freecad_am.core.collision.frustum import beside_tip
+from freecad_am.core.collision.tolerances import ABOVE_FACES
 from freecad_am.core.geometry.surface_wall import TORUS, SurfaceWall
 from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import surface
-from freecad_am.core.strategies.wall_clearance import COARSE, kept_clear, left_out, touched_at
+from freecad_am.core.strategies import clearance_room, surface, wall_clearance
+from freecad_am.core.strategies.wall_clearance import kept_clear, touched_at
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0
@@ -23,6 +26,10 @@ FAT = NozzleParameters(half_angle=np.radians(38.0), diameter=3.0, length=40.0)
 LOCAL = BuildDirectionParameters()
 SAMPLES = 8
 FINEST = 0.4  # deg, what the finest candidates leave open
+
+
+def left_out(nozzle):
+    return beside_tip(0.5 * nozzle.diameter, np.tan(nozzle.half_angle))
 
 
 def bead(points, tool=(0.0, 0.0, 1.0), closed=False):
@@ -107,7 +114,8 @@ def bend_on_pipe(mode, **values):
     assert np.abs(np.hypot(first[:, 0], first[:, 2]) - PIPE).max() < 1e-9
     wall = dataclasses.replace(wall, first=first)
     build = BuildDirectionParameters(mode=mode, clearance="none")
-    return wall, surface.plan(wall, SurfaceParameters(layer_height=8.0, end="whole", **values), build, ProcessParameters())
+    made = surface.plan(wall, SurfaceParameters(layer_height=8.0, end="whole", **values), build, ProcessParameters())
+    return wall, dataclasses.replace(made, bead_width=0.0)  # lines: what is measured here is the pipe
 
 
 @pytest.mark.parametrize("mode", ["local", "symmetry-plane"])
@@ -118,7 +126,7 @@ def test_a_fat_nozzle_on_the_pipe(mode):
     found = kept_clear(asked, [pipe()], FAT, build, plane)
 
     def deepest(path):
-        low = left_out(FAT) + COARSE
+        low = left_out(FAT) + ABOVE_FACES
         points = [sampled(FAT, low, one.points, one.tool).reshape(-1, 3) for _, _, one in path]
         return PIPE - min(np.hypot(some[:, 0], some[:, 2])[np.abs(some[:, 1]) < 99].min() for some in points)
 
@@ -164,10 +172,10 @@ def test_a_post_beside_the_way_is_passed_smoothly():
     found = kept_clear(path, [post], NOZZLE, LOCAL)
     tool = found.layers[0].beads[0].tool
     tilt = turned(path, found)
-    solid = sampled(NOZZLE, left_out(NOZZLE) + COARSE, ring, tool)
+    solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, ring, tool)
     inside = ((solid > [38, -3, -20]) & (solid < [44, 3, 90])).all(axis=2)
     assert not inside.any()
-    asked = sampled(NOZZLE, left_out(NOZZLE) + COARSE, ring, path.layers[0].beads[0].tool)
+    asked = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, ring, path.layers[0].beads[0].tool)
     assert ((asked > [38, -3, -20]) & (asked < [44, 3, 90])).all(axis=2).any()
     assert (tool[0] == tool[-1]).all() and tilt[60] < 1e-6 < tilt[0]
     turn = np.degrees(np.linalg.norm(np.diff(tool, axis=0), axis=1))
@@ -251,7 +259,7 @@ def test_a_thin_plate_that_reaches_in_between_two_points_is_seen():
     one = found.layers[0].beads[0]
     assert codes(found) == ["TILT_BACK"] and 12 <= len(one) <= 16 and np.isin(along, one.points[:, 0]).all()
     assert (one.points[:, 1:] == 0).all() and touched_at(found, [plate], NOZZLE) == []
-    height = np.linspace(left_out(NOZZLE) + COARSE, 4.0, 60)
+    height = np.linspace(left_out(NOZZLE) + ABOVE_FACES, 4.0, 60)
     tip, axis = between(found)
     x, y = np.stack([np.linspace(low[0], high[0], 9), np.full(9, low[1])])
     for z in np.linspace(low[2], high[2], 9):  # the plate's near edge, as deep in the nozzle as it is let pass
@@ -284,7 +292,7 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
     def fastest(build):
         found = kept_clear(path, [post], NOZZLE, build)
         axes = found.layers[0].beads[0].tool
-        solid = sampled(NOZZLE, left_out(NOZZLE) + COARSE, points, axes)
+        solid = sampled(NOZZLE, left_out(NOZZLE) + ABOVE_FACES, points, axes)
         assert not ((solid > [46, 6, -20]) & (solid < [50, 12, 90])).all(axis=2).any()
         return (np.linalg.norm(np.diff(axes, axis=0), axis=1) / step).max(), codes(found)
 
@@ -294,3 +302,75 @@ def test_tools_that_turn_as_fast_as_they_may_stay_below_that_where_they_are_tilt
     assert kept <= most * (1.0 + 1e-9) and "TURN_PASSED" not in told
     passed, told = fastest(BuildDirectionParameters(max_turn=most, max_tilt=0.61))  # no room, and that is told
     assert passed <= most * (1.0 + 1e-9) or "TURN_PASSED" in told
+
+
+def flank(tall, away, width):
+    """A finished wall along y, and a bead beside it, `away` mm from its middle."""
+    wall = [bead([[0, y, z] for y in np.linspace(-40, 40, 9)]) for z in range(tall)]
+    beside = bead([[away, y, 0] for y in np.linspace(-40, 40, 21)])
+    return dataclasses.replace(toolpath(*wall, beside), bead_width=width)
+
+
+def deepest_in_wall(path, tall, width):
+    """How deep (mm) points of the nozzle above the bead's height are in a wall of that width, x being across it."""
+    last = path.layers[-1].beads[0]
+    places = sampled(NOZZLE, 1.0, last.points, last.tool)
+    # the flank is round from bead to bead: 0.5 mm at the edge of each
+    inside = (places[..., 2] < tall) & (np.abs(places[..., 1]) < 40)
+    return np.where(inside, 0.5 * width - np.abs(places[..., 0]), -np.inf).max()
+
+
+def test_a_bead_beside_a_finished_wall_keeps_clear_of_its_flank():
+    """8 mm beads to a height of 40 mm, the next one 16 mm from their middle: lines without width were clear."""
+    asked = flank(40, 16.0, 8.0)
+    assert kept_clear(dataclasses.replace(asked, bead_width=0.0), [], NOZZLE, LOCAL).issues == ()
+    assert deepest_in_wall(asked, 40, 8.0) > 2.0
+    found = kept_clear(asked, [], NOZZLE, LOCAL)
+    assert codes(found) == ["TILT_BACK"] and deepest_in_wall(found, 40, 8.0) < 0.2
+    assert kept_clear(flank(40, 30.0, 8.0), [], NOZZLE, LOCAL).issues == ()
+
+
+def test_beads_of_one_layer_that_overlap_hinder_no_one():
+    rows = [bead([[x, y, 0] for x in np.linspace(0, 30, 11)]) for y in np.arange(0.0, 30.0, 6.0)]
+    lean = [dataclasses.replace(one, tool=np.tile([0.0, -np.sin(0.5), np.cos(0.5)], (11, 1))) for one in rows]
+    for beads in (rows, lean):
+        path = Toolpath((Layer(tuple(beads)),), np.eye(4), 2.0, 0.01, family="surface", bead_width=8.0)
+        assert kept_clear(path, [], NOZZLE, LOCAL) is path
+
+
+def test_where_some_points_of_a_bead_have_no_way_the_rest_is_not_searched_for_ever():
+    """A tunnel: nothing frees the nozzle in it; 4,000 points cost no more than a few cones each."""
+    count = 1000
+    path = toolpath(bead(np.stack([np.linspace(-40, 40, count), np.zeros(count), np.zeros(count)], axis=1)))
+    roof = [box([-90, -90, 8], [90, 90, 9], "roof"), box([-90, -90, -9], [90, 90, -8], "floor")]
+    looks = []
+    scenes = clearance_room.Scene.touched
+
+    def counted(self, solid, tip, *rest):
+        looks.append(len(tip))
+        return scenes(self, solid, tip, *rest)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(clearance_room.Scene, "touched", counted)
+        found = kept_clear(path, roof, NOZZLE, LOCAL)
+    assert codes(found) == ["CLEARANCE"] and sum(looks) < 110 * count
+
+
+def test_looking_needs_memory_that_grows_with_the_points_alone():
+    def peak(count):
+        s = np.linspace(-40, 40, count)
+        known = np.zeros(count, dtype=bool)
+        known[::3] = True
+        tracemalloc.start()
+        wall_clearance.nearest(s[known], s, None)
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return most
+
+    assert peak(40_000) < 5e6
+    s = np.sort(np.random.default_rng(1).uniform(0, 10, 80))
+    known = s[::7]
+    apart = np.abs(s[:, None] - known)
+    assert np.abs(wall_clearance.nearest(known, s, None) - apart.min(axis=1)).max() < 1e-12
+    around = np.minimum(apart, 10.0 - apart).min(axis=1)
+    assert np.abs(wall_clearance.nearest(known, s, 10.0) - around).max() < 1e-12
