@@ -99,8 +99,8 @@ class Obstacles:
             query, node = query.take(there), node.take(there)
             offset, along = level.centre.take(node, axis=0) - tip.take(query, axis=0), axis.take(query, axis=0)
             half, round_ = level.half.take(node, axis=0), level.rounding.take(node)
-            near = np.flatnonzero(solid.rows(query).near_box(offset, along, half, round_))
-            query, node, along = query.take(near), node.take(near), along.take(near, axis=0)
+            close = np.flatnonzero(solid.rows(query).near_box(offset, along, half, round_))
+            query, node, along = query.take(close), node.take(close), along.take(close, axis=0)
             # one corner inside settles the matter without looking at all the rest
             sample = node * self._sizes[depth]
             inside = solid.rows(query).holds(self._sample.take(sample, axis=0) - tip.take(query, axis=0), along)
@@ -114,8 +114,8 @@ class Obstacles:
                 waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
                 continue
             for q, n in tree.parts(query, node):
-                left = ~found[q]
-                q, n = q[left], n[left]
+                left = np.flatnonzero(~found.take(q))
+                q, n = q.take(left), n.take(left)
                 meets = self._meets(solid.rows(q), tip[q], axis[q], n, own[q])
                 found[q[meets]] = True
         return found

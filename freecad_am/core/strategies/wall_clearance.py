@@ -273,7 +273,8 @@ class _Bench:
             chosen.append(rows[np.unique(np.linspace(0, len(rows) - 1, PROBES).astype(int))] if len(rows) else rows)
         places = np.concatenate(chosen)
         free = self._clear(places, np.concatenate([self._ring(number) for number in numbers])).any(axis=1)
-        return np.unique(np.searchsorted(self.begin, places[~free], side="right") - 1)
+        beads: Index = np.unique(np.searchsorted(self.begin, places[~free], side="right") - 1)
+        return beads
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
         """Tilts (m, 2) near those given that make a better way, at most two steps of `step` (rad) away in each component."""
@@ -369,13 +370,14 @@ def nearest(known: Array, places: Array, length: float | None) -> Array:
     if not len(known):
         return np.full(len(places), np.inf)
     after = np.searchsorted(known, places)
-    apart = np.minimum(
+    apart: Array = np.minimum(
         np.abs(places - known[np.maximum(after - 1, 0)]), np.abs(known[np.minimum(after, len(known) - 1)] - places)
     )
     if length is None:
         return apart
     # the other way round the one that is farthest this way is nearest
-    return np.minimum(apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1])))
+    around: Array = np.minimum(apart, length - np.maximum(np.abs(places - known[0]), np.abs(places - known[-1])))
+    return around
 
 
 def _sides(asked: Array, plane: Array | None) -> Array:
