@@ -45,6 +45,9 @@ def build(
         "totals": totals.as_dict(sums),
         "spacing_mm": spread(spacing),
         "unsupported_mm": toolpath.unsupported,
+        "on_part": None if toolpath.on_part is None else dict(
+            zip(("places", "worst_mm", "allowed_mm"), (int(toolpath.on_part[0]), *toolpath.on_part[1:]), strict=True)
+        ),
         "joints": None,
         "preflight": [],
         "comparison": [],

@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from ..brep.off_part import off_faces, off_mesh, off_solids
 from ..core.geometry.on_hub import SolidsOnHub
 from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.surroundings import disc
@@ -16,7 +18,7 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
-from ..core.process import bead_table, deposit_balance
+from ..core.process import bead_table, deposit_balance, on_part
 from ..core.process.bead_model import BeadModel
 from ..core.process.wire import fed
 from ..core.strategies import (
@@ -32,11 +34,12 @@ from ..core.strategies import (
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
 from .developable_feature import DevelopableFeature
+from .shapes import Taken, taken
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
 from .surface_feature import SurfaceFeature
 
 STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
-CHECKED = 0.95  # and what is left into a last look
+CHECKED, LOOKED = 0.92, 0.95  # and what is left into last looks
 
 
 class Toolpath(Stage):
@@ -68,9 +71,10 @@ class Toolpath(Stage):
         family = family_of(shape)
         wall, strategy = shape.value(feature), shape.parameters(feature, family)
         build, process = shape.parameters(feature, BuildDirectionParameters), self.parameters(obj, ProcessParameters)
+        sources = tuple(taken(one) for one in (feature.Source[0], *getattr(feature, "Further", ())))
 
         def work() -> Outcome:
-            toolpath = planned(wall, strategy, build, process, carried)
+            toolpath = _looked_at(planned(wall, strategy, build, process, carried), wall, sources, strategy)
             told = deposit_balance.issues(deposit_balance.of_feature(wall, process.bead_width))
             toolpath = dataclasses.replace(toolpath, issues=(*told, *toolpath.issues))
             figures = (
@@ -84,6 +88,25 @@ class Toolpath(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         model = self.parameters(obj, ProcessParameters).bead_model
         return [] if model == "none" else [repr(bead_table.load(model))]
+
+
+def _looked_at(toolpath: CoreToolpath, wall: Any, sources: Sequence[Taken], strategy: Any) -> CoreToolpath:
+    """The toolpath with whether it lies on the shapes that it was made for; nobody looks where these have no faces."""
+    progress.report(LOOKED, "looking whether the deposit lies on the part")
+    places = on_part.places(toolpath)
+    limit = on_part.allowed(toolpath, getattr(strategy, "margin", 0.0))
+    if isinstance(wall, SolidsOnHub):
+        off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
+    else:
+        off = off_faces(sources[0].shape, wall.faces, places.points, limit)
+    return on_part.judged(toolpath, places, off, limit)
+
+
+def _off_solid(source: Taken, points: Any, limit: float) -> Any:
+    if source.shape is not None:
+        return off_solids(source.shape, points, limit)
+    body = source.body()
+    return off_mesh(body.vertices, body.triangles, points)
 
 
 def family_of(feature: Stage) -> type:

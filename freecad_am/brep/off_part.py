@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How far places are off the faces or solids that were to be deposited: by triangles, and by the kernel where that is much.
+
+Nothing of it is what slicing uses: no surface is inverted, and no wall or solid of a feature is asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD
+import numpy as np
+import Part
+from numpy.typing import NDArray
+
+from ..core.geometry.solid_mesh import SolidMesh
+from .kernel_process import beside
+from .tessellate import triangles_of
+
+Array = NDArray[np.float64]
+
+DEFLECTION, FINE = 0.05, 0.005  # mm
+ASKED = 200  # places that triangles are not sure of and the kernel is asked about, the farthest ones first
+ALWAYS = 5  # and as many in any case
+INSIDE = 1e-6  # mm
+
+
+def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -> Array:
+    """Distances (n,) mm of points (n, 3) from faces of a shape, by their names, or from all; NaN without faces.
+
+    Those over `allowed` mm are the kernel's, of the ASKED farthest; the others are by triangles less what these may be off,
+    so that no place is told to be farther than it is.
+    """
+    known = {f"Face{number}": face for number, face in enumerate(shape.Faces, start=1)}
+    chosen = [known[name] for name in dict.fromkeys(names) if name in known] or list(known.values())
+    if not chosen:
+        return np.full(len(points), np.nan)
+    faces = Part.makeCompound([face.copy(False) for face in chosen])
+    found = np.abs(_by_triangles(faces, points))
+    return _exact(faces, points, found, allowed + DEFLECTION, False)
+
+
+def off_solids(shape: Any, points: Array, allowed: float) -> Array:
+    """Distances (n,) mm of points (n, 3) outside of the solids of a shape, 0 inside; as `off_faces`."""
+    found = np.full(len(points), np.inf)
+    for solid in shape.Solids or [shape]:
+        copy = solid.copy(False)
+        outside = np.maximum(_by_triangles(copy, points), 0.0)
+        found = np.minimum(found, _exact(copy, points, outside, allowed + DEFLECTION, True))
+    return found
+
+
+def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
+    """Distances (n,) mm of points (n, 3) outside of a closed mesh, 0 inside."""
+    found: Array = np.maximum(_signed(vertices, triangles, points), 0.0)
+    return found
+
+
+def _by_triangles(shape: Any, points: Array) -> Array:
+    return _signed(*beside(triangles_of, shape, DEFLECTION), points)
+
+
+def _signed(vertices: Array, triangles: Any, points: Array) -> Array:
+    found: Array = SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max())).signed(points)[0]
+    return found
+
+
+def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool) -> Array:
+    """The distances with those of the farthest places, and of what is over what is allowed, as the kernel gives them; by
+    finer triangles where it fails, as it does beside a surface of revolution. No other place is told to be farther than the
+    farthest one asked about."""
+    exact = np.maximum(found - DEFLECTION, 0.0)
+    order = np.argsort(-found, kind="stable")
+    asked = order[: max(ALWAYS, min(ASKED, int((found > allowed).sum())))]
+    unsure = []
+    for k in asked.tolist():
+        try:
+            exact[k] = _by_kernel(shape, points[k], solid)
+        except (RuntimeError, Part.OCCError):
+            unsure.append(k)
+    if unsure:
+        vertices, triangles = beside(triangles_of, shape, FINE)
+        finer = _signed(vertices, triangles, points[unsure])
+        exact[unsure] = np.maximum((finer if solid else np.abs(finer)) - 2.0 * FINE, 0.0)
+    return np.minimum(exact, exact[asked].max(initial=0.0))
+
+
+def _by_kernel(shape: Any, place: Array, solid: bool) -> float:
+    point = FreeCAD.Vector(*place.tolist())
+    return 0.0 if solid and shape.isInside(point, INSIDE, True) else float(shape.distToShape(Part.Vertex(point))[0])

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whether deposit lies on its part: distances against closed forms, and toolpaths that were moved."""
+
+import dataclasses
+
+import numpy as np
+import Part
+import pytest
+from FreeCAD import Vector
+
+from freecad_am import api
+from freecad_am.brep.off_part import off_faces, off_mesh, off_solids
+from freecad_am.objects import toolpath as stage
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(2)
+
+
+def ring(rng, radius, low, high, count=400):
+    angle, height = rng.uniform(0.0, 2.0 * np.pi, count), rng.uniform(low, high, count)
+    radius = np.broadcast_to(radius, count)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+
+
+def test_distances_from_chosen_faces(rng):
+    shape = Part.makeCylinder(30.0, 50.0)
+    round_ = [f"Face{k}" for k, face in enumerate(shape.Faces, start=1) if face.Surface.TypeId == "Part::GeomCylinder"]
+    radius = 30.0 + rng.uniform(-3.0, 3.0, 150)
+    points = ring(rng, radius, 5.0, 45.0, 150)
+    assert off_faces(shape, round_, points, 0.03) == pytest.approx(np.abs(radius - 30.0), abs=0.101)
+    assert off_faces(shape, round_, ring(rng, 30.0, 5.0, 45.0), 0.03).max() < 0.001
+    past = off_faces(shape, round_, ring(rng, 30.0, 55.0, 60.0, 50), 0.03)
+    assert past.min() >= 5.0 - 1e-6 and past.max() <= 10.0 + 1e-6
+    assert np.isnan(off_faces(Part.makeLine(Vector(), Vector(0, 0, 1)), (), points, 0.03)).all()
+
+
+def test_distances_outside_of_solids(rng):
+    """Two boxes that touch: no place between them is outside, and past them it is counted from the nearer one."""
+    solids = Part.makeCompound([Part.makeBox(10, 10, 10), Part.makeBox(10, 10, 10, Vector(10, 0, 0))])
+    inside = rng.uniform([0.5, 0.5, 0.5], [19.5, 9.5, 9.5], (300, 3))
+    assert off_solids(solids, inside, 0.5).max() == 0.0
+    above = rng.uniform([0.5, 0.5, 11.0], [19.5, 9.5, 14.0], (100, 3))
+    assert off_solids(solids, above, 0.5) == pytest.approx(above[:, 2] - 10.0, abs=1e-6)
+    box = Part.makeBox(10, 10, 10)
+    points, triangles = box.tessellate(1.0)
+    vertices = np.array([tuple(point) for point in points])
+    assert off_mesh(vertices, np.array(triangles), np.array([[5.0, 5, 5], [5, 5, 13]])) == pytest.approx([0.0, 3.0])
+
+
+def moved(toolpath, way):
+    layers = tuple(
+        dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, points=bead.points + way) for bead in layer.beads))
+        for layer in toolpath.layers
+    )
+    return dataclasses.replace(toolpath, layers=layers)
+
+
+def revolved(doc):
+    part = doc.addObject("Part::Sphere", "Sphere")
+    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    doc.recompute()
+    return api.make_feature(doc, part, layer_height=9, chord_error=0.1)
+
+
+def on_hub(doc):
+    rod, box = doc.addObject("Part::Feature", "Rod"), doc.addObject("Part::Feature", "Block")
+    rod.Shape = Part.makeCylinder(20.0, 100.0)
+    box.Shape = Part.makeBox(24.0, 24.0, 40.0, Vector(15.0, -12.0, 30.0)).cut(rod.Shape)
+    return api.make_developable_feature(doc, box, rod, layer_height=4.0, bead_spacing=6.0, chord_error=0.1)
+
+
+def wall(doc):
+    tube, plate = doc.addObject("Part::Feature", "Tube"), doc.addObject("Part::Feature", "Plate")
+    tube.Shape = Part.makeCylinder(20.0, 30.0).Faces[0]
+    plate.Shape = Part.makeBox(80.0, 80.0, 10.0, Vector(-40.0, -40.0, -5.0))
+    return api.make_surface_feature(doc, tube, ("Face1",), plate, layer_height=5.0, chord_error=0.1)
+
+
+@pytest.mark.parametrize("make, way", [(revolved, [1.0, 0, 0]), (on_hub, [0, 0, 9.0]), (wall, [0, 1.0, 0])])
+def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
+    feature = make(doc)
+    sound = api.result(api.make_toolpath(doc, feature))
+    count, worst, allowed = sound.on_part
+    assert count == sound.point_count and worst <= allowed and not [one for one in sound.issues if one.level == "error"]
+    plan = stage.planned
+    monkeypatch.setattr(stage, "planned", lambda *given: moved(plan(*given), np.array(way)))
+    toolpath = api.make_toolpath(doc, feature)
+    (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
+    assert issue.level == "error" and None not in (issue.layer, issue.bead, issue.point)
+    assert api.result(toolpath).on_part[1] == pytest.approx(np.abs(way).sum(), rel=0.35)
