@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 DEFLECTION, FINE = 0.05, 0.005  # mm
 ASKED = 200  # places that triangles are not sure of and the kernel is asked about, the farthest ones first
+FAILURES = 3  # of the kernel; it is not asked on then
 ALWAYS = 5  # and as many in any case
 INSIDE = 1e-6  # mm
 
@@ -75,6 +76,9 @@ def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool)
     asked = order[: max(ALWAYS, min(ASKED, int((found > allowed).sum())))]
     unsure = []
     for k in asked.tolist():
+        if len(unsure) > FAILURES:
+            unsure.append(k)
+            continue
         try:
             exact[k] = _by_kernel(shape, points[k], solid)
         except (RuntimeError, Part.OCCError):
