@@ -44,11 +44,13 @@ def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -
 
 def off_solids(shape: Any, points: Array, allowed: float) -> Array:
     """Distances (n,) mm of points (n, 3) outside of the solids of a shape, 0 inside; as `off_faces`."""
-    found = np.full(len(points), np.inf)
-    for solid in shape.Solids or [shape]:
-        copy = solid.copy(False)
-        outside = np.maximum(_by_triangles(copy, points), 0.0)
-        found = np.minimum(found, _exact(copy, points, outside, allowed + DEFLECTION, True))
+    solids = [solid.copy(False) for solid in shape.Solids or [shape]]
+    outside = np.maximum([_by_triangles(solid, points) for solid in solids], 0.0)
+    nearest = outside.argmin(axis=0)
+    found = outside.min(axis=0)
+    for number, solid in enumerate(solids):
+        mine = np.flatnonzero(nearest == number)
+        found[mine] = _exact(solid, points[mine], found[mine], allowed + DEFLECTION, True)
     return found
 
 
