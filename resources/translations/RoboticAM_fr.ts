@@ -6892,6 +6892,11 @@
         <translation>recherche de cordons au-dessus du vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>looking whether the deposit lies on the part</source>
+        <translation>vérification que le dépôt est sur la pièce</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/speeds.py"/>
         <source>lower the travel speed to {0} mm/s</source>
         <translation>diminuez la vitesse d&apos;avance à {0} mm/s</translation>
@@ -9570,6 +9575,11 @@
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>{0} of {1} layers are more than 20 % off the layer height of {2} mm, first layer {3}; layer {4} is {5} mm from the one below; layers along the wall (spacing: arc-length) are even</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/on_part.py"/>
+        <source>{0} of {1} places looked at are off the part, this one at {2} by {3} mm, and {4} mm are allowed: this toolpath deposits something else; choose another strategy, or other faces, and report the part</source>
+        <translation>{0} des {1} endroits regardés sont hors de la pièce, celui-ci en {2} de {3} mm, et {4} mm sont permis : cette trajectoire dépose autre chose ; choisissez une autre stratégie, ou d&apos;autres faces, et signalez la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
