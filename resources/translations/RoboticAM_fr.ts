@@ -5037,7 +5037,7 @@
         <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>a point of {0} asks for another configuration of the arm</source>
         <translation>un point de {0} demande une autre configuration du bras</translation>
     </message>
@@ -6577,7 +6577,7 @@
         <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>it rounds corners or accelerates in a way that is not understood</source>
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
@@ -6647,7 +6647,7 @@
         <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>its speed is limited, or its tool fixed, in a way that is not understood</source>
         <translation>sa vitesse est limitée, ou son outil fixé, d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
@@ -7372,7 +7372,7 @@
         <translation>polynômes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>positions of more than one frame are mixed</source>
         <translation>des positions de plus d&apos;un repère sont mêlées</translation>
     </message>
@@ -8087,7 +8087,7 @@
         <translation>le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>the points of {0} are not all in one frame</source>
         <translation>les points de {0} ne sont pas tous dans un repère</translation>
     </message>
@@ -8307,7 +8307,7 @@
         <translation>la trajectoire d&apos;outil à exécuter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>the tools of {0} are not all on one tool</source>
         <translation>les outils de {0} ne sont pas tous sur un outil</translation>
     </message>
@@ -9682,12 +9682,12 @@
         <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>{0} that stands in the world</source>
         <translation>{0} qui est dans le monde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>{0} that stands on the flange</source>
         <translation>{0} qui est sur la bride</translation>
     </message>
