@@ -27,7 +27,23 @@ USAGE = """usage: freecad-am COMMAND
 
 
 def main(argv: list[str]) -> int:
-    """Run one command; the exit status. Messages go to stderr, what was asked for to stdout."""
+    """Run one command; the exit status. Messages go to stderr, what was asked for to stdout.
+
+    A command that reads shapes runs in a copy of this process, which may crash.
+    """
+    from freecad_am.batch import console
+
+    if argv[:1] in (["plan"], ["export"], ["inspect"]) and argv[1:]:
+        from freecad_am.batch import supervised
+
+        def say(line: str) -> None:
+            print(console.escaped(line), file=sys.stderr)
+
+        return supervised.supervised(lambda: _main(argv), os.path.basename(argv[1]) or argv[1], say)
+    return _main(argv)
+
+
+def _main(argv: list[str]) -> int:
     from freecad_am.batch import console
 
     with console.Session() as session:

@@ -8,11 +8,13 @@ import re
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterable
 from typing import Any
 
 from freecad_am.core.issues import ERROR, Issue
 
+SAME = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
 _MOST_ISSUES = 12  # told on stderr; the report has them all
 # signs that move the cursor, end a line or turn the direction of writing: in a name they could forge what we say
 _UNSEEN = re.compile(
@@ -33,6 +35,7 @@ class Session:
 
     def __init__(self) -> None:
         self.interrupted = False  # whether Ctrl-C was pressed
+        self._when = 0.0
         self.outcome = "nothing was written"  # told where the command is interrupted
         self._progress = ""
 
@@ -101,7 +104,10 @@ class Session:
             signal.signal(number, self._interrupt)
 
     def _interrupt(self, *_: Any) -> None:
-        self.interrupted = True
+        now = time.monotonic()
+        if self.interrupted and now - self._when < SAME:
+            return
+        self.interrupted, self._when = True, now
         raise KeyboardInterrupt
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from freecad_am.core.issues import InputError
 from freecad_am.posts import earlier as earlier_posts
 
-from . import staging
+from . import staging, supervised
 
 WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = "waypoints.csv", "report.json", "report.html", "program", "wires"
 DOCUMENT_ENDING = ".FCStd"
@@ -40,6 +40,7 @@ class Outputs:
         except BaseException:  # Ctrl-C
             self._remove_made()
             raise
+        supervised.tell_outputs(self.folder, self._made)
         if self._staging.others and session is not None:
             session.say(f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
                         "of them another folder with -o")

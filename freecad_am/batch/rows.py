@@ -19,7 +19,7 @@ from typing import Any
 from freecad_am.core.issues import AmError, Issue, has_errors
 
 from . import run as planning
-from . import table
+from . import supervised, table
 from .console import Session, escaped
 
 FIGURES = ("layers", "beads", "points", "length_mm", "duration_s", "spacing_min_mm", "spacing_max_mm", "condition_min")
@@ -90,13 +90,8 @@ def _received(receiver: Any, process: Any) -> dict[str, Any]:
 
 def _ended(status: int) -> dict[str, Any]:
     """The result of a row whose process ended without one."""
-    if status < 0:
-        name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)
-        message = f"the row's process was ended from outside or by a crash ({name})"
-        remedy = "where memory does not suffice plan fewer rows at the same time with -j, else look at the row's part"
-        return {"exit": 1, "message": message, "lines": [f"error[ENDED] row: {message}; {remedy}"]}
-    message = f"the process ended by itself ({status})"
-    return {"exit": 1, "message": message, "lines": [f"error[INTERNAL] row: {message}; please report it"]}
+    error = supervised.crash("row", status)
+    return {"exit": error.exit_status, "message": error.message, "lines": [error.line()]}
 
 
 def _stop(process: Any) -> None:

@@ -96,6 +96,12 @@ def is_inside(name: Any) -> bool:
     )
 
 
+def clear(folder: str) -> None:
+    """Finish and remove what killed runs have left in a folder of outputs."""
+    with locked(folder), uninterrupted():
+        _cleared(folder)
+
+
 def _cleared(folder: str) -> bool:
     """Finish and remove what killed runs have left; whether others are at work."""
     others = False

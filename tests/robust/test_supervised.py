@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A command that crashes is told, leaves nothing, and takes signals as one process does."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from freecad_am.batch import outputs, supervised
+from tests.robust.test_kills import OLD, files, publish
+
+SCRIPT = """
+import os, signal, sys, time
+sys.path.insert(0, {root!r})
+from freecad_am.batch import supervised
+def work():
+    {work}
+status = supervised.supervised(work, "part.step", lambda line: print(line, file=sys.stderr))
+print("status", status)
+"""
+
+
+def ended(root, work, *actions):
+    """Status told, stderr, of a supervised work, with actions (s, function of its process) meanwhile."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", SCRIPT.format(root=str(root), work=work)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, start_new_session=True,
+    )
+    for seconds, act in actions:
+        time.sleep(seconds)
+        act(process)
+    out, err = process.communicate(timeout=60)
+    return out, err
+
+
+@pytest.mark.parametrize(("work", "code", "status"), [
+    ("os.kill(os.getpid(), signal.SIGSEGV)", "CRASHED", 2), ("os.abort()", "CRASHED", 2), ("os._exit(1)", "CRASHED", 2),
+    ("os._exit(0)", "CRASHED", 2), ("os.kill(os.getpid(), signal.SIGKILL)", "ENDED", 1),
+])  # fmt: skip
+def test_a_crash_is_told(root, work, code, status):
+    out, err = ended(root, work)
+    assert out == f"status {status}\n"
+    assert re.fullmatch(rf"error\[{code}\] part\.step: [^\n]+\n", err), err
+
+
+def test_a_status_is_passed_on(root):
+    for status in (0, 1, 2, 3, 130):
+        assert ended(root, f"return {status}") == (f"status {status}\n", "")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("group", [False, True])
+def test_signals_are_passed_on(root, number, group):
+    kill = (lambda process: os.killpg(process.pid, number)) if group else (lambda process: os.kill(process.pid, number))
+    out, err = ended(root, "time.sleep(60)", (2.0, kill))
+    assert out == "status 130\n" and "Traceback" not in err
+
+
+def test_a_copy_ends_with_the_process_that_waits_for_it(root, tmp_path):
+    told = tmp_path / "pid"
+    work = f"open({str(told)!r}, 'w').write(str(os.getpid())); time.sleep(60)"
+    ended(root, work.replace("; ", "\n    "), (2.0, lambda process: process.kill()))
+    until = time.monotonic() + 10.0
+    while os.path.exists(f"/proc/{told.read_text()}/exe") and time.monotonic() < until:
+        time.sleep(0.01)
+    assert not os.path.exists(f"/proc/{told.read_text()}/exe")
+
+
+@pytest.mark.parametrize("before", [OLD, {}], ids=["over an earlier set", "first"])
+def test_a_crash_leaves_the_outputs_as_they_were(tmp_path, before):
+    out = tmp_path / "new" / "out"
+    if before:
+        publish(out, before)
+
+    def work():
+        with outputs.Outputs(str(out)) as made:
+            made.write("report.json", b"half")
+            signal.signal(signal.SIGSEGV, signal.SIG_DFL)  # pytest tells of it at length
+            os.kill(os.getpid(), signal.SIGSEGV)
+        return 0
+
+    lines = []
+    assert supervised.supervised(work, "cup.yaml", lines.append) == 2
+    assert len(lines) == 1 and lines[0].startswith("error[CRASHED] cup.yaml: ")
+    assert files(tmp_path) == {f"new/out/{name}": data for name, data in before.items()}
+    assert (tmp_path / "new").exists() == bool(before) and not list(out.glob(".*") if before else [])
