@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import Part
 
-from ..core.collision.depths import measured
+from ..core.collision.depths import grain, measured
 from ..core.geometry.part_depths import Array, PartDepths, Surface
 from ..core.geometry.profile import RevolvedWall
 from ..core.geometry.solid_mesh import spread
@@ -40,10 +40,10 @@ def revolved_places(wall: RevolvedWall) -> Surface:
     turn = wall.end - wall.start
     area = float((radius * turn).mean() * wall.meridian.length)
     step = max(np.sqrt(max(area, 1e-9) / PLACES), 1e-3)
-    rows = max(2, round(wall.meridian.length / step))
+    rows = min(max(2, round(wall.meridian.length / step)), PLACES)
     s = (np.arange(rows) + 0.5) / rows * wall.meridian.length
     radius, height, tangent = wall.meridian.at(s)
-    counts = np.maximum(3, np.round(radius * turn / step).astype(int))
+    counts = np.clip(np.round(radius * turn / step).astype(int), 3, PLACES)
     row = np.repeat(np.arange(rows), counts)
     number = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
     azimuth = wall.start + (number + 0.5) / counts[row] * turn
@@ -58,7 +58,8 @@ def _of(
     if not shape.Faces:
         return None
     solids = _solids(shape)
-    chord = float(np.clip(CHORD * shape.BoundBox.DiagonalLength, FINEST, COARSEST))
+    size = shape.BoundBox.DiagonalLength
+    chord = float(np.clip(CHORD * size, min(FINEST, 10.0 * CHORD * size), COARSEST))
     try:
         made = beside(tessellated, shape.copy(), chord)
     except FAULTS:
@@ -98,6 +99,6 @@ def _places(body: Body, on: Any) -> Surface:
         return Surface(*(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)))
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     twice: Array = np.linalg.norm(across, axis=1)
-    points, of = spread(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES)))
+    points, of = spread(corners, grain(corners, float(2.0 * np.sqrt(0.5 * twice.sum() / PLACES))))
     areas = (0.5 * twice / np.maximum(np.bincount(of, minlength=len(corners)), 1))[of]
     return Surface(points, (across / np.maximum(twice, 1e-300)[:, None])[of], areas)

@@ -2,6 +2,7 @@
 """What of a part one bead deposits, against volumes that the geometry kernel computes of solids cut and put together."""
 
 import math
+import tracemalloc
 
 import FreeCAD  # noqa: F401  before Part, which crashes without
 import numpy as np
@@ -105,6 +106,22 @@ def test_a_bowl_has_its_floor_left_out_and_a_bead_thicker_than_its_wall():
     assert found.beside == pytest.approx(found.beads * (1 - 4.7 / WIDTH), rel=0.1)
     texts = [issue.message for issue in deposit_balance.issues(found)]
     assert all(name in texts[0] for name in floor) and "4.7 mm thick" in texts[1]
+
+
+@pytest.mark.parametrize(
+    "radius, height, width", [(6000.0, 2.0, 8.0), (5000.0, 10000.0, 8.0), (0.05, 0.1, 0.02), (1.0, 3000.0, 8.0)]
+)
+def test_parts_of_any_size_take_little_memory(radius, height, width):
+    shape = Part.makeCylinder(radius, height)
+    found = find_wall(shape)
+    tracemalloc.start()
+    try:
+        depths = of_revolved(shape, found, "Part")
+        assert tracemalloc.get_traced_memory()[1] < 100e6
+    finally:
+        tracemalloc.stop()
+    left = deposit_balance.of_wall(depths, width).left_out / shape.Volume
+    assert left == pytest.approx(max(1.0 - width / radius, 0.0) ** 2, abs=0.02)
 
 
 def test_what_lies_in_the_substrate_does_not_count():

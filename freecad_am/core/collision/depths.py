@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
+MOST = 40_000  # parts that triangles are divided into, about
 PLACES = 800  # within the part
 TRIES = 20_000  # at most, to find so many in the box about a thin part
 AT_ONCE = 2000
@@ -44,7 +45,7 @@ def measured(
     probes = _probes(surface)
     way, half = _inward(probes, inside, slack)
     inward = way * surface.normals
-    middles, of = spread(part.corners(), 2.0 * spacing if len(faces) < 200 else np.inf)
+    middles, of = spread(part.corners(), grain(part.corners(), 2.0 * spacing))
     deep = _depths(middles, surface, inward, half, spacing)
     weight = _areas(part)[of] / np.bincount(of, minlength=len(part.triangles))[of]
     if ground is not None:
@@ -58,6 +59,18 @@ def measured(
     free = np.ones(len(probes.points), dtype=bool) if ground is None else ~ground.holds(probes.points)
     thickness = _thickness(probes.points[free], way * probes.normals[free], half, inside, slack)
     return depths, np.sort(thickness), by_face, len(kept) / max(len(points), 1)
+
+
+def grain(corners: Array, least: float) -> float:
+    """The longest side, mm, no less than `least`, that divides triangles (m, 3, 3) into no more than some MOST parts beside
+    themselves: a face may be a million times as large as the wall that is looked at."""
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
+    across = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    heights = across / np.maximum(sides, 1e-300)
+    longest = max(least, 1e-9)
+    while ((1.0 + 2.0 * sides / longest) * (1.0 + 2.0 * heights / longest) - 1.0).sum() > MOST:
+        longest *= 1.5
+    return longest
 
 
 def _probes(surface: Surface) -> Surface:
