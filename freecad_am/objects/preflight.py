@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from ..core.issues import Issue, has_errors
@@ -16,7 +17,8 @@ from ..core.parameters.program import ProgramParameters
 from ..core.preflight.checks import Evidence, promises
 from ..core.preflight.promise import Promise
 from ..core.preflight.written import ReadBack
-from ..core.toolpath import Array, Toolpath
+from ..core.process import deposit_balance
+from ..core.toolpath import Array
 from ..posts import catalogue
 from ..verify import Verification
 from . import user_machines
@@ -58,31 +60,40 @@ def prepared(
     build = feature.Proxy.parameters(feature, BuildDirectionParameters)
     stages = [stage for stage in (feature, toolpath, path) if stage is not None]
     issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
-    planned = toolpath.Proxy.reader(toolpath)
-    if path is None:
-        return lambda: promises(Evidence(planned(), build, issues, distances=distances))
-    joints, looks = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
+    planned, shape = toolpath.Proxy.reader(toolpath), feature.Proxy.reader(feature)
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
+
+    def known() -> Evidence:
+        return Evidence(
+            planned(), build, process, issues, distances=distances,
+            balance=deposit_balance.of_feature(shape(), process.bead_width),
+        )
+
+    if path is None:
+        return lambda: promises(known())
+    joints, looks = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
     folders = tuple(user_machines.folders())
-    return lambda: of_motion(planned(), joints(), looks, folders, build, process, settings, issues, read, distances)
+    return lambda: of_motion(known(), joints(), looks, folders, settings, read)
 
 
 def of_motion(
-    toolpath: Toolpath, planned: Planned, looks: CellParameters, folders: tuple[str, ...], build: BuildDirectionParameters,
-    process: ProcessParameters, settings: ProgramParameters | None, issues: tuple[Issue, ...], read: Verification | None,
-    distances: tuple[Array, ...] | None = None,
+    known: Evidence, planned: Planned, looks: CellParameters, folders: tuple[str, ...], settings: ProgramParameters | None,
+    read: Verification | None,
 ) -> tuple[Promise, ...]:
-    """The preflight of a joint path, or of the program that is written of it with `settings`. read: None where that was not
-    read back."""
+    """The preflight of a joint path, or of the program that is written of it with `settings`; known: of its toolpath. read:
+    None where that was not read back."""
+    toolpath = known.toolpath
     cell = cells.resolve(looks, toolpath.frame, toolpath.family, folders)
     settings = None if settings is None or settings.post == "none" else settings
     shapes = meshes_of(cell.machine)
-    run = as_run(planned, cell, toolpath.chord_error, settings, issues)
-    return promises(Evidence(
-        planned.joint_path.toolpath(toolpath), build, run.issues, cell, run.motion, run.condition, run.threshold,
-        arm_of(run.motion, cell, toolpath, process, shapes, ARM_PLACES), bool(shapes) and None not in shapes,
-        None if read is None else _read_back(read, toolpath.chord_error),
-        () if settings is None else catalogue.load(settings.post).ON_CONTROLLER, distances,
+    run = as_run(planned, cell, toolpath.chord_error, settings, known.issues)
+    return promises(replace(
+        known, toolpath=planned.joint_path.toolpath(toolpath), issues=run.issues, cell=cell, motion=run.motion,
+        condition=run.condition, threshold=run.threshold,
+        arm=arm_of(run.motion, cell, toolpath, known.process, shapes, ARM_PLACES),
+        true_shapes=bool(shapes) and None not in shapes,
+        read=None if read is None else _read_back(read, toolpath.chord_error),
+        on_controller=() if settings is None else catalogue.load(settings.post).ON_CONTROLLER,
     ))
 
 

@@ -12,6 +12,8 @@ from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.process import ProcessParameters
+from ..process.deposit_balance import Balance
 from ..simulation.arm import ArmTouches
 from ..toolpath import Toolpath
 from . import clearance, deposit, joints, written
@@ -32,10 +34,12 @@ class Evidence:
     """What a preflight looks at. toolpath: as it is run. issues: of all stages. motion: as the program runs it, None without
     a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by
     shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
-    the controller can show. distances: those between its layers, of `spacing`, where they are known."""
+    the controller can show. distances: those between its layers, of `spacing`, where they are known. balance: of part and
+    beads, None where it is not known."""
 
     toolpath: Toolpath
     build: BuildDirectionParameters
+    process: ProcessParameters
     issues: tuple[Issue, ...]
     cell: Cell | None = None
     motion: Motion | None = None
@@ -46,13 +50,19 @@ class Evidence:
     read: ReadBack | None = None
     on_controller: tuple[str, ...] = ()
     distances: tuple[Array, ...] | None = None
+    balance: Balance | None = None
 
 
 def promises(evidence: Evidence) -> tuple[Promise, ...]:
     """All promises, those about the deposit first."""
     issues = evidence.issues
     return (
+        deposit.lies_on_part(evidence.toolpath, issues),
+        deposit.whole(evidence.balance, issues),
+        deposit.nothing_beside(evidence.balance, issues),
+        deposit.carried(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
+        deposit.fed(evidence.toolpath, evidence.process),
         clearance.nozzle(issues, evidence.build),
         *_of_motion(evidence),
         *written.promises(evidence.read, evidence.on_controller),

@@ -8,9 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..issues import WARNING, Issue
-from ..process import spacing
+from ..parameters.process import ProcessParameters
+from ..process import deposit_balance, on_part, spacing, support, wire
+from ..process.deposit_balance import MM3, Balance
 from ..toolpath import Array, Toolpath
-from .promise import Promise, issue_place, of_codes
+from .promise import PERCENT, Promise, issue_place, of_codes
 
 
 def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] | None = None) -> Promise:
@@ -26,3 +28,56 @@ def layers(toolpath: Toolpath, issues: Sequence[Issue], known: Sequence[Array] |
     wide = of_codes(issues, ("SPACING",), WARNING)
     how = "distance in space of each point to the layer below, against what the strategy allows"
     return Promise(what, how, not wide, worst, "mm", place=issue_place(wide))
+
+
+def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
+    """Of the distance between the beads and the faces or solids that they were made of."""
+    what = "What is deposited lies on the part"
+    if toolpath.on_part is None:
+        return Promise(what, "not checked: the part has no faces to measure from", None)
+    places, worst, allowed = toolpath.on_part
+    found = of_codes(issues, (on_part.CODE,))
+    how = f"distance of {places:.0f} places of the beads to the shape itself, which slicing does not use"
+    return Promise(what, how, worst <= allowed, worst, "mm", allowed, issue_place(found))
+
+
+def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
+    """Of what of the part is left out."""
+    what = "All of the part is deposited"
+    if balance is None:
+        return Promise(what, "not checked: the part encloses no volume", None)
+    found = of_codes(issues, (deposit_balance.LEFT_OUT,), WARNING)
+    how = "volume of the part deeper than half of a bead's width below the wall, or of its solids aside"
+    worst = None if balance.left_out is None else balance.left_out / MM3
+    return Promise(what, how, not found, worst, "cm3")
+
+
+def nothing_beside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
+    """Of what the beads deposit that is not the part."""
+    what = "Nothing is deposited beside the part"
+    if balance is None or balance.beside is None:
+        return Promise(what, "not checked: the part encloses no volume, or is filled with beads", None)
+    found = of_codes(issues, (deposit_balance.BESIDE,), WARNING)
+    how = "volume of the beads, as wide as they count, that is wider than the part is thick"
+    return Promise(what, how, not found, balance.beside / MM3, "cm3")
+
+
+def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
+    """Of beads over nothing."""
+    what = "Every bead is carried by what lies below it"
+    if toolpath.unsupported is None:
+        return Promise(what, "not checked: it is not known how wide the beads count", None)
+    found = of_codes(issues, (support.CODE,), WARNING)
+    how = "each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there"
+    return Promise(what, how, not found, toolpath.unsupported, "mm", 0.0, issue_place(found))
+
+
+def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
+    """Of the wire against the section of the beads."""
+    what = "The wire feeds what the beads take"
+    if toolpath.wire_feed is None or toolpath.bead_width is None or process.bead_model != "none":
+        return Promise(what, "not checked: a bead model, or nothing, tells how wide the beads are", None)
+    taken = toolpath.bead_width * toolpath.layer_height * process.travel_speed
+    off = abs(toolpath.wire_feed * process.wire.section / taken - 1.0)
+    how = "section of the wire times its feed, against width x layer height x travel speed"
+    return Promise(what, how, off <= wire.TOLERANCE, PERCENT * off, "%", PERCENT * wire.TOLERANCE)

@@ -16,6 +16,8 @@ from ..motion import Motion
 
 Array = NDArray[np.float64]
 
+PERCENT = 100.0
+
 
 class Place(NamedTuple):
     """Where a worst value is, counted from 0; None for no such place."""
