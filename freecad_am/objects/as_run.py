@@ -17,7 +17,7 @@ from ..core.parameters.program import ProgramParameters
 from ..core.planning import moving_tool
 from ..core.planning import program as programs
 from ..core.simulation import link_rods
-from ..core.simulation.arm import MOST, ArmTouches, arm_touches, laid
+from ..core.simulation.arm import ArmTouches, arm_touches, laid
 from ..core.simulation.link_rods import Mesh
 from ..core.simulation.margins import on_deposit
 from ..core.toolpath import Toolpath
@@ -58,7 +58,7 @@ def as_run(
 
 def arm_of(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters, shapes: tuple[Mesh | None, ...],
-    most: int = MOST,
+    most: int | None = None,
 ) -> ArmTouches | None:
     """What the links of a robot touch, looked at in so many places at most; None for machines with rotary axes, of whose
     links no file tells enough."""

@@ -40,7 +40,7 @@ def laid(motion: Motion, width: float, height: float) -> Deposit | None:
     return deposit(points, motion.build[motion.deposit], widest, height)
 
 
-def arm_touches(motion: Motion, arm: ArmContact, most: int = MOST) -> ArmTouches:
+def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> ArmTouches:
     """What the arm touches on the way, at so many places at most. Rows without joint values touch nothing."""
     n = len(motion)
     link, what = np.full(n, NONE, dtype=np.int64), np.full(n, NONE, dtype=np.int64)
@@ -57,7 +57,7 @@ def arm_touches(motion: Motion, arm: ArmContact, most: int = MOST) -> ArmTouches
     return ArmTouches(link, what, arm.names, step)
 
 
-def places(joints: Array, most: int = MOST) -> tuple[Array, Index, float]:
+def places(joints: Array, most: int | None = None) -> tuple[Array, Index, float]:
     """Joints (k, axes) along a motion (n, axes), the rows (k,) whose segments they are on, rising, and the step, rad.
 
     They are at even steps of the joint that moves most, and at both ends of every run of rows with joint values, be it of
@@ -69,7 +69,7 @@ def places(joints: Array, most: int = MOST) -> tuple[Array, Index, float]:
     moved = np.where(goes_on, np.abs(np.diff(joints, axis=0, prepend=joints[:1])).max(axis=1, initial=0.0), 0.0)
     way = np.cumsum(moved)
     whole = float(way[-1]) if n else 0.0
-    step = max(STEP, whole / most)
+    step = max(STEP, whole / (MOST if most is None else most))
     at = np.arange(step, whole, step)
     inner = np.searchsorted(way, at, side="left")  # rows that move, so that both of their ends are known
     share = (at - way[inner - 1]) / moved[inner]
