@@ -1162,6 +1162,11 @@
         <translation>Tous les fichiers</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>All of the part is deposited</source>
+        <translation>Toute la pièce est déposée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
         <source>All points serve</source>
         <translation>Tous les points conviennent</translation>
@@ -1880,6 +1885,11 @@
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>Every axis stays within its limits</source>
         <translation>Chaque axe reste dans ses limites</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>Every bead is carried by what lies below it</source>
+        <translation>Chaque cordon est porté par ce qui est dessous</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -2985,6 +2995,11 @@
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Normal of the plane of symmetry-plane, as x y z in the part&apos;s coordinates; auto: the plane of a bend.</source>
         <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>Nothing is deposited beside the part</source>
+        <translation>Rien n’est déposé à côté de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
@@ -4377,6 +4392,11 @@
         <translation>{} est pris en entier ; Prendre la sélection prend des faces seules.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>The wire feeds what the beads take</source>
+        <translation>Le fil amène ce que les cordons demandent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens.py"/>
         <source>The words that switch the deposit and the inputs are taken up in the PLC</source>
         <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
@@ -4695,6 +4715,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>What is changed of one bead is changed of all</source>
         <translation>Ce qui est changé d&apos;un cordon l&apos;est de tous</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>What is deposited lies on the part</source>
+        <translation>Ce qui est déposé se trouve sur la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -5807,6 +5832,11 @@
         <translation>distance dans l’espace de chaque point à la couche du dessous, comparée à ce que permet la stratégie</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>distance of {0} places of the beads to the shape itself, which slicing does not use</source>
+        <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>draw it apart there, or let it overlap there and fuse it (Part, Boolean)</source>
         <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
@@ -5820,6 +5850,11 @@
         <location filename="../../freecad_am/gui/program_panel.py"/>
         <source>dry run, nothing is deposited</source>
         <translation>marche à vide, rien n&apos;est déposé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there</source>
+        <translation>chaque court morceau de cordon, contre sa direction de dépôt, sur le dépôt précédent de sa largeur et ce qui est là</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/legend.py"/>
@@ -7127,9 +7162,19 @@
         <translation>non permis, ou contact</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: a bead model, or nothing, tells how wide the beads are</source>
+        <translation>non vérifié : un modèle de cordon, ou rien, dit la largeur des cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: build_direction.clearance is none</source>
         <translation>non vérifié : build_direction.clearance vaut none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: it is not known how wide the beads count</source>
+        <translation>non vérifié : la largeur des cordons qui compte n’est pas connue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
@@ -7140,6 +7185,21 @@
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: the machine file tells no shapes of its links</source>
         <translation>non vérifié : le fichier machine ne donne pas la forme de ses corps</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: the part encloses no volume</source>
+        <translation>non vérifié : la pièce n’enferme pas de volume</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: the part encloses no volume, or is filled with beads</source>
+        <translation>non vérifié : la pièce n’enferme pas de volume, ou est remplie de cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>not checked: the part has no faces to measure from</source>
+        <translation>non vérifié : la pièce n’a pas de faces d’où mesurer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
@@ -7520,6 +7580,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>second</source>
         <translation>second</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>section of the wire times its feed, against width x layer height x travel speed</source>
+        <translation>section du fil fois son dévidage, comparée à largeur x hauteur de couche x vitesse d’avance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
@@ -8740,6 +8805,16 @@
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>violet to orange</source>
         <translation>violet à orange</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>volume of the beads, as wide as they count, that is wider than the part is thick</source>
+        <translation>volume des cordons, de la largeur qui compte, qui dépasse l’épaisseur de la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>volume of the part deeper than half of a bead&apos;s width below the wall, or of its solids aside</source>
+        <translation>volume de la pièce plus profond qu’une demi-largeur de cordon sous la paroi, ou de ses solides à côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
