@@ -36,7 +36,7 @@ OURS = {
     },
     "core/preflight": {
         "core/issues", "core/parameters", "core/geometry", "core/toolpath", "core/process", "core/kinematics", "core/motion",
-        "core/simulation",
+        "core/simulation", "core/strategies",
     },
     "posts": {"core/issues", "core/program"},
     "kdl": {"core/issues", "core/geometry", "core/kinematics"},

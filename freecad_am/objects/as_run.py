@@ -65,7 +65,7 @@ def arm_of(
     if cell.machine.is_table:
         return None
     rods = link_rods.of_robot(cell.machine.chain, shapes)
-    deposited = laid(motion, process.bead_width, toolpath.layer_height)
+    deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
     return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited), most)
 
 

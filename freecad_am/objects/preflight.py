@@ -11,13 +11,14 @@ from typing import Any
 from ..core.issues import Issue, has_errors
 from ..core.kinematics import cell as cells
 from ..core.parameters.build_direction import BuildDirectionParameters
-from ..core.parameters.cell import CellParameters
+from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
 from ..core.preflight.checks import Evidence, promises
 from ..core.preflight.promise import Promise
 from ..core.preflight.written import ReadBack
 from ..core.process import deposit_balance
+from ..core.strategies import clearance_room
 from ..core.toolpath import Array
 from ..posts import catalogue
 from ..verify import Verification
@@ -27,7 +28,8 @@ from .findings import issues_of
 from .joint_path import Planned
 from .link_meshes import meshes_of
 
-ARM_PLACES = 6_000  # at which the arm is looked at: a tenth of the time that planning takes, at most
+# at which the arm and the nozzle are looked at: together a tenth of the time that planning takes, at most
+ARM_PLACES, NOZZLE_PLACES = 6_000, 4_000
 
 Work = Callable[[], tuple[Promise, ...]]
 
@@ -63,17 +65,22 @@ def prepared(
     planned, shape = toolpath.Proxy.reader(toolpath), feature.Proxy.reader(feature)
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
 
+    looks = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
+    nozzle = NozzleParameters() if looks is None else looks.nozzle
+
     def known() -> Evidence:
+        made = planned()
         return Evidence(
-            planned(), build, process, issues, distances=distances,
+            made, build, process, issues, distances=distances,
             balance=deposit_balance.of_feature(shape(), process.bead_width),
+            looked=None if build.clearance == "none" else clearance_room.looked_at(made, nozzle, NOZZLE_PLACES),
         )
 
     if path is None:
         return lambda: promises(known())
-    joints, looks = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
+    joints, cell = path.Proxy.reader(path), path.Cell.Proxy.value(path.Cell)
     folders = tuple(user_machines.folders())
-    return lambda: of_motion(known(), joints(), looks, folders, settings, read)
+    return lambda: of_motion(known(), joints(), cell, folders, settings, read)
 
 
 def of_motion(

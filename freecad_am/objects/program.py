@@ -159,6 +159,11 @@ def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
 
 def files_of(obj: Any) -> dict[str, bytes]:
     """The controller's files of a program object. InputError 'NO_PROGRAM' when there are none, saying why."""
+    if obj.Key and obj.Status == "up to date" and obj.Proxy.key(obj) != obj.Key:
+        raise InputError(
+            "NO_PROGRAM", obj.Label, "an earlier version wrote this program, whose rapids were not all checked; recompute "
+            "the job, and read Migrating in the changelog",
+        )
     files: dict[str, bytes] = obj.Proxy.value(obj).files if obj.Key else {}
     if obj.Status != "up to date" or not files:
         raise InputError("NO_PROGRAM", obj.Label, f"no program fits its inputs ({obj.Message or obj.Status})")

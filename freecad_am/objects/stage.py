@@ -27,7 +27,7 @@ from .properties import HIDDEN, OUTPUT, READ_ONLY
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
 from .stored import Stored
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 CLASS_PROPERTY = "StageClass"
 _RESULT = "Result"
 _deferred = 0

@@ -7213,6 +7213,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: there is no toolpath yet</source>
+        <translation>non vérifié : il n’y a pas encore de trajectoire d’outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch nothing, looked at every {0} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne touchent rien, regardés tous les {0} deg</translation>
     </message>
@@ -8113,8 +8118,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>the nozzle as a cone, at every point and halfway between, against what is there by then</source>
-        <translation>la buse comme un cône, à chaque point et à mi-chemin, face à ce qui est là à ce moment</translation>
+        <source>the nozzle as a cone at {0} points, against what is there by then; beads as wide and high as they count, those of parts of revolution too, where tilt-back takes them for lines</source>
+        <translation>la buse comme un cône en {0} points, face à ce qui est là à ce moment ; cordons de la largeur et de la hauteur qui comptent, ceux des pièces de révolution aussi, où le redressement les prend pour des lignes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/readout.py"/>

@@ -219,3 +219,19 @@ def test_class_paths_are_those_of_the_file_format(job):
         "freecad_am.objects.toolpath.Toolpath", "freecad_am.objects.joint_path.JointPath",
         "freecad_am.objects.program.Program",
     ]
+
+
+def test_a_program_of_an_earlier_version_is_not_given_out_until_it_is_recomputed(job, monkeypatch):
+    from freecad_am.objects.program import files_of
+
+    monkeypatch.setattr(stages, "SCHEMA_VERSION", stages.SCHEMA_VERSION - 1)
+    for stage in job.stages:
+        stage.Proxy.renew(stage, force=True)
+    old = files_of(job.program)
+    monkeypatch.undo()
+    assert job.program.Status == "up to date" and api.result(job.program).files == old  # to be looked at
+    with pytest.raises(api.InputError, match="earlier version"):
+        files_of(job.program)
+    for stage in job.stages:
+        stage.Proxy.renew(stage)
+    assert files_of(job.program) == old

@@ -15,6 +15,7 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..process.deposit_balance import Balance
 from ..simulation.arm import ArmTouches
+from ..strategies.clearance_room import Looked
 from ..toolpath import Toolpath
 from . import clearance, deposit, joints, written
 from .promise import Promise
@@ -35,7 +36,7 @@ class Evidence:
     a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by
     shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
     the controller can show. distances: those between its layers, of `spacing`, where they are known. balance: of part and
-    beads, None where it is not known."""
+    beads, None where it is not known. looked: what the nozzle touches while depositing, None where nobody has looked."""
 
     toolpath: Toolpath
     build: BuildDirectionParameters
@@ -51,6 +52,7 @@ class Evidence:
     on_controller: tuple[str, ...] = ()
     distances: tuple[Array, ...] | None = None
     balance: Balance | None = None
+    looked: Looked | None = None
 
 
 def promises(evidence: Evidence) -> tuple[Promise, ...]:
@@ -63,7 +65,7 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
         deposit.carried(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
         deposit.fed(evidence.toolpath, evidence.process),
-        clearance.nozzle(issues, evidence.build),
+        clearance.nozzle(issues, evidence.build, evidence.looked),
         *_of_motion(evidence),
         *written.promises(evidence.read, evidence.on_controller),
     )

@@ -14,20 +14,27 @@ from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.build_direction import BuildDirectionParameters
 from ..simulation.arm import ArmTouches
+from ..strategies.clearance_room import Looked
 from .promise import Place, Promise, issue_place, number, of_codes, row_place
 
 DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")
 RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")
 
 
-def nozzle(issues: Sequence[Issue], build: BuildDirectionParameters) -> Promise:
+def nozzle(issues: Sequence[Issue], build: BuildDirectionParameters, looked: Looked | None) -> Promise:
     """While depositing."""
     what = "The nozzle stays clear of deposit, part and platform while it deposits"
     if build.clearance == "none":
         return Promise(what, "not checked: build_direction.clearance is none", None)
     found = of_codes(issues, DEPOSITING)
-    how = "the nozzle as a cone, at every point and halfway between, against what is there by then"
-    return Promise(what, how, not found, place=issue_place(found))
+    if looked is None:
+        return Promise(what, "not checked: there is no toolpath yet", False if found else None, place=issue_place(found))
+    how = (
+        f"the nozzle as a cone at {looked.count} points, against what is there by then; beads as wide and high as they "
+        "count, those of parts of revolution too, where tilt-back takes them for lines"
+    )
+    place = issue_place(found) if found or looked.place is None else Place(*looked.place)
+    return Promise(what, how, not found and not looked.touched, float(looked.touched), "points", 0.0, place)
 
 
 def rapids(issues: Sequence[Issue]) -> Promise:
