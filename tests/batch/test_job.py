@@ -223,7 +223,7 @@ def test_files_that_cannot_be_read(tmp_path):
         jobs.read_job(str(binary))
     large = tmp_path / "large.yaml"
     large.write_bytes(b"#" * 5_000_000)
-    with pytest.raises(InputError, match="too large"):
+    with pytest.raises(InputError, match="larger than 4 MB"):
         jobs.read_job(str(large))
 
 

@@ -192,6 +192,17 @@ def nozzle_depth(
     return least
 
 
+def _distance(shape: Part.Shape, point: FreeCAD.Vector) -> float:
+    """From the nearest place that is found: OCC's extrema miss it at some points of a torus, where a projection has it."""
+    found = [shape.distToShape(Part.Vertex(point))[0]]
+    if found[0] > 1e-6:
+        for face in shape.Faces:
+            u, v = face.Surface.parameter(point)
+            if face.isPartOfDomain(u, v):
+                found.append((face.Surface.value(u, v) - point).Length)
+    return min(found)
+
+
 @dataclass(frozen=True)
 class Wall:
     """A wall from its STEP file. `depth`: distance (n,) of points (n, 3) from the substrate's skin, positive outside."""
@@ -201,7 +212,7 @@ class Wall:
 
     def off(self, points: np.ndarray) -> float:
         """How far points are at most from the faces."""
-        return max(self.shape.distToShape(Part.Vertex(FreeCAD.Vector(*point)))[0] for point in points)
+        return max(_distance(self.shape, FreeCAD.Vector(*point)) for point in points)
 
     def samples(self, step: float) -> np.ndarray:
         """Points all over the faces, about `step` apart, that are not in the substrate."""
