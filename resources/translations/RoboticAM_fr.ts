@@ -5282,6 +5282,11 @@
         <translation>un axe de translation a deux bouts</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>an earlier version wrote this program, whose rapids were not all checked; recompute the job, and read Migrating in the changelog</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/kernel.py"/>
         <source>an edge of the face crosses itself at {0}; draw it without crossings, or divide it there and deposit its parts one after the other</source>
         <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
