@@ -5284,7 +5284,7 @@
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>an earlier version wrote this program, whose rapids were not all checked; recompute the job, and read Migrating in the changelog</source>
-        <translation type="unfinished"></translation>
+        <translation>une version antérieure a écrit ce programme, dont les rapides n’étaient pas tous vérifiés ; recalculez le travail, et lisez Migrating dans le journal des modifications</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel.py"/>
