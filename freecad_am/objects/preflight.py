@@ -18,7 +18,7 @@ from ..core.preflight.checks import Evidence, promises
 from ..core.preflight.promise import Promise
 from ..core.preflight.written import ReadBack
 from ..core.process import deposit_balance
-from ..core.strategies import clearance_room
+from ..core.strategies import clearance_look
 from ..core.toolpath import Array
 from ..posts import catalogue
 from ..verify import Verification
@@ -73,7 +73,7 @@ def prepared(
         return Evidence(
             made, build, process, issues, distances=distances,
             balance=deposit_balance.of_feature(shape(), process.bead_width),
-            looked=None if build.clearance == "none" else clearance_room.looked_at(made, nozzle, NOZZLE_PLACES),
+            looked=None if build.clearance == "none" else clearance_look.looked_at(made, nozzle, NOZZLE_PLACES),
         )
 
     if path is None:

@@ -22,6 +22,7 @@ from ..core.process import bead_table, deposit_balance, on_part
 from ..core.process.bead_model import BeadModel
 from ..core.process.wire import fed
 from ..core.strategies import (
+    clearance_look,
     developable,
     platform,
     revolution,
@@ -203,7 +204,7 @@ def _kept_clear(
     if build.clearance == "none":
         return toolpath
     if toolpath.family == "revolution":
-        found = wall_clearance.touched_at(toolpath, wall.surroundings, nozzle)
+        found = clearance_look.touched_at(toolpath, wall.surroundings, nozzle)
         return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
     bodies = list(wall.surroundings)
     if cell is not None and cell.platform_diameter > 0.0:

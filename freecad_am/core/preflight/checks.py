@@ -15,7 +15,7 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..process.deposit_balance import Balance
 from ..simulation.arm import ArmTouches
-from ..strategies.clearance_room import Looked
+from ..strategies.clearance_look import Looked
 from ..toolpath import Toolpath
 from . import clearance, deposit, joints, written
 from .promise import Promise

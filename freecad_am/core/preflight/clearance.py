@@ -14,7 +14,7 @@ from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..parameters.build_direction import BuildDirectionParameters
 from ..simulation.arm import ArmTouches
-from ..strategies.clearance_room import Looked
+from ..strategies.clearance_look import Looked
 from .promise import Place, Promise, issue_place, number, of_codes, row_place
 
 DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")

@@ -70,31 +70,6 @@ def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters
     return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)
 
 
-@dataclass(frozen=True)
-class Looked:
-    """At how many points of a toolpath it was looked, at how many of them the nozzle touches, and the first of these: layer,
-    bead and point, None without any."""
-
-    count: int
-    touched: int
-    place: tuple[int, int, int] | None
-
-
-def looked_at(toolpath: Toolpath, nozzle: NozzleParameters, most: int) -> Looked:
-    """Whether the nozzle touches what stands around or what is deposited by then, beads as wide and high as they are, at so
-    many points at most, evenly spread."""
-    room = room_of(toolpath, toolpath.surroundings, nozzle, np.pi)
-    beads = list(toolpath)
-    starts = np.cumsum([0, *(len(bead) for _, _, bead in beads)])
-    rows = np.unique(np.round(np.linspace(0, starts[-1] - 1, min(most, starts[-1]))).astype(np.intp))
-    tool = np.concatenate([bead.tool for _, _, bead in beads])
-    hit = rows[~room.clear(rows, tool[rows])]
-    if not len(hit):
-        return Looked(len(rows), 0, None)
-    bead = int(np.searchsorted(starts, hit[0], side="right")) - 1
-    return Looked(len(rows), len(hit), (*beads[bead][:2], int(hit[0] - starts[bead])))
-
-
 def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
     """Points and axes (n, 3) halfway from each point to the next of its bead; at the last of a bead its own."""
     points, axes, first = [], [], 0

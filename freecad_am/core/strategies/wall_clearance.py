@@ -21,18 +21,18 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.bodies import of_bodies
 from ..geometry import frames
 from ..geometry.surface import dot
 from ..geometry.surroundings import Body
 from ..geometry.ties import first_least
-from ..issues import ERROR, InputError, Issue
+from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters
 from ..slicing.wall_direction import limited, turn_rates
 from ..toolpath import Toolpath
-from .clearance_notes import place, tilt_issues, turn_issues
-from .clearance_room import CAP, Room, halfway, halved, nozzle_of, room_of, touched_between
+from . import clearance_knots
+from .clearance_notes import tilt_issues, turn_issues
+from .clearance_room import CAP, Room, halved, room_of, touched_between
 from .least_turn import least
 
 Array = NDArray[np.float64]
@@ -114,14 +114,25 @@ def _cleared(
 ) -> tuple[Array, Array, Index]:
     """Axes (n, 3) of all points, those of the beads with the rows tilted clear; tilts (n,) rad; the points that touch even
     so."""
-    bench = _Bench(room, rows, closed, asked, plane, free, spread)
+    knots = [clearance_knots.of_bead(row) for row in rows]
+    for row, some in zip(rows, knots, strict=True):
+        if len(some) < len(row):
+            free = free.copy()
+            free[some] = clearance_knots.free_about(row, some, free)
+    bench = _Bench(room, knots, closed, asked, plane, free, spread)
     offset, stuck = bench.coarse()
     for level in range(1, LEVELS + 1):
         offset = bench.finer(offset, RING / 2.0**level, level)
     tool, tilt = asked.copy(), np.zeros(len(asked))
-    flat = np.concatenate(rows)
+    flat = np.concatenate(knots)
     tool[flat], tilt[flat] = bench.axes(flat, offset), np.linalg.norm(offset, axis=1)
-    return tool, tilt, flat[stuck]
+    touching = [flat[stuck]]
+    for row, some in zip(rows, knots, strict=True):
+        if len(some) < len(row):
+            tool[row], more = clearance_knots.spread_out(room, row, some, asked, tool[some])
+            tilt[row] = np.arctan2(np.linalg.norm(np.cross(asked[row], tool[row]), axis=1), dot(asked[row], tool[row]))
+            touching.append(more)
+    return tool, tilt, np.concatenate(touching)
 
 
 def _slowed(
@@ -165,25 +176,6 @@ def _slowed(
         left = fastest(row, tool)
         worst = max(worst, left if left > most else 0.0)
     return worst
-
-
-def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
-    """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
-    beads = [bead for _, _, bead in toolpath]
-    points, tool = np.concatenate([bead.points for bead in beads]), np.concatenate([bead.tool for bead in beads])
-    around = nozzle_of(nozzle).bodies
-    near = of_bodies(bodies, points, around.reach)
-    hit = near.touched(around, points, tool) | near.touched(around, *halfway(beads, tool))
-    if not hit.any():
-        return []
-    begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
-    places = [(i, j) for i, j, _ in toolpath]
-    at, point = place(places, begin, int(np.argmax(hit)))
-    names = " or ".join(body.name for body in bodies)
-    return [Issue(
-        ERROR, "CLEARANCE", f"the nozzle touches {names} at {int(hit.sum())} of {len(points)} points; on parts of "
-        "revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle", *at, point,
-    )]
 
 
 class _Bench:

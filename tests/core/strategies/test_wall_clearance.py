@@ -16,8 +16,9 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import clearance_room, surface, wall_clearance
-from freecad_am.core.strategies.wall_clearance import kept_clear, touched_at
+from freecad_am.core.strategies import clearance_knots, clearance_room, surface, wall_clearance
+from freecad_am.core.strategies.clearance_look import touched_at
+from freecad_am.core.strategies.wall_clearance import kept_clear
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0
@@ -328,6 +329,23 @@ def test_a_bead_beside_a_finished_wall_keeps_clear_of_its_flank():
     found = kept_clear(asked, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and deepest_in_wall(found, 40, 8.0) < 0.2
     assert kept_clear(flank(40, 30.0, 8.0), [], NOZZLE, LOCAL).issues == ()
+
+
+def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch):
+    """Points lie 0.1 mm apart; tilts are searched 2 mm apart, so that a look at all of them is one at what lies between."""
+    asked = flank(40, 16.0, 8.0)
+    many = bead([[16.0 + 3.0 * np.sin(0.1 * y), y, 0] for y in np.linspace(-40, 40, 801)])
+    asked = dataclasses.replace(asked, layers=(*asked.layers[:-1], Layer((many,))))
+    monkeypatch.setattr(clearance_knots, "MOST", 41)
+    searched = []
+    cones = wall_clearance._Bench.coarse
+    monkeypatch.setattr(wall_clearance._Bench, "coarse", lambda self: searched.append(len(self.flat)) or cones(self))
+    found = kept_clear(asked, [], NOZZLE, LOCAL)
+    assert codes(found) == ["TILT_BACK"] and set(searched) == {41}
+    assert deepest_in_wall(asked, 40, 8.0) > 2.0 and deepest_in_wall(found, 40, 8.0) < 0.3
+    tool = found.layers[-1].beads[0].tool
+    turns = np.degrees(np.arccos(np.clip((tool[1:] * tool[:-1]).sum(axis=1), -1.0, 1.0)))
+    assert turns.max() < 1.0  # and not a step between candidates from one point to the next
 
 
 def test_beads_of_one_layer_that_overlap_hinder_no_one():
