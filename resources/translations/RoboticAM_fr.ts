@@ -8132,7 +8132,7 @@
         <translation>la buse touche le plateau ou la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/wall_clearance.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance_look.py"/>
         <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle</source>
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>
