@@ -25,6 +25,7 @@ ASKED = 200  # places that triangles are not sure of and the kernel is asked abo
 FAILURES = 3  # of the kernel; it is not asked on then
 ALWAYS = 5  # and as many in any case
 INSIDE = 1e-6  # mm
+PIECE = 1000  # places done together; bounds the memory
 
 
 def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -> Array:
@@ -65,8 +66,9 @@ def _by_triangles(shape: Any, points: Array) -> Array:
 
 
 def _signed(vertices: Array, triangles: Any, points: Array) -> Array:
-    found: Array = SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max())).signed(points)[0]
-    return found
+    mesh = SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max()))
+    pieces = np.array_split(points, max(1, len(points) // PIECE))
+    return np.concatenate([mesh.signed(some)[0] for some in pieces])
 
 
 def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool) -> Array:
