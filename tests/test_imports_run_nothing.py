@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-# imports each module named, then tells what happened meanwhile; what a module needs of FreeCAD's window may be missing
+# imports each module named, then tells what happened meanwhile; what a module needs of FreeCAD's window, or of what is
+# optional, may be missing
 CHILD = """
 import importlib, os, sys, threading
 sys.path.insert(0, sys.argv[1])
@@ -33,7 +34,7 @@ for name in sys.argv[2:]:
     try:
         importlib.import_module(name)
     except ImportError as error:
-        if not any(word in str(error) for word in ("FreeCADGui", "PySide", "pivy", "matplotlib", "Qt", "shiboken")):
+        if not any(word in str(error) for word in ("FreeCADGui", "PySide", "pivy", "matplotlib", "Qt", "shiboken", "fcl")):
             raise
         missing.append(name)
     watched.clear()

@@ -66,8 +66,10 @@ def _size(path: str | os.PathLike[str]) -> float:
 
 
 def _forked(work: Callable[[], None], seconds: float, memory: float) -> tuple[int, float]:
-    """How a copy of this process ended that does the work within limits, as Popen tells it, and the memory used, MB."""
+    """How a copy of this process ended that does the work within limits, as Popen tells it, and the memory, MB, that it used
+    beside what this process has."""
     ours, theirs = os.pipe()
+    before = _pages(1)
     sys.stdout.flush()
     sys.stderr.flush()
     pid = os.fork()
@@ -86,7 +88,7 @@ def _forked(work: Callable[[], None], seconds: float, memory: float) -> tuple[in
                 os.kill(pid, signal.SIGKILL)
         _, status, usage = os.wait4(pid, 0)
     code = os.waitstatus_to_exitcode(status)
-    return (code if ended else -signal.SIGXCPU), usage.ru_maxrss / 1e3
+    return (code if ended else -signal.SIGXCPU), max(0.0, (1024.0 * usage.ru_maxrss - before) / MB)
 
 
 def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
@@ -96,8 +98,7 @@ def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
             signal.signal(number, signal.SIG_DFL)
         _end_with_parent()
-        with open("/proc/self/statm", encoding="ascii") as stream:
-            now = int(stream.read().split()[0]) * resource.getpagesize()
+        now = _pages(0)
         _limit(resource.RLIMIT_CORE, 0)
         _limit(resource.RLIMIT_CPU, round(seconds))
         _limit(resource.RLIMIT_AS, now + round(memory * MB))
@@ -112,6 +113,12 @@ def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
 
 
 NO_MEMORY = 77  # exit status of a copy that has come to its limit
+
+
+def _pages(column: int) -> int:
+    """Bytes of this process, all of them (0) or those in memory (1)."""
+    with open("/proc/self/statm", encoding="ascii") as stream:
+        return int(stream.read().split()[column]) * resource.getpagesize()
 
 
 def _limit(kind: int, value: int) -> None:
