@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import html
 import re
 from collections.abc import Callable
@@ -81,7 +82,8 @@ def make(
     The section, of a job file, is for its help."""
     field = _make(row, value, suggestions, expression)
     for widget in (field.widget, *field.widget.findChildren(QtGui.QWidget)):
-        widget.setWhatsThis(whats_this(row, section))
+        with contextlib.suppress(RuntimeError):  # a dead one, found at the same place in memory (docs/versions.md)
+            widget.setWhatsThis(whats_this(row, section))
     return field
 
 

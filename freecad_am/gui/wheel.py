@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 from PySide import QtCore, QtGui
@@ -26,7 +27,12 @@ def scrolls(form: Any) -> None:
     """Let the wheel scroll over all fields of a panel; by default it would give them the focus, and turn their values."""
     for kind in (QtGui.QAbstractSpinBox, QtGui.QComboBox, QtGui.QAbstractSlider):
         for field in form.findChildren(kind):
-            if field.focusPolicy() == QtCore.Qt.WheelFocus:
-                field.setFocusPolicy(QtCore.Qt.StrongFocus)
-            if not isinstance(field, QtGui.QScrollBar):
-                field.installEventFilter(_guard)
+            with contextlib.suppress(RuntimeError):  # a dead one, found at the same place in memory (docs/versions.md)
+                _scrolls(field)
+
+
+def _scrolls(field: Any) -> None:
+    if field.focusPolicy() == QtCore.Qt.WheelFocus:
+        field.setFocusPolicy(QtCore.Qt.StrongFocus)
+    if not isinstance(field, QtGui.QScrollBar):
+        field.installEventFilter(_guard)
