@@ -113,6 +113,9 @@ def _carry_out(work: Callable[[], int], channel: int, passed: list[int]) -> None
 
 
 def _interrupted(*_: Any) -> None:
+    """Once: the keys of a terminal reach the copy by itself and through the process that waits for it."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
     raise KeyboardInterrupt
 
 
