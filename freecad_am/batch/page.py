@@ -291,13 +291,18 @@ def _issues(issues: list[dict[str, Any]]) -> str:
         return ""
     rows = []
     for issue in sorted(issues, key=lambda entry: ("error", "warning", "note").index(entry["level"]))[:_MOST_ISSUES]:
-        place = " ".join(f"{word} {issue[word]}" for word in ("layer", "bead", "point") if issue[word] is not None)
+        place = _where(issue)
         rows.append(
             f'<tr><td class="{issue["level"]}">{issue["level"]}</td><td class="text">{escape(issue["code"])}</td>'
             f'<td class="place">{place}</td><td class="text">{escape(issue["message"])}</td></tr>'
         )
     more = f"<p>{len(issues) - len(rows)} more stand in report.json.</p>" if len(issues) > len(rows) else ""
     return f'<h2>Findings</h2><div class="table findings"><table>{"".join(rows)}</table></div>{more}<h2>Path</h2>'
+
+
+def _where(place: dict[str, Any]) -> str:
+    """Layer, bead and point, as far as they are told."""
+    return " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place[word] is not None)
 
 
 def _preflight(promises: list[dict[str, Any]]) -> str:
@@ -307,8 +312,7 @@ def _preflight(promises: list[dict[str, Any]]) -> str:
     rows = []
     for one in promises:
         mark, word = _MARKS[one["ok"]]
-        place = one["place"] or {}
-        where = " ".join(f"{word} {place[word]}" for word in ("layer", "bead", "point") if place.get(word) is not None)
+        where = "" if one["place"] is None else _where(one["place"])
         worst = "" if one["worst"] is None else f"{_figure(one['worst'])} {one['unit']}".strip()
         sign = "\u2265" if one["at_least"] else "\u2264"
         bound = "" if one["bound"] is None else f"{sign} {_figure(one['bound'])} {one['unit']}".strip()

@@ -71,7 +71,7 @@ def prepared(
     def known() -> Evidence:
         made = planned()
         return Evidence(
-            made, build, process, issues, distances=distances,
+            made, process, issues, distances=distances,
             balance=deposit_balance.of_feature(shape(), process.bead_width),
             looked=None if build.clearance == "none" else clearance_look.looked_at(made, nozzle, NOZZLE_PLACES),
         )

@@ -7218,11 +7218,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: there is no toolpath yet</source>
-        <translation>non vérifié : il n’y a pas encore de trajectoire d’outil</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics touch nothing, looked at every {0} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne touchent rien, regardés tous les {0} deg</translation>
     </message>

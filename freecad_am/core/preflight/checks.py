@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from ..issues import Issue
 from ..kinematics.cell import Cell
 from ..motion import Motion
-from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..process.deposit_balance import Balance
 from ..simulation.arm import ArmTouches
@@ -36,10 +35,10 @@ class Evidence:
     a cell; condition, threshold: (n,) of its rows. arm: what the links touch, None where nobody has looked; true_shapes: by
     shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
     the controller can show. distances: those between its layers, of `spacing`, where they are known. balance: of part and
-    beads, None where it is not known. looked: what the nozzle touches while depositing, None where nobody has looked."""
+    beads, None where it is not known. looked: what the nozzle touches while depositing, None where the job asks for no
+    clearance."""
 
     toolpath: Toolpath
-    build: BuildDirectionParameters
     process: ProcessParameters
     issues: tuple[Issue, ...]
     cell: Cell | None = None
@@ -65,7 +64,7 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
         deposit.carried(evidence.toolpath, issues),
         deposit.layers(evidence.toolpath, issues, evidence.distances),
         deposit.fed(evidence.toolpath, evidence.process),
-        clearance.nozzle(issues, evidence.build, evidence.looked),
+        clearance.nozzle(issues, evidence.looked),
         *_of_motion(evidence),
         *written.promises(evidence.read, evidence.on_controller),
     )

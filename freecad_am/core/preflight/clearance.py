@@ -12,7 +12,6 @@ from ..issues import Issue
 from ..kinematics.arm_contact import NONE
 from ..kinematics.cell import Cell
 from ..motion import Motion
-from ..parameters.build_direction import BuildDirectionParameters
 from ..simulation.arm import ArmTouches
 from ..strategies.clearance_look import Looked
 from .promise import Place, Promise, issue_place, number, of_codes, row_place
@@ -21,14 +20,12 @@ DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")
 RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")
 
 
-def nozzle(issues: Sequence[Issue], build: BuildDirectionParameters, looked: Looked | None) -> Promise:
-    """While depositing."""
+def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
+    """While depositing; None where the job asks for no clearance."""
     what = "The nozzle stays clear of deposit, part and platform while it deposits"
-    if build.clearance == "none":
+    if looked is None:
         return Promise(what, "not checked: build_direction.clearance is none", None)
     found = of_codes(issues, DEPOSITING)
-    if looked is None:
-        return Promise(what, "not checked: there is no toolpath yet", False if found else None, place=issue_place(found))
     how = (
         f"the nozzle as a cone at {looked.count} points, against what is there by then; beads as wide and high as they "
         "count, those of parts of revolution too, where tilt-back takes them for lines"
