@@ -16,6 +16,7 @@
 Parameters are the keys of the job file with `_` for nested keys (`nozzle_half_angle`, `seam_step`): numbers are mm,
 deg, mm/s and s, texts are quantities such as "360 mm/min", poses are six numbers x y z RX RY RZ. Each function is one
 step of undo. Errors are `core.issues.InputError` and `InfeasibleError`; a function that raises leaves nothing behind.
+What a function alone needs is imported when it is called: most of the time of a small job is imports.
 """
 
 from __future__ import annotations
@@ -38,22 +39,18 @@ from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
-from .interop import export as interop
 from .objects import stage as stages
 from .objects import user_machines
 from .objects.cell import Cell
-from .objects.developable_feature import DevelopableFeature
 from .objects.feature import RevolutionFeature
 from .objects.findings import issues_of
-from .objects.inspection import Inspection, files_of_figures
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
 from .objects.naming import proposed_name
-from .objects.program import Program, files_of
+from .objects.program import Program
 from .objects.progress import told_to
 from .objects.revival import revive
 from .objects.settings import given
-from .objects.surface_feature import SurfaceFeature
 from .objects.toolpath import Toolpath
 from .posts import written
 
@@ -93,6 +90,8 @@ def make_surface_feature(
     `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
     that the nozzle must not touch either.
     """
+    from .objects.surface_feature import SurfaceFeature
+
     links = {"Source": _with_faces(source, faces), "Substrate": substrate, "Fixtures": list(fixtures)}
     if start_edges:
         links["StartEdges"] = (source, list(start_edges))
@@ -110,6 +109,8 @@ def make_developable_feature(
     faces: of the source itself, where hub and solids are one. further: more objects to deposit; fixtures: objects, solids
     or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
     """
+    from .objects.developable_feature import DevelopableFeature
+
     links = {
         "Source": _with_faces(source, faces), "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
     }
@@ -157,6 +158,8 @@ def inspect(
 
     `am.inspect(doc, doc.Feature, "cmm.csv", probe_radius=1.5, tolerance=0.3, heights="15 25 35")`
     """
+    from .objects.inspection import Inspection
+
     return _make(doc, Inspection, "Inspection", label, {"Planned": planned, "File": file}, [inspection], values)
 
 
@@ -206,7 +209,7 @@ def change(obj: Any, **values: Any) -> Any:
         links = {link.key: link.name for link in proxy.links}
         if isinstance(proxy, Program):
             links["name"] = "ProgramName"
-        if isinstance(proxy, Inspection):
+        if proxy.kind == "inspection":
             links["file"] = "File"
         if "source" in values:
             values["source"] = _with_faces(values["source"], values.pop("faces", ()))
@@ -277,7 +280,11 @@ def export(program: Any, folder: str) -> list[str]:
 
     Parts that an earlier, longer program of this name has left there are removed. `am.export(doc.Program, "out")`
     """
-    files = files_of_figures(program) if isinstance(_stage(program), Inspection) else files_of(program)
+    if _stage(program).kind == "inspection":
+        from .objects.inspection import files_of_figures as files_of
+    else:
+        from .objects.program import files_of
+    files = files_of(program)
     try:
         return written.write(folder, files)
     except OSError as error:
@@ -291,6 +298,8 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
 
     `am.export_wires(doc.JointPath, "path.step", rapids=True)`
     """
+    from .interop import export as interop
+
     return interop.write_wires(obj, path, rapids)
 
 
@@ -298,6 +307,8 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
 def make_cam_path(obj: Any) -> Any:
     """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not
     follow changes. `am.make_cam_path(doc.JointPath)`"""
+    from .interop import export as interop
+
     with _one_step(obj.Document, "CAM path"):
         return interop.add_cam_path(obj)
 
@@ -308,6 +319,8 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
 
     `am.make_trajectory(doc.JointPath, tolerance=0.5)`
     """
+    from .interop import export as interop
+
     with _one_step(obj.Document, "Trajectory"):
         return interop.add_trajectory(obj, tolerance, math.radians(turn))
 

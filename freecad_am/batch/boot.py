@@ -45,7 +45,7 @@ def hand_over(missing, words):
 def run(words):
     """The exit status of a command."""
     sys.path[:] = [ROOT] + [entry for entry in sys.path if os.path.abspath(entry or ".") != HERE]
-    if not os.access(HERE, os.W_OK):
+    if sys.pycache_prefix is None and not os.access(HERE, os.W_OK):
         sys.dont_write_bytecode = True
     from freecad_am.batch import host
     from freecad_am.core.one_thread import ENVIRONMENT

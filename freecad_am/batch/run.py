@@ -12,7 +12,7 @@ from typing import Any
 
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
-from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters
+from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
 
 from . import outputs, paths
 from .job import SECTIONS, Job
@@ -246,7 +246,10 @@ def _preflight(stages: Stages, distances: Any) -> Any:
 def _compare_spacings(
     job: Job, stages: Stages, content: dict[str, Any], toolpath: Any, distances: Any, planned: Any, cell: Any, session: Any
 ) -> Any:
-    """Fill in what other spacings of a wall would be; what the page draws of them."""
+    """Fill in what other spacings of a wall would be, nothing for other families; what the page draws of them."""
+    if not isinstance(job.strategy, SurfaceParameters):
+        content["spacing_comparison"] = []
+        return ()
     from freecad_am import api
 
     from . import spacing_comparison

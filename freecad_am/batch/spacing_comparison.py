@@ -15,7 +15,6 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.joints import JointParameters
-from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.planning.motion import assemble
@@ -45,9 +44,7 @@ _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut
 
 
 def compare(wall: Any, job: Job) -> tuple[Compared | Refused, ...]:
-    """The wall of a job cut by every method; walls without one closed parameter by none, parts of revolution not at all."""
-    if not isinstance(job.strategy, SurfaceParameters):
-        return ()
+    """The wall of a job cut by every method; walls without one closed parameter by none."""
     if isinstance(wall, SurfaceWall):
         return wall_comparison.compare(wall, job.strategy)
     return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != job.strategy.spacing)

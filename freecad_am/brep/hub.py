@@ -19,7 +19,7 @@ from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .axis import from_normals
 from .kernel_process import beside
-from .sheet import tessellated
+from .tessellate import tessellated
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin

@@ -16,7 +16,7 @@ from ..core.geometry.solid_mesh import spread
 from ..core.geometry.surroundings import Body
 from .kernel import FAULTS
 from .kernel_process import beside
-from .sheet import tessellated
+from .tessellate import tessellated
 
 CHORD = 1e-3  # of the part's size, between it and its triangles
 FINEST, COARSEST = 0.02, 0.5  # mm of that

@@ -5,13 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
-import MeshPart
 import numpy as np
 import Part
-from scipy.spatial import cKDTree
 
 from ..core.geometry.collapsed import collapsed
 from ..core.geometry.mesh import Index
@@ -24,11 +22,10 @@ from .kernel import refuse_bare
 from .kernel_process import beside
 from .sheet_places import Places
 from .surface_patch import patch_of
+from .tessellate import ANGLE, Tessellation, tessellated
 
 SEWN = 0.01  # mm; edges of faces that lie closer than this are one
-WELDED = 1e-5  # mm; vertices of the tessellations of two faces
 MOST = 1_500_000  # triangles
-ANGLE = 0.35  # rad; of a turn from triangle to triangle in the first, coarse mesh
 FEW = 15000  # triangles that are not worth a second try
 TRIED = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
 ASKED = 200  # triangles of a face that tell its side
@@ -109,46 +106,6 @@ def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
             break
     about, best = min(made, key=lambda one: one[0])
     return best, about
-
-
-class Tessellation(NamedTuple):
-    """Vertices (n, 3), triangles (m, 3), the face (m,) of each; of each face, the parameters (k, 2) of its vertices."""
-
-    vertices: Array
-    triangles: Index
-    owner: Index
-    nodes: list[Array]
-
-
-def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
-    """Triangles within `chord` mm of the shape; vertices that faces share are one."""
-    # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
-    MeshPart.meshFromShape(Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False)
-    points, corners, owner, nodes, count = [], [], [], [], 0
-    for k, face in enumerate(shape.Faces):
-        own, triangles = face.tessellate(chord)
-        points.append(np.array([tuple(point) for point in own]).reshape(-1, 3))
-        corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
-        owner.append(np.full(len(triangles), k, dtype=np.intp))
-        nodes.append(np.array(face.getUVNodes(), dtype=float).reshape(-1, 2))
-        count += len(own)
-    return Tessellation(*welded(np.vstack(points), np.vstack(corners), np.concatenate(owner)), nodes)
-
-
-def welded(points: Array, triangles: Index, owner: Index) -> tuple[Array, Index, Index]:
-    """Vertices closer than WELDED made one; triangles that lose a corner go."""
-    tree = cKDTree(points)
-    first = np.arange(len(points))
-    pairs = tree.query_pairs(WELDED, output_type="ndarray")
-    np.minimum.at(first, pairs.max(axis=1), pairs.min(axis=1))
-    while (first[first] != first).any():
-        first = first[first]
-    kept, index = np.unique(first, return_inverse=True)
-    triangles = np.ravel(index)[triangles]
-    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    triangles, owner = triangles[whole], owner[whole]
-    used, index = np.unique(triangles, return_inverse=True)
-    return points[kept][used], np.ravel(index).reshape(-1, 3).astype(np.intp), owner
 
 
 def _turned(triangles: Index, owner: Index, names: list[str], label: str) -> Index:

@@ -13,11 +13,11 @@ from ..core.geometry.solid_mesh import SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import place
 from ..core.issues import InputError
-from . import tessellate
 from .kernel import refuse_bare
 from .kernel_process import beside
-from .sheet import facing, tessellated, welded
+from .sheet import facing
 from .surface_patch import patch_of
+from .tessellate import body, tessellated, welded
 
 CHORD = 0.1  # mm between a solid and the triangles that stand for it
 SAME = 1e-5  # mm; vertices of a mesh that lie closer are one
@@ -52,7 +52,7 @@ def substrate_of(source: Any, label: str) -> Substrate:
     Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD, SELF_CROSSING.
     """
     if isinstance(source, Body) or hasattr(source, "Topology"):
-        mesh = source if isinstance(source, Body) else tessellate.body(source, label)
+        mesh = source if isinstance(source, Body) else body(source, label)
         return Substrate(label, None, mesh_solid(mesh.vertices, mesh.triangles, label))
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it is no solid; choose a solid part or a closed mesh for the wall to grow on")

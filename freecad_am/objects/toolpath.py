@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The toolpath in a document: layers and beads with build directions, made from a feature."""
+"""The toolpath in a document: layers and beads with build directions, made from a feature.
+
+A family of features is imported when one of it is planned: all of them take longer than to plan a small part.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,6 @@ import numpy as np
 
 from ..brep.off_part import off_faces, off_mesh, off_solids
 from ..core.geometry.on_hub import SolidsOnHub
-from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.surroundings import disc
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
@@ -21,23 +23,11 @@ from ..core.parameters.strategy import DevelopableParameters, RevolutionParamete
 from ..core.process import bead_table, deposit_balance, on_part
 from ..core.process.bead_model import BeadModel
 from ..core.process.wire import fed
-from ..core.strategies import (
-    clearance_look,
-    developable,
-    platform,
-    revolution,
-    support,
-    surface,
-    surface_directions,
-    wall_clearance,
-    wall_fronts,
-)
+from ..core.strategies import clearance_look, platform, support
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
-from .developable_feature import DevelopableFeature
 from .shapes import Taken, taken
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
-from .surface_feature import SurfaceFeature
 
 STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
 CHECKED, LOOKED = 0.92, 0.95  # and what is left into last looks
@@ -112,9 +102,7 @@ def _off_solid(source: Taken, points: Any, limit: float) -> Any:
 
 def family_of(feature: Stage) -> type:
     """The parameters dataclass of a feature's strategy."""
-    if isinstance(feature, DevelopableFeature):
-        return DevelopableParameters
-    return SurfaceParameters if isinstance(feature, SurfaceFeature) else RevolutionParameters
+    return next(section.cls for section in feature.sections if section.prefix == "strategy")
 
 
 def planned(
@@ -150,13 +138,20 @@ def _made(
             "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids on a hub alone; use none"
         )
     if isinstance(strategy, SurfaceParameters):
-        family = wall_fronts if isinstance(wall, PatchWall) else surface
+        from ..core.geometry.patch_wall import PatchWall
+
+        if isinstance(wall, PatchWall):
+            from ..core.strategies import wall_fronts as family
+        else:
+            from ..core.strategies import surface as family
         made = family.plan(wall, strategy, build, process, _share)
         if cell is not None:
             points = np.vstack([bead.points for _, _, bead in made])
             platform.refuse_below(wall.label, points, _mounted(cell, made), cell.platform_diameter)
         progress.report(STRATEGY, "keeping the nozzle clear")
         return _kept_clear(made, wall, build, cell)
+    from ..core.strategies import revolution
+
     toolpath = revolution.plan(
         wall, strategy, build, process, NozzleParameters() if cell is None else cell.nozzle,
         0.0 if cell is None else cell.platform_diameter,
@@ -183,6 +178,8 @@ def _of_solids(
     cell: CellParameters | None,
 ) -> CoreToolpath:
     """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
+    from ..core.strategies import developable, wall_clearance
+
     model = _model(process)
     if cell is not None and cell.mount != "feature":  # the feature's own frame is at its lowest end
         platform.refuse_solids_below(solids, np.eye(4), cell.platform_diameter)
@@ -206,6 +203,8 @@ def _kept_clear(
     if toolpath.family == "revolution":
         found = clearance_look.touched_at(toolpath, wall.surroundings, nozzle)
         return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
+    from ..core.strategies import surface_directions, wall_clearance
+
     bodies = list(wall.surroundings)
     if cell is not None and cell.platform_diameter > 0.0:
         bodies.append(disc(cell.platform_diameter, toolpath.frame))

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Iterable
-from types import ModuleType
-from typing import Protocol
+from typing import Any, Protocol
 
 from ..core.issues import InputError
 from ..core.program import Program, ReadMoves
-from . import fanuc, linuxcnc, siemens, staubli
+
+NAMES = ("fanuc", "staubli", "siemens", "linuxcnc")  # of the modules beside this one
 
 
 class Post(Protocol):
@@ -32,17 +33,14 @@ class Post(Protocol):
         """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
 
 
-_POSTS: dict[str, ModuleType] = {"fanuc": fanuc, "staubli": staubli, "siemens": siemens, "linuxcnc": linuxcnc}
-
-NAMES = tuple(_POSTS)
-
-
 def load(name: str) -> Post:
-    """The post of that name. Raises InputError UNKNOWN_POST."""
-    if name not in _POSTS:
+    """The post of that name, imported when it is first asked for. Raises InputError UNKNOWN_POST."""
+    if name not in NAMES:
         known = ", ".join(NAMES)
         raise InputError("UNKNOWN_POST", "program.post", f"{name!r} is not known; use one of {known}, or none")
-    return _POSTS[name]
+    post: Any = importlib.import_module(f".{name}", __package__)
+    found: Post = post
+    return found
 
 
 def main_file(files: Iterable[str]) -> str:

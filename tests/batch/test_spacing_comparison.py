@@ -11,7 +11,7 @@ import numpy as np
 import Part
 import pytest
 
-from freecad_am.batch import spacing_comparison
+from freecad_am.batch import run, spacing_comparison
 from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
@@ -109,6 +109,7 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
 
 
 def test_parts_of_revolution_are_not_compared():
-    job = SimpleNamespace(strategy=RevolutionParameters())
-    assert spacing_comparison.compare(object(), job) == ()
+    job, content = SimpleNamespace(strategy=RevolutionParameters()), {}
+    assert run._compare_spacings(job, None, content, None, (), None, None, None) == ()
+    assert content == {"spacing_comparison": []}
     assert spacing_comparison.rows((), job, None, []) == []

@@ -114,7 +114,8 @@ def test_both_come_to_the_same_numbers(name, monkeypatch):
     monkeypatch.setattr(kernel_process, "FEW", 0)
     shape = part(name)
     for function, *rest in (
-        (sheet.tessellated, 0.05), (sheet.tessellated_for, 2.0), (tessellate.triangles_of, 0.1), (distance._by_face, 0.1),
+        (tessellate.tessellated, 0.05), (sheet.tessellated_for, 2.0), (tessellate.triangles_of, 0.1),
+        (distance._by_face, 0.1),
     ):
         here = flat(function(shape.copy(), *rest))
         elsewhere = flat(in_thread(kernel_process.beside, function, shape.copy(), *rest))

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.on_hub import SolidsOnHub
-from ..geometry.patch_wall import PatchWall
 from ..geometry.profile import Array, RevolvedWall
-from ..geometry.surface_wall import SurfaceWall
 from ..geometry.surroundings import Body
 from ..geometry.told import at_least, count
 from ..issues import InputError
@@ -28,6 +26,10 @@ from ..parameters.strategy import (
     RevolutionParameters,
     SurfaceParameters,
 )
+
+if TYPE_CHECKING:
+    from ..geometry.patch_wall import PatchWall
+    from ..geometry.surface_wall import SurfaceWall
 
 # measured at a million, a point takes 0.3 kB with its toolpath, 0.6 kB with its joint path and what the document stores, 1.5
 # kB at the peak: these are more than 70 GB, and fifty times the largest jobs known
@@ -58,6 +60,8 @@ def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
 
 def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
     """That of a wall on an existing part."""
+    from ..geometry.patch_wall import PatchWall  # no part of revolution needs it, and what it imports takes long
+
     return _of_patches(wall, strategy) if isinstance(wall, PatchWall) else _of_tube(wall, strategy)
 
 
