@@ -11,6 +11,7 @@ from typing import Any
 
 from freecad_am.core.geometry.file_unit import refuse_scale
 from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics import urdf_reference
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
@@ -297,13 +298,35 @@ def _cell(section: Any, path: str) -> CellParameters | None:
     if section is None:
         return None
     section = dict(fields.mapping(section, "cell"))
-    machine = section.get("machine")
-    if isinstance(machine, str) and (os.sep in machine or machine.lower().endswith((".json", ".urdf"))):
-        section["machine"] = absolute(machine, path)
+    if section.get("machine") is not None:
+        section["machine"] = _machine(section["machine"], path)
     cell = fields.build(CellParameters, section, "cell")
     if cell.setup in PLANNED_SETUPS:
         raise _not_yet("cell.setup", cell.setup, "part-on-robot, tool-on-robot or rotary-table")
     return cell
+
+
+def _machine(value: Any, path: str) -> Any:
+    """What `cell.machine` says, the path of a file made absolute: of a machine file, or of a URDF with the links meant."""
+    key = "cell.machine"
+    if isinstance(value, dict) and value:
+        fields.known_keys(value, ("file", "base", "tip"), key)
+        texts = {name: fields.text(one, f"{key}.{name}").strip() for name, one in value.items() if one is not None}
+        if "file" not in texts:
+            raise InputError("BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}")
+        meant = urdf_reference.reference(texts["file"])
+        if meant is None or len(texts["file"]) != len(meant.file):
+            raise InputError(
+                "BAD_VALUE", f"{key}.file", f"{texts['file']} is no URDF, which alone has links; write machine: "
+                "{file: robot.urdf, base: base_link, tip: tool0}, or the path of a machine file without braces",
+            )
+        return str(urdf_reference.Reference(absolute(meant.file, path), texts.get("base"), texts.get("tip")))
+    if not isinstance(value, str):
+        return value
+    meant = urdf_reference.reference(value)
+    if meant is not None:
+        return str(dataclasses.replace(meant, file=absolute(meant.file, path)))
+    return absolute(value, path) if os.sep in value or value.lower().endswith(".json") else value
 
 
 def _program(section: Any) -> ProgramParameters | None:

@@ -9,7 +9,7 @@ import os
 import FreeCAD as App
 
 from ..core.issues import InputError
-from ..core.kinematics import machine
+from ..core.kinematics import machine, urdf_reference
 from . import preferences
 
 FOLDER = os.path.join("RoboticAM", "machines")
@@ -42,5 +42,6 @@ def save(name: str, text: str) -> str:
 
 def file_of(name: str) -> str | None:
     """The user's file of a machine given by its id or by a path; None for a built-in or unknown one."""
-    candidates = [name, *(os.path.join(folder, f"{name}.json") for folder in folders())]
+    meant = urdf_reference.reference(name)
+    candidates = [name if meant is None else meant.file, *(os.path.join(folder, f"{name}.json") for folder in folders())]
     return next((path for path in candidates if os.path.isfile(path)), None)

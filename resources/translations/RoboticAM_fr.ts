@@ -6358,8 +6358,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
-        <source>it has {0} axes, {1} of which slide; a robot has six that turn</source>
-        <translation>il a {0} axes, dont {1} de translation ; un robot en a six qui tournent</translation>
+        <source>it has {0} axes, {1} of which slide; a robot that can be planned has six that turn</source>
+        <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall.py"/>
@@ -7092,6 +7092,11 @@
         <translation>aucune articulation ne déplace {0} par rapport à {1} ; choisissez un autre corps</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <source>no joint of {0} moves anything against {1}; name another link as base</source>
+        <translation>aucune articulation de {0} ne meut quoi que ce soit par rapport à {1} ; nommer un autre corps comme base</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/wall_beads.py"/>
         <source>no layer has a corner; within the wall they turn by up to {0} deg/mm</source>
         <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi elles tournent jusqu&apos;à {0} deg/mm</translation>
@@ -7745,6 +7750,11 @@
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange</source>
         <translation>le Z de la bride n&apos;est pas le long de l&apos;axe 6 ; prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange</source>
+        <translation>le Z de la bride pointe vers le poignet et non vers l’extérieur ; prendre un autre corps d’un URDF, tel que tool0 ou fanuc_flange, ou tourner la bride</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
@@ -8463,6 +8473,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <source>the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots</source>
+        <translation>le poignet n’est pas sphérique : l’axe 4 est parallèle aux axes 2 et 3, comme sur les bras d’Universal Robots</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>the wrist is not spherical: axis {0} passes {1} mm beside the point where axes 4 and 5 meet</source>
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 4 et 5 se rencontrent</translation>
     </message>
@@ -8525,6 +8540,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>there is no &lt;{0}&gt;</source>
         <translation>il n&apos;y a pas de &lt;{0}&gt;</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <source>there is no URDF {0}</source>
+        <translation>il n’y a pas d’URDF {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
@@ -8892,11 +8912,6 @@
         <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS et un décalage d&apos;origine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
-        <source>with axis 5 at zero the wrist is bent by {0} deg; add the difference to its zero (theta of row 5), and to the zero that the controller shows</source>
-        <translation>avec l&apos;axe 5 à zéro le poignet est plié de {0} deg ; ajoutez la différence à son zéro (theta de la ligne 5), et au zéro que montre la commande</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/sheet.py"/>
         <source>with edges of {0} mm, by layer height and smallest radius, the mesh of the wall has more than {1} triangles, about {2}; use a larger layer height, round sharp bends more, or deposit the wall in parts</source>
         <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
@@ -9097,6 +9112,11 @@
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <source>{0} from {1} to {2}: {3}</source>
+        <translation>{0} de {1} à {2} : {3}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>
         <source>{0} fronts merge</source>
         <translation>{0} fronts se rejoignent</translation>
@@ -9115,6 +9135,11 @@
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>{0} has no limits {1}; use {2}</source>
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf_machine.py"/>
+        <source>{0} has no link {1}; it has {2}</source>
+        <translation>{0} n’a pas de corps {1} ; il a {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -9155,6 +9180,11 @@
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>{0} in or about a loop that waits for an analogue input</source>
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>{0} is a URDF, which does not tell what the controller shows; leave program out, or make a machine file of it with New Machine…</source>
+        <translation>{0} est un URDF, qui ne dit pas ce qu’affiche la commande ; omettre program, ou en faire un fichier machine avec Nouvelle machine…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
@@ -9623,8 +9653,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
-        <source>{0} must lie within +-180, that of axis 5 must be 0</source>
-        <translation>{0} doivent être entre -180 et 180, celui de l&apos;axe 5 doit être 0</translation>
+        <source>{0} must lie within +-180</source>
+        <translation>{0} doit être compris entre -180 et 180</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -9845,11 +9875,6 @@
         <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
         <source>{0}: controller.matrix</source>
         <translation>{0} : controller.matrix</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
-        <source>{0}: make a machine file of it: New Machine… in the window</source>
-        <translation>{0} : faites-en un fichier machine : Nouvelle machine… dans la fenêtre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>

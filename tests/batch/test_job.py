@@ -131,6 +131,26 @@ def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
     assert read(WHOLE).part.file == str(tmp_path / "part.step")
     job = read(WHOLE.replace("machine: fanuc-arcmate120ic", "machine: my/robot.json"))
     assert job.cell.machine == str(tmp_path / "my" / "robot.json")
+    for written, links in (
+        ("arm.urdf", ""), ("my/arm.URDF", ""), ("{file: my/arm.urdf}", ""), ("{file: arm.urdf, tip: tool0}", " tip=tool0"),
+        ("{file: my/arm.urdf, base: base_link, tip: tool0}", " base=base_link tip=tool0"),
+        ("arm.urdf base=base_link tip=tool0", " base=base_link tip=tool0"),
+    ):
+        job = read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
+        file = re.search(r"[\w/]+\.(urdf|URDF)", written)[0]
+        assert job.cell.machine == f"{tmp_path / file}{links}"
+
+
+@pytest.mark.parametrize("written,where,words", [
+    ("{base: base_link}", "cell.machine.file", "write machine: {file: robot.urdf}"),
+    ("{file: arm.json}", "cell.machine.file", "arm.json is no URDF"),
+    ("{file: arm.urdf, top: tool0}", "cell.machine.top", "there is no key 'top'; did you mean tip"),
+    ("{file: arm.urdf, tip: 3}", "cell.machine.tip", "3 is not a text"),
+])
+def test_a_urdf_is_named_with_file_and_links_alone(read, written, where, words):
+    with pytest.raises(InputError) as found:
+        read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
+    assert where in found.value.where and words in found.value.message
 
 
 LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key in [line.split(":")[0].strip()]}

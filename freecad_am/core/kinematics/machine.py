@@ -19,14 +19,17 @@ from numpy.typing import ArrayLike, NDArray
 from ..geometry import frames
 from ..geometry.frames import Array
 from ..issues import InputError
+from . import urdf_machine
 from .chain import Chain
 from .limits import Limits
 from .link_shape import LinkShape, link_shapes
 from .machine_file import Node, read
 from .opw import OpwArm
+from .urdf_reference import Reference, reference
 
 BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
 MAKER = "maker"
+NOT_TOLD = "a URDF does not tell what the controller shows"
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "verified",
     "check_poses", "shapes",
@@ -122,10 +125,11 @@ def _title(path: Path) -> str:
 
 
 def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
-    """The machine of an id or of the path of a machine file. A file of the user's `folders` goes before a built-in one.
+    """The machine of an id, of the path of a machine file, or of a URDF (`urdf_machine.Reference`). A file of the user's
+    `folders` goes before a built-in one.
 
     Raises InputError: UNKNOWN_MACHINE when there is none; BAD_MACHINE, naming file, key and value, when the file is
-    wrong or does not give its own check poses.
+    wrong or does not give its own check poses; BAD_URDF, and NO_CLOSED_FORM with the reason.
     """
     text = str(name)
     if text.lower().endswith(".json"):
@@ -133,8 +137,9 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         if not path.is_file():
             raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no machine file {text}")
         return _parse(read(path))
-    if text.lower().endswith((".urdf", ".xacro")):
-        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"{text}: make a machine file of it: New Machine… in the window")
+    meant = reference(text)
+    if meant is not None:
+        return _of_urdf(meant)
     path = file_of(text, folders)
     machine = _parse(read(path))
     if machine.id != text:
@@ -219,6 +224,26 @@ def _parse(top: Node) -> Machine:
     return machine
 
 
+def _of_urdf(meant: Reference) -> Machine:
+    """The machine of a URDF: limits and speeds are those of the file, and no post writes for a controller that it does not
+    tell of."""
+    found, arm = urdf_machine.described(meant)
+    count = found.chain.axes
+    none = np.zeros((0, count))
+    names = found.joints if found.chain.sliding.any() else tuple(f"q{index + 1}" for index in range(count))
+    limits = Limits(
+        name=MAKER, lower=found.lower, upper=found.upper, coefficients=none, coupled_lower=none[:, 0],
+        coupled_upper=none[:, 0], labels=names, source=f"{meant}",
+    )
+    unknown = np.full(count, math.inf)
+    return Machine(
+        id=found.name, title=found.name, axes=names, chain=found.chain, opw=arm,
+        base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
+        controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
+        sources=(f"{meant}",), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
+    )
+
+
 def _unit(node: Node) -> Array:
     axis = node.numbers(3)
     length = float(np.linalg.norm(axis))
@@ -252,8 +277,8 @@ def _opw(node: Node, count: int) -> OpwArm:
     if (np.abs(signs) != 1.0).any():
         raise node["signs"].bad(f"{node['signs'].value} must be 1 or -1 each")
     offsets = node["offsets"].numbers(6)
-    if (np.abs(offsets) > 180.0).any() or offsets[4] != 0.0:
-        raise node["offsets"].bad(f"{node['offsets'].value} must lie within +-180, that of axis 5 must be 0")
+    if (np.abs(offsets) > 180.0).any():
+        raise node["offsets"].bad(f"{node['offsets'].value} must lie within +-180")
     for name in ("c2", "c3"):
         if node[name].number() <= 0.0:
             raise node[name].bad(f"{node[name].value} is not the length of an arm; give more than 0 mm")

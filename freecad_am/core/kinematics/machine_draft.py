@@ -17,7 +17,7 @@ from ..geometry import frames
 from ..geometry.frames import Array
 from ..issues import InputError
 from . import machine as machines
-from . import machine_file, opw_recognition, pendant
+from . import machine_file, pendant, urdf_machine
 from .chain import Chain
 from .link_shape import BASE, LinkShape
 from .machine import Machine
@@ -28,7 +28,6 @@ from .urdf import Description
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 # what the deviations of check poses are rounded up to, mm and deg, for the machine file
 _ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), machines.MOST_ROUNDING)
-TABLE = (3, 2)  # sliding and turning axes of the only machines that are no robots
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,22 +68,17 @@ class Draft:
 
 def of_description(described: Description, source: str) -> Draft:
     """The draft of what a URDF describes; limits are those of the file."""
-    chain, moved = _grounded(described.chain)
-    base = moved if described.base is None else moved @ described.base
-    draft = _bare(chain, described.joints, described.name, source)
-    shapes = tuple(
-        shape if index or shape is None else replace(shape, pose=moved @ shape.pose)
-        for index, shape in enumerate(described.shapes)
-    )
+    found = urdf_machine.grounded(described)
+    draft = _bare(found.chain, found.joints, found.name, source)
     return replace(
-        draft, lower=described.lower, upper=described.upper, max_speed=described.max_speed, base=base, shapes=shapes,
-        notes=described.notes,
+        draft, lower=found.lower, upper=found.upper, max_speed=found.max_speed,
+        base=np.eye(4) if found.base is None else found.base, shapes=found.shapes, notes=found.notes,
     )
 
 
 def of_chain(chain: Chain, source: str) -> Draft:
     """The draft of a bare chain, of a table or of closed-form figures."""
-    grounded, moved = _grounded(chain)
+    grounded, moved = urdf_machine.grounded_chain(chain)
     draft = _bare(grounded, tuple(f"joint_{number}" for number in range(1, chain.axes + 1)), "", source)
     return replace(draft, base=moved)
 
@@ -116,12 +110,8 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
 
 
 def closed_form(draft: Draft) -> OpwArm | None:
-    """The closed form of a robot, None of a machine with three sliding and two turning axes. InputError NO_CLOSED_FORM, with
-    the reason, for any other."""
-    sliding = int(draft.chain.sliding.sum())
-    if (sliding, draft.chain.axes - sliding) == TABLE:
-        return None
-    return opw_recognition.recognise(draft.chain)
+    """The closed form of a draft, as `urdf_machine.closed_form` has it."""
+    return urdf_machine.closed_form(draft.chain)
 
 
 def text(draft: Draft) -> str:
@@ -151,11 +141,6 @@ def text(draft: Draft) -> str:
     written = _compact(json.dumps(content, indent=2, ensure_ascii=False)) + "\n"
     machines.parse(written, Path(f"{draft.id}.json"))
     return written
-
-
-def _grounded(chain: Chain) -> tuple[Chain, Array]:
-    """Machines with rotary axes begin at the torch, wherever that is."""
-    return (chain, np.eye(4)) if chain.sliding.any() else opw_recognition.rooted(chain)
 
 
 def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Draft:

@@ -41,7 +41,7 @@ class OpwArm:
 
     A branch is front when the wrist centre lies on the side of axis 1 that q1 points to; up when the elbow lies above the
     line from shoulder to wrist centre, that is on its left, seen in the arm's plane with the wrist centre's side of
-    axis 1 to the right; flip when q5 < 0.
+    axis 1 to the right; flip when q5 < 0, counted from where the wrist is stretched.
     """
 
     a1: float
@@ -89,7 +89,7 @@ class OpwArm:
         """Joint angles (8, n, 6) of all branches for flange poses (n, 4, 4), in [-pi, pi] rad.
 
         The first index is that of `branch_name`. All six angles of a branch that does not reach a pose are
-        NaN. At the singularity of the wrist (q5 = 0) axis 4 takes the angle of opw zero and axis 6 the rest; where the
+        NaN. At the singularity of the wrist (stretched) axis 4 takes the angle of opw zero and axis 6 the rest; where the
         wrist centre lies on axis 1, axis 1 does. Forward kinematics gives the pose back to about 1e-9 mm.
         """
         return solve(self, poses, tuple(range(8)))
@@ -107,5 +107,9 @@ class OpwArm:
         reach = self.a1 + self.c2 * np.sin(turned[1]) + self.forearm * np.sin(turned[1] + forearm)
         back = reach < 0.0
         down = (np.sin(forearm) < 0.0) != back
-        result: NDArray[np.intp] = 4 * back + 2 * down + (angles[..., 4] < 0.0)
+        bent = angles[..., 4]
+        if self.offsets[4]:
+            bent = bent - self.signs[4] * self.offsets[4]
+            bent = bent - 2.0 * math.pi * np.rint(bent * (0.5 / math.pi))
+        result: NDArray[np.intp] = 4 * back + 2 * down + (bent < 0.0)
         return result

@@ -93,7 +93,7 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
             direction = _arm(arm, side, triangle, left=back == down, angles=angles)
             _wrist(arm, rows[2], flange, direction, angles)
             if other is not None:
-                _flip(angles, other)
+                _flip(arm, angles, other)
 
 
 def _distance(arm: OpwArm, centre: Array) -> tuple[Array, Array]:
@@ -226,11 +226,15 @@ def _wrist(
         _settle(arm, axis, angles[axis])
 
 
-def _flip(angles: Array, other: Array) -> None:
+def _flip(arm: OpwArm, angles: Array, other: Array) -> None:
     """Write the other wrist solution of `angles`; both may be the same array."""
     if other is not angles:
         other[:3] = angles[:3]
     np.negative(angles[4], out=other[4])
+    if arm.offsets[4]:
+        # both lie as far from where the wrist is stretched
+        other[4] += 2.0 * arm.signs[4] * arm.offsets[4]
+        other[4] -= 2.0 * math.pi * np.rint(other[4] * (0.5 / math.pi))
     _half_turn(angles[3], other[3])
     _half_turn(angles[5], other[5])
 

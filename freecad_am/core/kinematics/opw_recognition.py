@@ -49,7 +49,8 @@ def recognise(chain: Chain) -> OpwArm:
     InputError NO_CLOSED_FORM telling what of the geometry stands in the way, and by how much.
     """
     if chain.axes != 6 or chain.sliding.any():
-        raise _refused(f"it has {chain.axes} axes, {int(chain.sliding.sum())} of which slide; a robot has six that turn")
+        slides = int(chain.sliding.sum())
+        raise _refused(f"it has {chain.axes} axes, {slides} of which slide; a robot that can be planned has six that turn")
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
     arm = _arm(at_rest, centre)
@@ -79,6 +80,8 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     foot = p[0] - z[0] * float(z[0] @ p[0])
     if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR:
         raise _refused("axis 1 is not the Z of the base frame")
+    if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < STRAIGHT for axis in (2, 3)):
+        raise _refused("the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots")
     for first, second in ((0, 1), (2, 3), (3, 4), (4, 5)):
         off = math.asin(min(1.0, abs(float(z[first] @ z[second]))))
         if off > STRAIGHT:
@@ -118,17 +121,16 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     forearm = z[3] * sign4
     turn23 = math.atan2(float(forearm @ x), float(forearm @ up))
     across = np.cos(turn23) * x - np.sin(turn23) * up
-    if np.linalg.norm(np.cross(flange[:3, 2], z[5])) > STRAIGHT:
+    out = flange[:3, 2]
+    if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
         raise _refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
                        FLANGE)
-    out = flange[:3, 2]
-    straight = math.acos(float(np.clip(out @ forearm, -1.0, 1.0)))
-    if np.linalg.norm(np.cross(out, forearm)) > STRAIGHT or straight > 1.0:
-        raise _refused(f"with axis 5 at zero the wrist is bent by {math.degrees(straight):.6g} deg; add the difference to "
-                       "its zero (theta of row 5), and to the zero that the controller shows")
     beside = flange[:3, 3] - centre
     if np.linalg.norm(beside - out * float(beside @ out)) > NEAR:
         raise _refused("the flange's origin does not lie on axis 6", FLANGE)
+    if float(beside @ out) < -NEAR and float(out @ forearm) < 0.0:
+        raise _refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
+                       "tool0 or fanuc_flange, or turn the flange", FLANGE)
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
     turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
     sign5 = 1
@@ -137,8 +139,11 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
         sign5 = -1
     five_x = math.cos(turn4) * across + math.sin(turn4) * y
     five_y = -math.sin(turn4) * across + math.cos(turn4) * y
-    turn6 = math.atan2(float(flange[:3, 0] @ five_y), float(flange[:3, 0] @ five_x))
-    turns = (turn1, turn2, _wrapped(turn23 - turn2), turn4, 0.0, turn6)
+    bent = math.atan2(float(out @ five_x), float(out @ forearm))
+    turn5 = bent if abs(bent) > STRAIGHT else 0.0
+    six_x = math.cos(turn5) * five_x - math.sin(turn5) * forearm
+    turn6 = math.atan2(float(flange[:3, 0] @ five_y), float(flange[:3, 0] @ six_x))
+    turns = (turn1, turn2, _wrapped(turn23 - turn2), turn4, turn5, turn6)
     signs = (1 if z[0, 2] > 0.0 else -1, sign2, sign2 if float(z[2] @ z[1]) > 0.0 else -sign2, sign4, sign5,
              1 if float(z[5] @ out) > 0.0 else -1)
     return OpwArm(

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..geometry import frames
 from ..geometry.frames import Array
 from ..issues import InputError
 from . import urdf_xml
@@ -23,6 +24,8 @@ from .urdf_xml import CODE, Element
 MOVING = ("revolute", "continuous", "prismatic")
 FIXED = "fixed"
 BASES, TIPS = ("base_link",), ("tool0", "flange")  # names that ROS-Industrial gives them
+ROBOT = 6  # joints of one
+STRAIGHT, NEAR = 1e-6, 1e-3  # of a tip: rad that its Z is off the axis, mm that it may lie behind
 DEGREE = math.radians(1.0)
 
 
@@ -56,7 +59,8 @@ class Urdf:
         self.top = urdf_xml.read(self.path)
         if self.top.tag != "robot":
             raise self.top.bad(f"this is <{self.top.tag}>, not the <robot> of a URDF")
-        if "xmlns:xacro" in self.top.attributes:
+        # what xacro wrote may still name its namespace
+        if any(child.tag.startswith("xacro:") for child in self.top.children):
             raise self.top.bad("this is xacro; make a URDF of it first, with the program xacro of ROS")
         self.name = self.top.attributes.get("name", self.path.stem)
         self.links = self._named("link")
@@ -87,15 +91,38 @@ class Urdf:
         return sorted(self.links, key=lambda link: (link not in BASES, link in self.parent, link in self._leaves()))
 
     def tips(self, base: str) -> list[str]:
-        """Links that a machine from `base` may end in, the likeliest first: by name, then by how many joints move them."""
+        """Links that a machine from `base` may end in, the likeliest first: those that as many joints move as the one with
+        the usual name, or as can be; of these those whose Z points out along the last axis, then by name."""
         moving: dict[str, int] = {}
         for link in self.links:
             carried = [link, *self._above(link)]
             if base in carried[1:]:
                 joints = [self.parent[below] for below in carried[: carried.index(base)]]
                 moving[link] = sum(joint.text("type") != FIXED for joint in joints)
-        found = [link for link, count in moving.items() if count]
-        return sorted(found, key=lambda link: (link not in TIPS or moving[link] < 5, link != TIPS[0], -moving[link]))
+        named = [link for link in TIPS if moving.get(link, 0) >= ROBOT - 1]
+        axes = moving[named[0]] if named else max(moving.values(), default=0)
+
+        def rank(link: str) -> tuple[object, ...]:
+            crooked = moving[link] == axes == ROBOT and not self._points_out(link)
+            return moving[link] != axes, crooked, link not in named, link != TIPS[0], -moving[link]
+
+        return sorted((link for link, count in moving.items() if count), key=rank)
+
+    def _points_out(self, link: str) -> bool:
+        """Whether the Z of a link lies along the axis of the last joint that moves it, and does not point back to the one
+        before."""
+        last, rest = self._moved(link, np.eye(4))
+        axis = _axis(last)
+        _, from_before = self._moved(last.one("parent").text("link"), last.pose() @ rest)
+        ahead = from_before[:3, 2] @ from_before[:3, 3]
+        return _along(rest[:3, 2], axis) and float(ahead) > -NEAR
+
+    def _moved(self, link: str, rest: Array) -> tuple[Element, Array]:
+        """The joint that moves a link, and a pose (4, 4) in that link seen from the joint."""
+        while self.parent[link].text("type") == FIXED:
+            rest = self.parent[link].pose() @ rest
+            link = self.parent[link].one("parent").text("link")
+        return self.parent[link], rest
 
     def between(self, base: str, tip: str) -> Description:
         """The chain from a link to another that it carries."""
@@ -113,6 +140,8 @@ class Urdf:
         notes: list[str] = []
         shapes = tuple(self._mesh(link, notes) for link in (base, *(joint.one("child").text("link") for joint in moving)))
         sliding = np.array([joint.text("type") == "prismatic" for joint in moving])
+        if len(moving) == ROBOT and not sliding.any():
+            rest = _turned_out(rest, _axis(moving[-1]), tip, notes)
         chain = Chain(np.stack(origins), np.stack([_axis(joint) for joint in moving]), rest, sliding)
         lower, upper, speed = (np.array(values) for values in zip(*limits, strict=True))
         names = tuple(joint.text("name") for joint in moving)
@@ -196,6 +225,20 @@ class Urdf:
                 red, green, blue = np.clip(colour.numbers("rgba", 4, "0.8 0.8 0.8 1")[:3], 0.0, 1.0).tolist()
                 return (red, green, blue)
         return None
+
+
+def _along(direction: Array, axis: Array) -> bool:
+    return bool(np.linalg.norm(np.cross(direction, axis)) < STRAIGHT)
+
+
+def _turned_out(rest: Array, axis: Array, tip: str, notes: list[str]) -> Array:
+    """The pose (4, 4) of a tip in its last moving link, its Z turned to its X where that lies along the axis (3,): `flange`
+    of ROS-Industrial has its X outwards, where tool0 has its Z."""
+    if _along(rest[:3, 2], axis) or not _along(rest[:3, 0], axis):
+        return rest
+    notes.append(f"the X of {tip} points out of the flange, not its Z: it is turned there, as tool0 stands to flange")
+    inwards = float(rest[:3, 0] @ rest[:3, 3]) < -NEAR
+    return np.asarray(rest @ frames.pose(frames.about_y(-0.5 * math.pi if inwards else 0.5 * math.pi), (0.0, 0.0, 0.0)))
 
 
 def _axis(joint: Element) -> Array:

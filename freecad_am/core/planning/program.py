@@ -13,7 +13,7 @@ from ..geometry import frames
 from ..issues import InputError
 from ..kinematics import opw
 from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell
-from ..kinematics.machine import Machine
+from ..kinematics.machine import NOT_TOLD, Machine
 from ..motion import Motion
 from ..parameters.process import BetweenLayersParameters, ProcessParameters
 from ..parameters.program import ProgramParameters, StartParameters
@@ -111,6 +111,9 @@ def check_controller(machine: Machine, post: str) -> None:
     """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
     if machine.posts is None or post in machine.posts:
         return
+    if machine.controller_remark == NOT_TOLD:
+        raise InputError("WRONG_CONTROLLER", "program.post", f"{machine.title} is a URDF, which does not tell what the "
+                         "controller shows; leave program out, or make a machine file of it with New Machine…")
     known = f"use one of {', '.join(machine.posts)}" if machine.posts else "there is no post for it yet; leave program out"
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
 

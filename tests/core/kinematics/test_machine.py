@@ -165,7 +165,7 @@ BAD = {
     "five joints": (changed("joints", value=GOOD["joints"][:5]), "opw", "six joints"),
     "no joints": (changed("joints", value=[]), "joints", "no joint"),
     "sign of two": (changed("opw", "signs", value=[1, 1, -1, -1, -2, -1]), "opw.signs", "1 or -1"),
-    "offset of axis 5": (changed("opw", "offsets", value=[0, 0, -90, 0, 90, 180]), "opw.offsets", "axis 5"),
+    "an offset too large": (changed("opw", "offsets", value=[0, 0, -90, 0, 190, 180]), "opw.offsets", "within +-180"),
     "no upper arm": (changed("opw", "c2", value=0), "opw.c2", "more than 0 mm"),
     "limits upside down": (
         changed("limits", "maker", "axes", 1, value=[160, -100]),

@@ -15,6 +15,7 @@ from freecad_am.kdl.chain import KdlArm
 
 NAMES = [name for name, _ in machine.known()]
 ROBOTS = [name for name in NAMES if machine.load(name).opw is not None]
+Q6 = np.random.default_rng(8).uniform(-3.0, 3.0, (20, 6))
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 
 
@@ -84,8 +85,10 @@ def test_the_closed_form_of_a_chain_is_that_of_its_file(name):
 
 def random_arm(rng, square):
     offsets = rng.integers(-1, 3, 6) * np.pi / 2 if square else rng.uniform(-3.1, 3.1, 6)
-    offsets[4] = 0.0
-    return OpwArm(*rng.uniform(-300, 300, 3), *rng.uniform(100, 900, 3), rng.uniform(-50, 200), tuple(offsets.tolist()),
+    to_flange = rng.uniform(-50, 200)
+    if np.cos(offsets[4]) < 1e-9:  # a flange behind a wrist that is folded back points into it
+        to_flange = abs(to_flange)
+    return OpwArm(*rng.uniform(-300, 300, 3), *rng.uniform(100, 900, 3), to_flange, tuple(offsets.tolist()),
                   tuple(rng.choice([-1, 1], 6).tolist()))
 
 
@@ -99,7 +102,33 @@ def test_random_arms_are_recognised(square):
         np.testing.assert_allclose(chain.forward(q), arm.forward(q), atol=1e-9)
         found = opw_recognition.recognise(chain)
         np.testing.assert_allclose(found.forward(q), arm.forward(q), atol=1e-8)
-        assert found.c2 > 0 and found.c3 > 0 and found.a1 >= 0 and found.offsets[4] == 0.0
+        assert found.c2 > 0 and found.c3 > 0 and found.a1 >= 0
+
+
+def turned_apart(first, second):
+    return np.abs((first - second + np.pi) % (2 * np.pi) - np.pi)
+
+
+@pytest.mark.parametrize("bend", [90.0, -90.0, 30.0, 180.0, 0.0])
+def test_an_arm_whose_wrist_is_bent_at_zero_is_planned_as_any_other(bend):
+    given = machine.load("fanuc-arcmate120ic").chain
+    chain = changed(given, 4, shift(about=1, deg=bend))
+    arm = opw_recognition.recognise(chain)
+    q = np.random.default_rng(5).uniform(-np.pi, np.pi, (2000, 6))
+    poses = chain.forward(q)
+    solutions = arm.inverse(poses)
+    assert np.nanmax(np.abs(solutions)) <= np.pi
+    reached = ~np.isnan(solutions[..., 0])
+    assert np.abs(chain.forward(solutions) - poses)[reached].max() < 1e-8
+    found = solutions[arm.branch_of(q), np.arange(len(q))]
+    clear = np.abs(np.sin(q[:, 4] + np.sign(given.directions[4, 1]) * np.radians(bend))) > 1e-3
+    assert clear.mean() > 0.9 and turned_apart(found, q)[clear].max() < 1e-7
+    branches = np.broadcast_to(np.arange(8)[:, None], reached.shape)
+    assert np.array_equal(arm.branch_of(solutions)[reached], branches[reached])
+    # the same pose is the same branch as of the arm that is straight at zero
+    straight = machine.load("fanuc-arcmate120ic").opw
+    q5 = turned_apart(straight.inverse(poses)[..., 4], solutions[..., 4])[reached]
+    np.testing.assert_allclose(q5, abs(np.radians(bend)), atol=1e-6)
 
 
 def test_an_arm_that_stands_elsewhere_is_seen_from_its_first_axis():
@@ -133,8 +162,8 @@ def shift(x=0.0, y=0.0, z=0.0, about=None, deg=0.0):
     (5, {"y": 3.0}, r"axis 6 passes 3 mm beside"),
     (1, {"about": 0, "deg": 2.0}, r"axes 1 and 2 are 88 deg apart"),
     (2, {"about": 2, "deg": 0.01}, r"axes 2 and 3 are not parallel, but 0.01 deg"),
-    (3, {"about": 2, "deg": 90.0}, r"axes 3 and 4 are 0 deg apart"),
-    (4, {"about": 1, "deg": 30.0}, r"the wrist is bent by 30 deg"),
+    (3, {"about": 2, "deg": 90.0}, r"the wrist is not spherical: axis 4 is parallel to axes 2 and 3"),
+    (3, {"about": 2, "deg": 40.0}, r"axes 3 and 4 are 50 deg apart, not 90 deg"),
 ])
 def test_what_is_no_such_arm_is_refused_with_the_reason(index, step, reason):
     chain = machine.load("fanuc-arcmate120ic").chain
@@ -151,6 +180,12 @@ def test_flanges_and_counts_that_will_not_do():
         opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(x=5.0)))
     with pytest.raises(InputError, match="it has 5 axes, 3 of which slide"):
         opw_recognition.recognise(machine.load("table-xyzac").chain)
+
+
+def test_a_flange_that_points_into_the_wrist_is_told_as_that():
+    chain = machine.load("fanuc-arcmate120ic").chain
+    with pytest.raises(InputError, match="points back into the wrist, not out of it"):
+        opw_recognition.recognise(Chain(chain.origins, chain.directions, chain.flange @ shift(about=0, deg=180.0)))
 
 
 # ---- URDF
@@ -207,6 +242,71 @@ def test_links_to_choose_from(tmp_path):
     assert robot.bases()[:2] == ["base_link", "world"]
     assert robot.tips("base_link") == ["finger", "hand", "arm", "plate"]
     assert robot.tips("world")[0] == "finger"
+
+
+def with_links(text, **poses):
+    """The URDF of a machine with tool0 under other names: links fixed to the last one, each turned against it by rpy."""
+    text = text.replace("tool0", "plate")
+    for link, (rpy, xyz) in poses.items():
+        text = text.replace("</robot>", f'''<link name="{link}"/><joint name="to_{link}" type="fixed"><parent link="plate"/>
+<child link="{link}"/><origin xyz="{xyz}" rpy="{rpy}"/></joint></robot>''')
+    return text
+
+
+OUT, UP, BACK = "0 0 0", "0 -1.5707963267948966 0", "3.141592653589793 0 0"
+
+
+@pytest.mark.parametrize("poses,tip", [
+    # those of FANUC: X out of `flange`, Z out of fanuc_flange
+    ({"flange": (UP, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")}, "fanuc_flange"),
+    ({"flange": (BACK, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")}, "fanuc_flange"),  # R-2000: Z into the wrist
+    ({"tool0": (OUT, "0 0 0"), "flange": (UP, "0 0 0")}, "tool0"),
+    ({"flange": (OUT, "0 0 0"), "ee_link": (OUT, "0 0 0.1")}, "flange"),
+])
+def test_the_tip_whose_z_points_out_along_the_last_axis_is_proposed(poses, tip, tmp_path):
+    given = machine.load("fanuc-arcmate120ic")
+    path = tmp_path / "arm.urdf"
+    path.write_text(with_links(urdf_text.text(given), **poses), encoding="utf-8")
+    robot = urdf.Urdf(path)
+    # "plate" is where the machine file has its flange
+    assert next(link for link in robot.tips("base_link") if link != "plate") == tip
+    np.testing.assert_allclose(robot.between("base_link", tip).chain.forward(Q6), given.chain.forward(Q6), atol=1e-9)
+
+
+def test_an_x_that_points_out_is_turned_to_be_the_z_and_told(tmp_path):
+    given = machine.load("fanuc-arcmate120ic")
+    (tmp_path / "arm.urdf").write_text(with_links(urdf_text.text(given), flange=(UP, "0 0 0")), encoding="utf-8")
+    found = urdf.Urdf(tmp_path / "arm.urdf").between("base_link", "flange")
+    np.testing.assert_allclose(found.chain.forward(Q6), given.chain.forward(Q6), atol=1e-9)
+    assert any("X of flange points out of the flange" in note for note in found.notes)
+
+
+def test_what_xacro_wrote_is_read_and_xacro_itself_refused(tmp_path):
+    text = urdf_text.text(machine.load("kuka-kr16-2"))
+    written = text.replace("<robot ", '<robot xmlns:xacro="http://ros.org/wiki/xacro" ')
+    assert read(tmp_path, written).chain.axes == 6
+    for line in ('<xacro:include filename="$(find x)/y.xacro"/>', '<xacro:kr16 prefix=""/>'):
+        with pytest.raises(InputError, match="this is xacro"):
+            read(tmp_path, written.replace("</robot>", line + "</robot>"))
+
+
+def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
+    given = machine.load("abb-irb2400-12-155")
+    path = tmp_path / "arm.urdf"
+    path.write_text(urdf_text.text(given), encoding="utf-8")
+    for name in (str(path), f"{path} base=base_link tip=tool0"):
+        found = machine.load(name)
+        np.testing.assert_allclose(found.chain.forward(Q6), KdlArm(given).forward(Q6), atol=1e-9)
+        np.testing.assert_allclose(found.base, given.base, atol=1e-9)
+        np.testing.assert_allclose(found.limits("maker").lower, given.limits("maker").lower[:6], rtol=1e-14)
+        assert found.axes == given.axes and found.posts == () and not found.is_table
+        assert "does not tell what the controller shows" in found.controller_remark
+    for name, words in (
+        (f"{path} tip=hand", "arm.urdf has no link 'hand'; it has base_link, "), (f"{path} base=tool0", "moves anything"),
+        (f"{path} tip=link_5", "from base_link to link_5: .* it has 5 axes"), (tmp_path / "no.urdf", "there is no URDF"),
+    ):
+        with pytest.raises(InputError, match=words):
+            machine.load(name)
 
 
 @pytest.mark.parametrize("old,new,line,words", [

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A URDF in the place of a machine: what of it a machine is made of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..geometry.frames import Array
+from ..issues import InputError
+from . import opw_recognition
+from .chain import Chain
+from .opw import OpwArm
+from .urdf import Description, Urdf
+from .urdf_reference import Reference
+
+TABLE = (3, 2)  # sliding and turning axes of the only machines that are no robots
+
+
+def described(meant: Reference) -> tuple[Description, OpwArm | None]:
+    """The chain of a machine, grounded, with its closed form; None of one with three sliding and two turning axes.
+
+    Raises InputError: UNKNOWN_MACHINE without the file, BAD_URDF naming file and line, NO_CLOSED_FORM with the reason.
+    """
+    path = Path(meant.file).expanduser()
+    if not path.is_file():
+        raise InputError("UNKNOWN_MACHINE", "cell.machine", f"there is no URDF {meant.file}")
+    robot = Urdf(path)
+    base = meant.base or robot.bases()[0]
+    tips = robot.tips(base) if base in robot.links else []
+    for link in (base, meant.tip):
+        if link is not None and link not in robot.links:
+            known = ", ".join(robot.links)
+            raise InputError("BAD_URDF", "cell.machine", f"{path.name} has no link {link!r}; it has {known}")
+    if meant.tip is None and not tips:
+        raise InputError("BAD_URDF", "cell.machine", f"no joint of {path.name} moves anything against {base!r}; name "
+                         "another link as base")
+    found = grounded(robot.between(base, meant.tip or tips[0]))
+    try:
+        return found, closed_form(found.chain)
+    except InputError as error:
+        raise InputError(
+            error.code, "cell.machine", f"{path.name} from {base} to {meant.tip or tips[0]}: {error.message}"
+        ) from None
+
+
+def closed_form(chain: Chain) -> OpwArm | None:
+    """The closed form of a robot, None of a machine with three sliding and two turning axes. InputError NO_CLOSED_FORM, with
+    the reason, for any other."""
+    sliding = int(chain.sliding.sum())
+    if (sliding, chain.axes - sliding) == TABLE:
+        return None
+    return opw_recognition.recognise(chain)
+
+
+def grounded(found: Description) -> Description:
+    """The description with its chain, base and meshes seen from the base_link of `grounded_chain`; `base` is there."""
+    chain, moved = grounded_chain(found.chain)
+    shapes = tuple(
+        shape if index or shape is None else replace(shape, pose=moved @ shape.pose)
+        for index, shape in enumerate(found.shapes)
+    )
+    return replace(found, chain=chain, base=moved if found.base is None else moved @ found.base, shapes=shapes)
+
+
+def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
+    """A chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted` has it. Machines with rotary axes begin
+    at the torch, wherever that is."""
+    return (chain, np.eye(4)) if chain.sliding.any() else opw_recognition.rooted(chain)

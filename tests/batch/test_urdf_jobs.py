@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs whose machine is a URDF."""
+
+import json
+
+import pytest
+
+from freecad_am.core.kinematics import machine, urdf_text
+from tests.batch.test_plan_command import deposit
+
+JOB = """\
+part: {file: cup.step}
+strategy: {layer_height: 10 mm, chord_error: 0.1 mm}
+cell: {machine: MACHINE, platform_diameter: 100 mm}
+program: {post: POST}
+"""
+
+
+@pytest.fixture
+def planned(workshop):
+    """Plans the cup on a machine; the robot of the default cell stands as arm.urdf beside the job."""
+    text = urdf_text.text(machine.load("fanuc-arcmate120ic"))
+    (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
+
+    def run(name, post="none"):
+        workshop.write_job(JOB.replace("MACHINE", name).replace("POST", post))
+        return workshop.run("plan", "cup.yaml")
+
+    return run
+
+
+def test_a_job_on_a_urdf_moves_as_on_the_machine_file(planned, workshop):
+    angles = []
+    for name in ("fanuc-arcmate120ic", "{file: arm.urdf, base: base_link, tip: tool0}"):
+        done = planned(name)
+        assert done.status == 0, done.err
+        rows, _ = deposit(workshop.files()["waypoints.csv"].decode())
+        angles.append([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
+    assert len(angles[0]) > 100
+    for first, second in zip(*angles, strict=True):
+        assert second == pytest.approx(first, abs=1e-5)
+    assert json.loads(workshop.files()["report.json"])["machine"]["title"] == "fanuc-arcmate120ic"
+
+
+def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(planned):
+    done = planned("arm.urdf", "fanuc")
+    assert done.status == 2 and "does not tell what the controller shows; leave program out" in done.err
+
+
+def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, workshop):
+    text = (workshop.folder / "arm.urdf").read_text().replace('xyz="0.1 0.0 0.0"', 'xyz="0.1 0.0 0.02"')
+    (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
+    done = planned("arm.urdf")
+    assert done.status == 2 and "error[NO_CLOSED_FORM]" in done.err
+    assert "arm.urdf from base_link to tool0: this cannot be planned for: the wrist is not spherical: axis 6" in done.err
