@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs commands as freecad_am/batch/boot.py does, each in a copy of this process, which has FreeCAD and all modules.
 
-What is asked for comes in by stdin, a line of JSON each: [folder, environment, file for stdout, file for stderr, words]; the
-exit status, negative for a signal, goes to the descriptor named by the first argument. This process computes nothing and has
+What is asked for comes in by stdin, a line of JSON each: [folder, environment, file for stdout, file for stderr, words, most
+seconds of the processor, most bytes]; the exit status, negative for a signal, s of the processor, and MB of memory of the
+largest process, go to the descriptor named by the first argument. This process computes nothing and has
 one thread: OpenCASCADE 7.8 would wait in a copy of one that has meshed for threads that are not copied.
 """
 
 import importlib
 import json
 import os
+import resource
 import sys
 import traceback
 from pathlib import Path
@@ -20,10 +22,13 @@ from freecad_am.batch import cli, host
 NEEDED = ("Part", "Mesh", *(f"freecad_am.batch.{name}" for name in ("run", "rows", "export", "measured", "machines")))
 
 
-def be_command(folder, environment, out, err, words):
+def be_command(folder, environment, out, err, words, seconds, memory):
     """Run a command and end."""
     status = 1
     try:
+        for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory)):
+            if most:
+                resource.setrlimit(kind, (most, most))
         os.environ.clear()
         os.environ.update(environment)
         nothing = os.open(os.devnull, os.O_RDONLY)
@@ -53,8 +58,9 @@ def main():
         process = os.fork()
         if not process:
             be_command(*json.loads(line))
-        status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
-        os.write(answer, f"{status}\n".encode())
+        _, status, used = os.wait4(process, 0)
+        seconds, memory = used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3
+        os.write(answer, f"{os.waitstatus_to_exitcode(status)} {seconds:.3f} {memory:.1f}\n".encode())
 
 
 if __name__ == "__main__":

@@ -36,11 +36,13 @@ PATIENCE = 300  # s for a command, on a machine that may be busy
 
 @dataclass
 class Ended:
-    """How a command ended."""
+    """How a command ended; s of the processor and MB of its largest process where the server ran it."""
 
     status: int
     out: str
     err: str
+    seconds: float = 0.0
+    memory: float = 0.0
 
 
 class Commands:
@@ -49,21 +51,24 @@ class Commands:
     def __init__(self) -> None:
         self.process: subprocess.Popen | None = None
 
-    def run(self, folder: Path, words: list[str]) -> Ended:
+    def run(self, folder: Path, words: list[str], most_seconds: int = 0, most_bytes: int = 0) -> Ended:
+        """Limits of 0 are none. TimeoutError where the command does not end."""
         if self.process is None:
             self._start()
         with tempfile.TemporaryDirectory() as place:
             out, err = Path(place) / "out", Path(place) / "err"
-            asked = json.dumps([str(folder), {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}, str(out), str(err), words])
+            environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+            asked = json.dumps([str(folder), environment, str(out), str(err), words, most_seconds, most_bytes])
             self.process.stdin.write(f"{asked}\n".encode())
             self.process.stdin.flush()
             if not select.select([self.answer], [], [], PATIENCE)[0]:
                 os.killpg(self.process.pid, signal.SIGKILL)
                 self.process.wait()
                 self.process = None
-                pytest.fail(f"{' '.join(words)} took more than {PATIENCE} s")
-            status = int(self.answer.readline())
-            return Ended(status, out.read_text(encoding="utf-8"), err.read_text(encoding="utf-8"))
+                raise TimeoutError(f"{' '.join(words)} took more than {PATIENCE} s")
+            status, seconds, memory = self.answer.readline().split()
+            told = (stream.read_text(encoding="utf-8") for stream in (out, err))
+            return Ended(int(status), *told, float(seconds), float(memory))
 
     def _start(self) -> None:
         ours, theirs = os.pipe()

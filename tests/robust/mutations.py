@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is done to a sound job, by a seed: to its text, its structure and its values."""
+
+import copy
+import dataclasses
+import json
+import math
+
+import yaml
+
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+
+SECTIONS = {
+    "build_direction": BuildDirectionParameters, "cell": CellParameters, "joints": JointParameters,
+    "process": ProcessParameters, "program": ProgramParameters,
+}
+STRATEGIES = {"revolution": RevolutionParameters, "surface": SurfaceParameters, "developable": DevelopableParameters}
+OTHER_KEYS = (
+    "version", "name", "part.file", "part.object", "part.faces", "part.start_edges", "part.scale", "part.set", "fixtures",
+    "substrate.file", "substrate.faces", "strategy.kind",
+)
+# fmt: off
+ODD = (
+    None, True, False, [], {}, "", " ", "auto", "none", "nan", ".nan", math.nan, math.inf, -math.inf, 0, -1, 1e308,
+    1e-308, 10**30, 10**400, -0.0, "1e999", "1 kg", "1 mm mm", "mm", "5 °C", "1,5 mm", "1/0 mm", "１２ mm", "∞ mm", "π rad",
+    "é", "日本", "\u202e", "\x00", "\x1b[2J", "a\nb", "\ufeff", "\ud83d\ude00", "../../etc/passwd", "$(id)", "%s%n",
+    "x" * 5000, [1, 2, 3], [[[[]]]], {"a": {"b": 1}}, "2020-01-01", "0x10", "0o17", "1_000", "=1+1", "90 deg", "1 mm",
+    "6 mm/s", "50 %", "-5 mm", "0 mm", "1e9 mm", "1e-9 mm", "1e-5 mm", "1 rad/mm", "(1+2)^3 mm", "sqrt(-1) mm",
+    "1e5^1e5 mm", "1" * 400, "Face1", ["Face1", "Face99"], [None] * 6, [0] * 6, [1e9] * 6, ["1 mm"] * 6,
+    list(range(1000)), "front up flip", ["front"], "~", "[", "- a",
+)
+PATHS = (
+    "", ".", "..", "/", "/dev/null", "/dev/zero", "nowhere.step", "nowhere", "job.yaml", "~/x.step", "a\x00b.step",
+    "x" * 300 + ".step", "cup.step/..", "cup.step/cup.step", "./cup.step", "../parts/cup.step", "cup.STEP", "cup.igs",
+    "hub.stl", "boxes.stl", "parts.FCStd", "tube.brep", "boxes.brep", "hub.step", "block.step", "file:///cup.step",
+    "cup.step\n", "кубок.step", "*.step",
+)
+PUT_IN = (
+    b"\t", b"  ", b":", b"- ", b"#", b"\r", b"&a ", b"*a ", b"!!python/object:os.system ", b"{", b"]", b"\xef\xbb\xbf",
+    b"\xc3\xa9", b"|\n", b"? ", b"---\n", b"%YAML 9.9\n", b"'", b'"', b"\x00",
+)
+# fmt: on
+
+
+def mutated(base, chance, folder):
+    """The text, bytes, of a job like `base` with one to three things done to it; `folder` has the small parts."""
+    job = copy.deepcopy(base)
+    kind = chance.choices(("valid", "values", "structure", "text"), (2, 7, 4, 5))[0]
+    if kind == "valid":
+        if chance.random() < 0.3:  # the toolpath alone
+            job.pop("cell", None), job.pop("program", None), job.pop("joints", None)
+        for _ in range(chance.randint(1, 4)):
+            put(job, *_valid(job, chance))
+        return _written(job)
+    if kind == "values":
+        for _ in range(chance.randint(1, 2)):
+            put(job, *_odd(job, chance, folder))
+        return _written(job)
+    if kind == "structure":
+        return _restructured(job, chance)
+    return damaged_text(_written(job), chance)
+
+
+def put(job, key, value):
+    """Give a dotted key its value, where its section is one."""
+    *above, last = key.split(".")
+    section = job
+    for name in above:
+        if not isinstance(section.get(name), dict):
+            section[name] = {}
+        section = section[name]
+    section[last] = value
+
+
+def specs(job):
+    """(dotted key, Spec, default) of all parameters that the job may have."""
+    kind = job.get("strategy", {}).get("kind", "revolution")
+    return [
+        entry for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS}.items() if name in ("strategy", *SECTIONS)
+        for entry in _specs(factory, name)
+    ]
+
+
+def _specs(factory, prefix):
+    for field in dataclasses.fields(factory):
+        spec = f.spec_of(field)
+        if spec.kind == f.GROUP:
+            yield from _specs(field.default_factory, f"{prefix}.{field.name}")
+        else:
+            default = field.default if field.default is not dataclasses.MISSING else None
+            yield f"{prefix}.{field.name}", spec, default
+
+
+def _valid(job, chance):
+    """A key and a value that it may well have."""
+    while True:
+        key, spec, default = chance.choice(specs(job))
+        if key in ("cell.machine", "cell.setup", "strategy.base.axis", "process.bead_model") or spec.kind == f.TEXT:
+            continue
+        return key, valid_value(key, spec, default, chance)
+
+
+def valid_value(key, spec, default, chance):
+    """A value in the range of a parameter, as a job file may write it."""
+    if spec.words and chance.random() < 0.3:
+        return chance.choice(spec.words)
+    if spec.optional and chance.random() < 0.2:
+        return None
+    if key in ("strategy.layer_height", "strategy.bead_spacing"):
+        return f"{chance.uniform(3.0, 25.0):.3g} mm"
+    if key == "strategy.chord_error":
+        return f"{10 ** chance.uniform(-1.3, 0.5):.3g} mm"
+    if spec.kind == f.CHOICE:
+        return chance.choice(spec.choices)
+    if spec.kind == f.FLAG:
+        return chance.random() < 0.5
+    if spec.kind == f.POSE or (isinstance(default, tuple) and len(default) == 6):
+        start = default if isinstance(default, tuple) else (0.0,) * 6
+        return [round(number + chance.gauss(0.0, 100.0), 3) for number in start[:3]] + [
+            round(chance.uniform(-180.0, 180.0), 3) for _ in range(3)
+        ]
+    if spec.kind == f.ANGLE_RANGE:
+        return sorted(round(chance.uniform(-180.0, 180.0), 2) for _ in range(2))
+    scale = 1.0 / f.TO_INNER.get(spec.kind, 1.0)
+    low = (-180.0 if spec.kind == f.ANGLE else 0.0) if spec.low is None else spec.low * scale
+    high = low + 360.0 if spec.high is None else spec.high * scale
+    if spec.kind == f.COUNT:
+        return chance.randint(int(low), int(min(high, low + chance.choice((3, 60)))))
+    if spec.kind != f.ANGLE and isinstance(default, (int, float)) and not isinstance(default, bool) and default > 0.0:
+        number = default * scale * 10 ** chance.uniform(-1.0, 1.0)
+    else:
+        number = chance.choice((low, high, chance.uniform(low, high), chance.uniform(low, high)))
+    number = float(f"{min(max(number, low), high):.4g}")
+    unit = f.OUTER_UNIT.get(spec.kind, "")
+    return f"{number:g} {unit}" if unit and chance.random() < 0.7 else number
+
+
+def _odd(job, chance, folder):
+    """A key and a value that is seldom right."""
+    chosen = chance.choice([*specs(job), *((key, None, None) for key in OTHER_KEYS)])
+    key, spec, _ = chosen
+    if key.endswith(".file") or (key in ("cell.machine", "process.bead_model") and chance.random() < 0.7):
+        name = chance.choice(PATHS)
+        return key, f"{folder}/{name}" if chance.random() < 0.6 else name
+    if spec is not None and spec.low is not None and chance.random() < 0.3:
+        return key, chance.choice((1.0, 1.0 - 1e-12, 1.0 + 1e-12, 0.999, 1e-6)) * spec.low / f.TO_INNER.get(spec.kind, 1.0)
+    if spec is not None and spec.high is not None and chance.random() < 0.3:
+        return key, chance.choice((1.0, 1.0 - 1e-12, 1.0 + 1e-12, 1.001, 1e6)) * spec.high / f.TO_INNER.get(spec.kind, 1.0)
+    if key == "fixtures":
+        other = {"file": "x.step", "faces": ["Face1"]}
+        return key, chance.choice(([], {}, [{}], [{"file": f"{folder}/block.step"}], [other], "x", [None]))
+    if key == "part.set":
+        properties = {"Radius": "9 mm"}, {"Shape": 1}, {}, {"Radius": [1]}
+        return key, chance.choice((*({name: chance.choice(properties)} for name in ("Cylinder", "Cup", "x")), "x"))
+    return key, chance.choice(ODD)
+
+
+def _restructured(job, chance):
+    """Sections and keys that go, move, are misspelt, stand twice, or are wrapped."""
+    for _ in range(chance.randint(1, 3)):
+        sections = [job, *(section for section in job.values() if isinstance(section, dict))]
+        section = chance.choice([section for section in sections if section] or [job])
+        key = chance.choice(list(section) or ["part"])
+        value = section.get(key)
+        done = chance.randrange(7)
+        if done == 0:
+            section.pop(key, None)
+        elif done == 1:
+            at = chance.randrange(len(key) + 1)
+            section[key[:at] + chance.choice("abz_- éß\u00a0") + key[at + chance.randint(0, 1):]] = section.pop(key, None)
+        elif done == 2:
+            chance.choice(sections)[key] = value
+        elif done == 3:
+            section[key] = [value]
+        elif done == 4:
+            for _ in range(chance.choice((1, 5, 19, 40))):
+                value = {key: value}
+            section[key] = value
+        elif done == 5:
+            section[chance.choice(("x", "", "part.file", "<<", "=", "null", "1", "é", "\u2028", "x" * 3000))] = value
+        else:
+            section[key] = chance.choice(ODD)
+    return _written(job)
+
+
+def damaged_text(data, chance):
+    """Bytes, signs and lines of a text that are others."""
+    for _ in range(chance.randint(1, 4)):
+        at, other = chance.randrange(max(1, len(data))), chance.randrange(max(1, len(data)))
+        low, high = sorted((at, other))
+        lines = data.split(b"\n")
+        row = chance.randrange(len(lines))
+        done = chance.randrange(12)
+        if done == 0:
+            data = data[:at]
+        elif done == 1:
+            data = data[:at] + bytes([chance.randrange(256)]) + data[at + 1:]
+        elif done == 2:
+            data = data[:at] + chance.choice(PUT_IN) + data[at:]
+        elif done == 3:
+            data = b"\n".join([*lines[:row], *lines[row + 1:]])
+        elif done == 4:
+            data = b"\n".join([*lines[:row], lines[row], *lines[row:]])
+        elif done == 5:
+            chance.shuffle(lines)
+            data = b"\n".join(lines)
+        elif done == 6:
+            digits = [k for k, sign in enumerate(data) if sign in b"0123456789"]
+            if digits:
+                place = chance.choice(digits)
+                data = data[:place] + chance.choice((b"-", b"9", b"0", b"e", b".", b"1e", b"999")) + data[place + 1:]
+        elif done == 7:
+            data = data[:low] + data[high:]
+        elif done == 8:
+            data = data[:high] + data[low:]
+        elif done == 9:
+            coding = chance.choice(("utf-16", "latin-1", "utf-7", "utf-8-sig"))
+            data = data.decode("utf-8", "replace").encode(coding, "replace")
+        elif done == 10:
+            data = data.replace(b"\n", chance.choice((b"\r\n", b"\r", b"\n\n", b"\x0b", b"\xe2\x80\xa8")))
+        else:
+            unit = chance.choice((b" m", b" in", b"mm", b" um", b" km", b" deg", b""))
+            data = data.replace(b" mm", unit, chance.randint(1, 3))
+    return data
+
+
+def _written(job):
+    """The job as YAML; what YAML cannot write is written as JSON would, which YAML reads."""
+    try:
+        return yaml.safe_dump(job, allow_unicode=True, sort_keys=False).encode("utf-8", "surrogatepass")
+    except (yaml.YAMLError, UnicodeError):
+        return json.dumps(job).encode()

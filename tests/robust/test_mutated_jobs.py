@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs to which something was done: each is carried out or refused, in time, and nothing is laid off its part."""
+
+import functools
+import math
+from pathlib import Path
+
+import numpy as np
+import Part
+import pytest
+import yaml
+
+from tests.robust import job_bases, mutations, rounds, triangles
+
+DEFLECTION = 0.05  # mm of the triangles that deposit points are held against
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    """The folder of the small parts."""
+    folder = tmp_path_factory.mktemp("parts")
+    job_bases.write_parts(folder)
+    return folder
+
+
+def mutated_job(parts, number, chance, folder):
+    """The words of a command with a mutated job, and how far points are off what they may be."""
+    known = job_bases.bases(str(parts))
+    job = folder / "job.yaml"
+    job.write_bytes(mutations.mutated(known[number % len(known)][1], chance, parts))
+    page = [] if chance.random() < 0.1 else ["--no-page"]
+    return ["plan", "job.yaml", "-o", "out", *page], functools.partial(off, job)
+
+
+@functools.cache
+def triangles_of(file):
+    shape = Part.Shape()
+    shape.read(file)
+    vertices, facets = shape.tessellate(DEFLECTION)
+    return np.array([[tuple(vertices[k]) for k in facet] for facet in facets])
+
+
+def off(path, points):
+    """By how much, mm, the farthest deposit point is farther off the part than its job allows; 0 where nobody can tell."""
+    job = yaml.safe_load(path.read_bytes())
+    file = path.parent / job["part"]["file"]
+    if file.suffix not in (".step", ".brep", ".igs") or not len(points):
+        return 0.0
+    strategy, process = job.get("strategy") or {}, job.get("process") or {}
+    around = triangles_of(str(file.resolve()))
+    away = triangles.distance(points, around)
+    chord = length(strategy.get("chord_error", 0.01))
+    if strategy.get("kind") == "developable":
+        away = np.where(triangles.inside(points, around), 0.0, away)
+        widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))
+        return away.max() - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)
+    if strategy.get("wall") == "middle":  # halfway between two walls of the part
+        return away.max() - 10.0
+    return away.max() - (chord + DEFLECTION + 0.02)
+
+
+def length(value):
+    """mm of a length as jobs write it; endless where it is written in another way."""
+    if isinstance(value, (int, float)):
+        return float(value)
+    number, _, unit = str(value).partition(" ")
+    try:
+        return float(number) * {"mm": 1.0, "": 1.0, "m": 1000.0, "in": 25.4, "um": 1e-3}[unit]
+    except (ValueError, KeyError):
+        return math.inf
+
+
+def test_every_base_is_sound(parts):
+    """Names of parts and machines as they are: all of them are found."""
+    for name, job in job_bases.bases(str(parts)):
+        assert all(Path(job[key]["file"]).is_file() for key in ("part", "substrate") if key in job), name
+
+
+def test_mutated_jobs(parts, tmp_path):
+    rounds.assert_sound(functools.partial(mutated_job, parts), 30, 1, tmp_path)
+
+
+@pytest.mark.long
+def test_ten_thousand_mutated_jobs(parts, tmp_path):
+    rounds.assert_sound(functools.partial(mutated_job, parts), 10_000, rounds.seed_of_round(), tmp_path)
