@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Drives a text as its reader tells it - what runs straight, where it stops or rounds - through PyKDL, and tells how deep
-the nozzle gets into hub and deposit. Shares nothing with planning, posts and verifying but the frames of the cell, and the
-closed form that turns a position with a CONFIG into joints, which PyKDL confirms."""
+the nozzle gets into hub and into beads, whose bodies are sampled densely. Shares nothing with planning, posts and verifying
+but the frames of the cell, and the closed form that turns a position with a CONFIG into joints, which PyKDL confirms."""
 
 import numpy as np
 
@@ -176,12 +176,26 @@ def depth_in_hub(tips, axes, nozzle, hub, top):
     return deepest
 
 
-def depth_in_deposit(tips, axes, nozzle, points):
-    """How deep, mm, points of the deposit get into the nozzle."""
-    if not len(points):
-        return 0.0
+def bead_body(tips, axes, width, height):
+    """Points (k, 3) in and on a bead laid along tips (n, 3), on which it stands along axes (n, 3): a stadium every mm."""
+    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(tips, axis=0), axis=1))]
+    at = np.linspace(0.0, way[-1], 2 + int(way[-1]))
+    tips, axes = (np.stack([np.interp(at, way, column) for column in each.T], axis=1) for each in (tips, axes))
+    side = np.cross(axes, np.gradient(tips, axis=0))
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    angle = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    round_, flat = 0.5 * height, 0.5 * (width - height)
+    across = np.r_[flat * np.sign(np.cos(angle)) + round_ * np.cos(angle), np.linspace(-0.5 * width, 0.5 * width, 7)]
+    up = round_ + np.r_[round_ * np.sin(angle), np.zeros(7)]
+    points = tips[:, None] + across[:, None] * side[:, None] + up[:, None] * axes[:, None]
+    return points.reshape(-1, 3)
+
+
+def depths_in_nozzle(tips, axes, nozzle, points):
+    """(n, k) how deep, mm, points (k, 3) are in the nozzle at tips and axes (n, 3), and how high over the tip; negative
+    outside."""
     away = points[None] - tips[:, None]
     height = np.einsum("npi,ni->np", away, axes)
     side = np.linalg.norm(away - height[..., None] * axes[:, None], axis=2)
     room = (0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * height - side) * np.cos(nozzle.half_angle)
-    return float(np.maximum(np.minimum(np.minimum(room, height), nozzle.length - height), 0.0).max())
+    return np.minimum(np.minimum(room, height), nozzle.length - height), height

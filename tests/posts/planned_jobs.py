@@ -23,12 +23,13 @@ from freecad_am.core.planning.program import build
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from freecad_am.posts import catalogue
 
-CHORD_ERROR, SPEED, SIDES = 0.05, 8.0, 3
+CHORD_ERROR, SPEED, SIDES, LIFT = 0.05, 8.0, 3, 20.0
+WIDTH, HEIGHT = 8.0, 3.0  # of beads
 # of which the hub is told to the planner; the beads' first layer lies on the larger one
 STEEP, FLAT, SKIN = Developable(60.0, 270.0), Developable(60.0, 60.0), 2.0
 PROCESS = ProcessParameters(
-    travel_speed=SPEED, lead_on=0.5, lead_off=0.25,
-    between_layers=BetweenLayersParameters(wait=2.5, input=3, call="clean", lift=20.0),
+    travel_speed=SPEED, bead_width=WIDTH, lead_on=0.5, lead_off=0.25,
+    between_layers=BetweenLayersParameters(wait=2.5, input=3, call="clean", lift=LIFT),
 )
 
 
@@ -77,7 +78,7 @@ WAYS = (
 
 def _bead(hub, side, layer):
     """A short bead on one side: along the cone and a little around it."""
-    skin, share = hub.offset(SKIN + 3.0 * layer), np.linspace(0.0, 1.0, 9)
+    skin, share = hub.offset(SKIN + HEIGHT * layer), np.linspace(0.0, 1.0, 9)
     theta, z = 2.0 * math.pi * side / SIDES + 0.3 * share, 12.0 + 18.0 * share
     rho = skin.radius * (1.0 - z / skin.height)
     points = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
@@ -102,23 +103,27 @@ def body(setup):
 
 
 @functools.cache
-def planned(name):
-    """The cell, the beads and the motion of a set-up."""
+def planned(name, lift=LIFT):
+    """The cell, the beads and the motion of a set-up. Without a retract distance all beads are on one side, each on the one
+    before: the straight way back to the next start leads through what was just laid."""
     setup = SETUPS[name]
     cell = cells.resolve(setup.cell, np.eye(4), "developable")
-    layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in range(SIDES))) for k in range(2))
-    path = plan_joints(Toolpath(layers, np.eye(4), 3.0, CHORD_ERROR, family="developable"), cell, JointParameters(degree=1))
+    sides = range(SIDES if lift else 1)
+    layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in sides)) for k in range(2))
+    path = plan_joints(
+        Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable"), cell, JointParameters(degree=1))
     assert path.feasible, [issue.message for issue in path.issues]
-    motion, issues = assemble(path, cell, PROCESS, [body(setup)])
+    process = dataclasses.replace(PROCESS, between_layers=dataclasses.replace(PROCESS.between_layers, lift=lift))
+    motion, issues = assemble(path, cell, process, [body(setup)], layer_height=HEIGHT)
     assert not has_errors(issues), [issue.message for issue in issues]
     return cell, [bead.bead for bead in path.beads], motion
 
 
 @functools.cache
-def written(way, max_points=2000):
+def written(way, max_points=2000, lift=LIFT):
     """The cell, the motion, the program and its files."""
     post, kind, feed, name = way
-    cell, beads, motion = planned(name)
+    cell, beads, motion = planned(name, lift)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
         motion = moving_tool.kept_straight(motion, cell, CHORD_ERROR, beads)
     parameters = ProgramParameters(post=post, motion=kind, max_points=max_points, nc=NcParameters(feed=feed))

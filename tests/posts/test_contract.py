@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path that was looked at is the path that a text drives: every post, motion and set-up, from the text alone, rapids
-included, through PyKDL, against a hub, the deposit laid so far and the platform."""
+"""The path that was looked at is the path that a text drives: every post, motion and set-up, from the text alone, every row
+of it - deposit, retract, travel and approach - through PyKDL, against a hub, the platform, and the beads laid so far, as
+wide and as high as they are."""
 
 import re
 
@@ -8,36 +9,66 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import ERROR
+from freecad_am.core.planning import rapids
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.posts.driven import Drive, depth_in_deposit, depth_in_hub
-from tests.posts.planned_jobs import CHORD_ERROR, SETUPS, WAYS, written
+from tests.posts import planned_jobs
+from tests.posts.driven import Drive, bead_body, depth_in_hub, depths_in_nozzle
+from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, WAYS, WIDTH, written
 
-# mm: how deep a travel may touch what its looks, 5 deg apart, did not see; and how far digits and chords lead away
-DEEP, APART = 0.5, 0.15
+# mm: how deep the nozzle may touch: looks 0.5 mm apart, and digits; and how far digits and chords lead away
+DEEP, APART = 0.3, 0.15
 CARTESIAN = ("fanuc", "cartesian", "time", "fanuc tool-on-robot")
+# one of each post
+STACKED = (WAYS[1], WAYS[4], ("siemens", "joint", "time", "table"), ("linuxcnc", "cartesian", "time", "table"))
 
 
-def contacts(way, files):
-    """(row, mm) of the travels of a text that get into hub, deposit or platform, and the drive."""
-    cell, motion, _, _ = written(way)
+def bodies_of(drive, laying):
+    """Points in the bead that ends at each row of a text, none at rapids; beads are as their text lays them."""
+    bodies = [np.zeros((0, 3))]
+    for row in range(1, len(laying)):
+        tips, axes = drive.way(row)
+        bodies.append(bead_body(tips, axes, WIDTH, HEIGHT) if laying[row] else np.zeros((0, 3)))
+    return bodies
+
+
+def inside_at(drive, row, points):
+    """(k,) which of the points are in the nozzle where a row ends: none of those above the bead that it stands in."""
+    tip, axis = drive.ends(row)
+    deep, height = (each[0] for each in depths_in_nozzle(tip[None], axis[None], drive.cell.nozzle, points))
+    return (deep > 0.0) & (height < HEIGHT)
+
+
+def contacts(way, files, lift=planned_jobs.LIFT):
+    """(row, mm) of the rows of a text on which the nozzle gets into hub, deposit or platform, and the drive.
+
+    What is in the nozzle while it lays an end of a bead, no higher over the tip than the bead, may be in it on the way off
+    and onto that end.
+    """
+    cell, motion, _, _ = written(way, lift=lift)
     setup, rows = SETUPS[way[3]], np.flatnonzero(motion.moves)
     drive = Drive(cell, catalogue.load(way[0]).read(files), motion.joints[rows[0]])
-    found, laid = [], np.zeros((0, 3))
+    laying, nozzle, found = drive.read.deposit, cell.nozzle, []
+    bodies = bodies_of(drive, laying)
     for row in range(1, len(rows)):
         tips, axes = drive.way(row)
-        if drive.read.deposit[row]:
-            laid = np.vstack([laid, tips[:: max(1, len(tips) // 3)]])
-            continue
-        if motion.role[rows[row]] != 2:  # retract and approach begin and end in what they touch
-            continue
-        height = (tips - cell.mount[:3, 3]) @ cell.mount[:3, 2]
+        laid = np.concatenate(bodies[:row])
+        deep, height = depths_in_nozzle(tips, axes, nozzle, laid)
+        if laying[row]:
+            deep = np.minimum(deep, height - HEIGHT)
+        else:
+            before = row - int(np.argmax(laying[:row][::-1])) - 1 if laying[:row].any() else None
+            after = row + int(np.argmax(laying[row:])) - 1 if laying[row:].any() else None
+            for end in (before, after):
+                if end is not None:
+                    deep = np.where(inside_at(drive, end, laid), 0.0, deep)
+        up = (tips - cell.mount[:3, 3]) @ cell.mount[:3, 2]
         beside = np.linalg.norm((tips - cell.mount[:3, 3]) @ cell.mount[:3, :2], axis=1) > 0.5 * cell.platform_diameter
-        deep = max(
-            depth_in_hub(tips, axes, cell.nozzle, setup.hub, setup.top), depth_in_deposit(tips, axes, cell.nozzle, laid),
-            float(np.where(beside, 0.0, -height).max()),
+        deepest = max(
+            depth_in_hub(tips, axes, nozzle, setup.hub, setup.top), float(deep.max(initial=0.0)),
+            float(np.where(beside, 0.0, -up).max()),
         )
-        found += [(row, deep)] if deep > DEEP else []
+        found += [(row, deepest)] if deepest > DEEP else []
     return found, drive
 
 
@@ -67,6 +98,33 @@ def test_travels_have_something_to_pass(way):
     rows = np.flatnonzero(motion.moves)
     lifted = np.flatnonzero(motion.role[rows] == 2)
     assert len(lifted) >= 5 and np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)[lifted[1:] - 1].min() > 60.0
+
+
+@pytest.mark.parametrize("way", STACKED, ids=" ".join)
+def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
+    files = written(way, lift=0.0)[3]
+    found, drive = contacts(way, files, 0.0)
+    assert found == []
+    assert (~drive.read.deposit).sum() >= 4  # there is a retract after all
+
+
+@pytest.mark.parametrize("broken", ["beads are lines", "moves off and onto beads are not looked at", "nothing is laid yet"])
+def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
+    """The same jobs planned by a check that misses something: the drive of the text finds it."""
+    way = STACKED[0]
+    met, built = rapids.Surroundings.met, rapids.of_beads
+    with monkeypatch.context() as patch:
+        if broken == "beads are lines":
+            patch.setattr(rapids, "of_beads", lambda points, build, width, *rest, **more: built(
+                points, build, 0.0 * width, *rest, **more))
+        elif broken == "nothing is laid yet":
+            patch.setattr(rapids.Surroundings, "met", lambda self, moves: met(self, moves._replace(laid=0 * moves.laid)))
+        else:
+            patch.setattr(rapids.Surroundings, "met", lambda self, moves: np.zeros(len(moves.laid), dtype=bool))
+        planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
+        found, _ = contacts(way, written(way, lift=0.0)[3], 0.0)
+    planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
+    assert found
 
 
 def old_text(files):

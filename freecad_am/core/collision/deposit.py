@@ -12,6 +12,7 @@ import numpy as np
 from .frustum import Array, Index, Mask
 from .obstacles import Obstacles
 
+BENT = 0.2  # rad that joined pieces turn at most: so they are as near to the bead as its own chords
 CORNER = np.cos(np.radians(10.0))  # of the turn from one segment to the next, beyond which the outer side is filled
 
 
@@ -23,7 +24,7 @@ def of_beads(
 
     width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
-    this. A piece is there from the moment of the point at its end. Where no bead has a width they are lines.
+    this. A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
     """
     n = len(points)
     first = np.zeros(n, dtype=bool)
@@ -32,8 +33,16 @@ def of_beads(
     kept = np.arange(n)
     if grain > 0.0 and n:
         last = np.append(first[1:], True)
-        step = np.where(first, 0.0, np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1))
-        kept = np.flatnonzero(first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0))
+        way = np.diff(points, axis=0, prepend=points[:1])
+        size = np.linalg.norm(way, axis=1)
+        step = np.where(first, 0.0, size)
+        way /= np.maximum(size, 1e-12)[:, None]
+        # what is turned at a point is the difference to the way on from it
+        turn = np.where(first | last, 0.0, np.linalg.norm(np.diff(way, axis=0, append=way[-1:]), axis=1))
+        kept = np.flatnonzero(
+            first | last | (np.diff(np.floor(np.cumsum(step) / grain), prepend=0.0) > 0.0)
+            | (np.diff(np.floor(np.cumsum(turn) / BENT), prepend=0.0) > 0.0)
+        )
     moment = np.arange(n) if moments is None else moments
     wide, tall = (np.broadcast_to(np.asarray(each, dtype=float), n)[kept] for each in (width, height))
     points, build, moment, first = points[kept], build[kept], moment[kept], first[kept]
@@ -44,7 +53,7 @@ def of_beads(
     begin = end - 1
     line = np.stack([points[begin], points[end]], axis=1)
     since = moment[end]
-    if not wide.any():
+    if not (wide.any() and tall.any()):
         return Obstacles(line, since)
     along /= size[:, None]
     wide, tall = 0.5 * (wide[begin] + wide[end]), 0.5 * (tall[begin] + tall[end])

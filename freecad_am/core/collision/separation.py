@@ -57,7 +57,7 @@ def bounds(
 def within(solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
     """(k,) whether hulls of points (k, c, 3) with a rounding of the radius (k,) mm about them reach into solids."""
     deep = np.maximum(radius - CONVERGED, 0.0)
-    _, high = bounds(solid, axis, points, deep, deep)
+    _, high = bounds(solid, axis, points, deep, np.maximum(deep, CONVERGED))
     found: Mask = (high < deep) | (high == 0.0)
     return found
 

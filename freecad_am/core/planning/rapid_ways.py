@@ -81,8 +81,10 @@ class RapidWays:
         beads = [path.bead for path in self.beads]
         first = np.zeros(int(self.rows[-1]), dtype=bool)
         first[self.rows[:-1]] = True
+        points, build, tool = (
+            np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build", "tool"))
         return Deposit(
-            np.concatenate([bead.points for bead in beads]), np.concatenate([bead.build for bead in beads]),
+            points, build, tool,
             np.concatenate([np.full(len(bead), width) if bead.width is None else bead.width for bead in beads]),
             np.concatenate([np.full(len(bead), height) if bead.height is None else bead.height for bead in beads]), first,
         )
@@ -157,19 +159,7 @@ class RapidWays:
     def _moves(self, k: int, way: Way) -> Moves:
         """The moves of way k as they are looked at."""
         joints = way.joints if way.start is None else np.vstack([way.start, way.joints])
-        nowhere = np.full(3, np.nan)
-        left = self.beads[k - 1].bead.points[-1] if k else nowhere
-        entered = self.beads[k].bead.points[0] if k < len(self.beads) else nowhere
-        count = max(len(joints) - 1, 0)
-        return Moves(joints[:-1], joints[1:], np.full(count, self.rows[k], dtype=np.intp),
-                     np.tile(left, (count, 1)), np.tile(entered, (count, 1)), self._over(way))
-
-    def _over(self, way: Way) -> NDArray[np.bool_]:
-        """Which moves of a way lead from above one bead to above the next."""
-        role = way.role if way.start is not None else way.role[1:]
-        travels = role == TRAVEL
-        # without retract or approach a travel begins or ends in a bead
-        return travels if APPROACH in role and (RETRACT in role or way.start is None) else np.zeros(len(role), dtype=bool)
+        return Moves(joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp))
 
     def _met(self, some: Sequence[int], ways: Sequence[Way]) -> list[int]:
         """The ways, of those numbered, on which anything is met."""

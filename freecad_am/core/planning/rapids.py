@@ -19,13 +19,13 @@ from ..collision.bodies import Bodies
 from ..collision.deposit import of_beads
 from ..collision.frustum import beside_tip
 from ..collision.nozzle import Nozzle, travelling
-from ..collision.obstacles import Obstacles
 from ..collision.scene import scene
+from ..collision.standing import standing_heights
 from ..collision.tolerances import ABOVE_FACES
 from ..geometry.surroundings import Body, disc
 from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
-from ..motion import DEPOSIT, TRAVEL, Motion
+from ..motion import Motion
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -38,29 +38,23 @@ SLIDE = 5.0
 # anything, with the nozzle itself
 COARSE = 5.0
 FINE = 0.5
-# length of the segments the deposit is looked at as, mm, and how far it may turn along one of them, rad: so they are as near
-# to the bead as its own chords
+# length of the pieces the deposit is looked at as, mm
 GRAIN = 1.5
-BENT = 0.2
 # moves driven at once, so that large jobs need no more memory than small ones
 MOVES = 4096
 
 
 class Moves(NamedTuple):
-    """Rapid moves: joints (k, axes) they start and end at, how many deposit rows (k,) are there by then, and the points
-    (k, 3) mm at which the bead before ends and the next starts, NaN where there is none. over: (k,) whether the move leads
-    from above the one to above the other."""
+    """Rapid moves: joints (k, axes) they start and end at, and how many deposit rows (k,) are there by then: the last of
+    these is where the bead before ends, the one after it where the next starts."""
 
     start: Array
     end: Array
     laid: Index
-    left: Array
-    entered: Array
-    over: Mask
 
     def of(self, rows: Index) -> Moves:
         """Those of the rows."""
-        return Moves(self.start[rows], self.end[rows], self.laid[rows], self.left[rows], self.entered[rows], self.over[rows])
+        return Moves(self.start[rows], self.end[rows], self.laid[rows])
 
 
 class Looks(NamedTuple):
@@ -73,38 +67,57 @@ class Looks(NamedTuple):
 
 
 class Deposit(NamedTuple):
-    """Deposit rows in order: points and build directions (m, 3), width and height (m,) mm of the beads, and whether each is
-    the first of one (m,)."""
+    """Deposit rows in order: points, build directions and tool axes (m, 3), width and height (m,) mm of the beads, and
+    whether each is the first of one (m,)."""
 
     points: Array
     build: Array
+    tool: Array
     width: Array
     height: Array
     first: Mask
 
 
-class Surroundings:
-    """What is in the way of rapids: deposit with the row from which it is there, platform and bodies.
+class _Ends(NamedTuple):
+    """Ends of beads by a number: points (m, 3), NaN where there is none, and the heights (m,) mm that are left out there."""
 
-    Moves from above one bead to above another are looked at among beads of their width and height. On the way off a bead and
-    onto one they are the lines they are laid along, as while depositing.
+    point: Array
+    height: Array
+
+
+class Surroundings:
+    """What is in the way of rapids: beads of their width and height, with the row from which they are there, platform and
+    bodies.
 
     Where the nozzle retracts from the end of a bead or comes to the start of one, it touches what it has laid and what that
-    stands on, as while depositing: there its part below a height is left out, that at which its side is one diameter of the
-    tip from the deposit point, less the distance of the tip from that point. Withdrawn along its axis, a cone stays within
-    the room that it kept clear while depositing, above that height at the deposit point: so nothing more need be left out,
-    wherever the move leads.
+    stands on, as while depositing: there its part below a height is left out, less the distance of the tip from that
+    point. Against deposit it is the height to which the nozzle stands in it at the point (`standing_heights`), against
+    bodies that at which its side is one diameter of the tip from the point. Withdrawn along its axis, a cone stays within
+    the room that it had above that height: so nothing more need be left out, wherever the move leads.
     """
 
     def __init__(self, cell: Cell, deposit: Deposit, bodies: Sequence[Body]) -> None:
         self.cell = cell
         platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
         self.bodies = (*bodies, *platform)
-        self.lines = Obstacles(*_segments(deposit.points, deposit.first))
-        self.solid = of_beads(
-            deposit.points, deposit.build, deposit.width, deposit.height, deposit.first, grain=GRAIN)
+        self.laid = of_beads(deposit.points, deposit.build, deposit.width, deposit.height, deposit.first, grain=GRAIN)
+        self._left, self._entered = self._ends(deposit)
         self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
         self._bodies = scene((), deposit.points, 0.0).bodies
+
+    def _ends(self, deposit: Deposit) -> tuple[_Ends, _Ends]:
+        """Where beads are left and come to, by the number of rows (m + 1) that are there by then."""
+        starts = np.flatnonzero(deposit.first)
+        ends = np.append(starts[1:], len(deposit.points)) - 1
+        rows, when = np.concatenate([ends, starts]), np.concatenate([ends + 1, starts])
+        heights = standing_heights(
+            self.laid, *_sizes(self.cell), deposit.points[rows], deposit.tool[rows], deposit.height[rows], when)
+        found = []
+        for some in np.split(np.arange(len(rows)), 2):
+            point, height = np.full((len(deposit.points) + 1, 3), np.nan), np.zeros(len(deposit.points) + 1)
+            point[when[some]], height[when[some]] = deposit.points[rows[some]], heights[some]
+            found.append(_Ends(point, height))
+        return found[0], found[1]
 
     def met(self, moves: Moves) -> Mask:
         """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
@@ -143,11 +156,7 @@ class Surroundings:
         return found
 
     def _deposit_touched(self, nozzle: Nozzle, looks: Looks, moves: Moves) -> Mask:
-        found = np.zeros(len(looks.tip), dtype=bool)
-        over, laid = moves.over[looks.move], moves.laid[looks.move]
-        for deposit, some in ((self.lines, ~over), (self.solid, over)):
-            rows = np.flatnonzero(some)
-            found[rows] = deposit.touched(nozzle.deposit.rows(rows), looks.tip[rows], looks.axis[rows], laid[rows])
+        found: Mask = self.laid.touched(nozzle.deposit, looks.tip, looks.axis, moves.laid[looks.move])
         return found
 
     def _around(self, tip: Array) -> Bodies:
@@ -159,18 +168,22 @@ class Surroundings:
             more = 0.5 * (high - low) if known else np.zeros(3)
             least, most = self._box
             self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
-            nozzle = self.cell.nozzle
-            reach = float(np.hypot(nozzle.length, 0.5 * nozzle.diameter + np.tan(nozzle.half_angle) * nozzle.length))
+            radius, slope, length = _sizes(self.cell)
+            reach = float(np.hypot(length, radius + slope * length))
             self._bodies = scene(self.bodies, self._box, reach).bodies
         return self._bodies
 
     def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
         """The nozzle at each look, less what touches rightly near the ends of beads."""
-        nozzle = self.cell.nozzle
-        radius, slope = 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle))
-        away = np.fmin(*(np.linalg.norm(looks.tip - end[looks.move], axis=1) for end in (moves.left, moves.entered)))
-        exempt = np.fmax(beside_tip(radius, slope) + ABOVE_FACES - away, 0.0)
-        return travelling(radius, slope, nozzle.length, exempt)
+        radius, slope, length = _sizes(self.cell)
+        laid = moves.laid[looks.move]
+        about = beside_tip(radius, slope) + ABOVE_FACES
+        bodies, deposit = np.zeros(len(laid)), np.zeros(len(laid))
+        for end in (self._left, self._entered):
+            away = np.linalg.norm(looks.tip - end.point[laid], axis=1)
+            bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[laid] - away)
+        return Nozzle(
+            travelling(radius, slope, length, bodies).bodies, travelling(radius, slope, length, deposit).deposit)
 
 
 def collisions(
@@ -187,7 +200,7 @@ def collisions(
         rows, moves = rows[chosen], moves.of(np.flatnonzero(chosen))
     laid = motion.deposit
     none = np.zeros(int(laid.sum()))  # a motion does not tell how high its beads are
-    deposit = Deposit(motion.position[laid], motion.build[laid], none, none, motion.point[laid] == 0)
+    deposit = Deposit(motion.position[laid], motion.build[laid], motion.tool[laid], none, none, motion.point[laid] == 0)
     surroundings = Surroundings(cell, deposit, bodies)
     met = surroundings.met(moves)
     places: dict[tuple[int, int], list[int]] = {}
@@ -211,18 +224,7 @@ def collision(names: Sequence[str], layer: int, bead: int) -> Issue:
 def moves_of(motion: Motion) -> tuple[Index, Moves]:
     """The rows (k,) of a motion that a rapid move leads to, and the moves. The way to its first row is not known."""
     rows = np.flatnonzero(~motion.deposit[1:]) + 1
-    laid = np.flatnonzero(motion.deposit)
-    before = np.searchsorted(laid, rows)
-    points = np.concatenate([np.full((1, 3), np.nan), motion.position[laid], np.full((1, 3), np.nan)])
-    return rows, Moves(motion.joints[rows - 1], motion.joints[rows], before, points[before], points[before + 1],
-                       _over(motion.role, rows))
-
-
-def _over(role: Index, rows: Index) -> Mask:
-    """Which of the rapid rows lead from above one bead to above the next."""
-    onward = np.append(role[1:], DEPOSIT)[rows]
-    over: Mask = (role[rows] == TRAVEL) & (role[rows - 1] != DEPOSIT) & (onward != DEPOSIT)
-    return over
+    return rows, Moves(motion.joints[rows - 1], motion.joints[rows], np.searchsorted(np.flatnonzero(motion.deposit), rows))
 
 
 def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
@@ -262,19 +264,7 @@ def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
     ))
 
 
-def _segments(points: Array, first: Mask) -> tuple[Array, Index]:
-    """The deposit as segments (k, 2, 3) of about GRAIN, and the row (k,) from which each is there; a bead of one row is a
-    segment without length."""
-    step = np.diff(points, axis=0, append=points[-1:])
-    length = np.linalg.norm(step, axis=1)
-    way = step / np.maximum(length, 1e-12)[:, None]
-    turn = np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=1)
-    passed = np.floor(np.concatenate([[0.0], np.cumsum(length)])[: len(points)] / GRAIN)
-    bent = np.floor(np.cumsum(turn) / BENT)
-    kept = np.flatnonzero(
-        first | np.append(first[1:], True)[: len(points)] | (np.diff(passed, prepend=-1.0) > 0)
-        | (np.diff(bent, prepend=-1.0) > 0)
-    )
-    start = np.where(first[kept], kept, np.append(kept[:1], kept[:-1]))
-    whole = ~first[kept] | np.append(first[1:], True)[kept]
-    return np.stack([points[start], points[kept]], axis=1)[whole], kept[whole]
+def _sizes(cell: Cell) -> tuple[float, float, float]:
+    """Radius of the nozzle's tip, tangent of its half angle, and its length, mm."""
+    nozzle = cell.nozzle
+    return 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length

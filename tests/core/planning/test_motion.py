@@ -114,12 +114,11 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     _, cell, _, motion = planned()
     some = motion.deposit
     flat = np.zeros(int(some.sum()))
-    deposit = Deposit(motion.position[some], motion.build[some], flat, flat, motion.point[some] == 0)
+    deposit = Deposit(motion.position[some], motion.build[some], motion.tool[some], flat, flat, motion.point[some] == 0)
     surroundings = Surroundings(cell, deposit, ())
     poses = cell.machine.opw.inverse(cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1)))[:, 0]
     joints = poses[np.isfinite(poses).all(axis=1)][:1]
-    nowhere = np.full((1, 3), np.nan)
-    moves = Driven(joints, joints, np.zeros(1, dtype=int), nowhere, nowhere, np.array([True]))
+    moves = Driven(joints, joints, np.zeros(1, dtype=int))
     assert surroundings.met(moves)[0] == met
     assert surroundings.names(moves) == ["the platform"] * met
 
