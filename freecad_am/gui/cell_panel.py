@@ -32,7 +32,8 @@ from .view_cell import toolpath_of
 from .worker import Worker
 
 MACHINE, SETUP, POINT, BRANCH = "cell_machine", "cell_setup", "cell_deposition_point", "cell_branch"
-_OF_ROBOTS = (SETUP, POINT, BRANCH, "cell_nozzle_tool")
+TOOL = "cell_nozzle_tool"
+_OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL)
 
 
 class CellPanel(PreviewPanel):
@@ -50,13 +51,13 @@ class CellPanel(PreviewPanel):
         self.aside = Aside()
         super().__init__(tr("Cell") if obj is None else obj.Label, [], obj, CellNodes(ghost=True))
         self._add_machine_box()
-        self.tips = {place: self.places[place][0].widget.toolTip() for place in _OF_ROBOTS}
         self.enabled = {place: self.places[place][0].widget.isEnabled() for place in _OF_ROBOTS}
         if obj is None:
             self.put.update((place, self._holds(place)) for place in (POINT, BRANCH))
         self.proposing = Background(self.form)
         self.later = Later(self.form, self._follow)
         self._widget(MACHINE).editTextChanged.connect(self.later.ask)
+        self._widget(SETUP).currentIndexChanged.connect(self._follow)
         self._follow()
 
     def _add_machine_box(self) -> None:
@@ -84,14 +85,14 @@ class CellPanel(PreviewPanel):
         if self.unknown and self.unknown == self.notes[MACHINE].text():
             self.tell(MACHINE, "")
         self._set_setup(machine.is_table)
-        for place in _OF_ROBOTS:
-            field, _, fold = self.places[place]
-            widget = field.widget
-            fold.enable(widget, self.enabled[place] and not machine.is_table)
-            fixed = tr("No choice for {}: the part lies on its table").format(machine.title)
-            widget.setToolTip(fixed if machine.is_table else self.tips[place])
+        self._fit(machine.is_table)
         self._offer_limits(list(machine.limit_sets))
         self._ask_proposal(name, machine)
+
+    def _fit(self, is_table: bool) -> None:
+        """Leave out what has no meaning for the machine, or with what the robot carries."""
+        without = _OF_ROBOTS if is_table else (TOOL,) if self._widget(SETUP).currentData() == PART_ON_ROBOT else ()
+        self.leave_out(without, also_entered=True)
 
     def _tell_of_machine(self, text: str) -> None:
         """What is wrong with the machine, until another one is followed."""

@@ -25,10 +25,11 @@ _MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
 
 def of_stage(menu: Any, obj: Any) -> None:
     """What can be done with a stage: edit, renew, follow it to its inputs; more by its kind."""
-    from . import stage_panel
+    from . import program_window, stage_panel
 
     kind = obj.Proxy.kind
     if kind == "program":
+        _add(menu, "ReadProgram", tr("Read the text…"), lambda: program_window.show(obj), bool(obj.Key))
         _add(menu, "EditProgram", tr("Edit parameters…"), lambda: stage_panel.edit(obj))
         _add(menu, "ExportProgram", tr("Export files…"), lambda: _export(obj), bool(obj.Key))
     else:

@@ -16,6 +16,7 @@ from ..core.parameters import field as f
 from ..objects import preferences
 from ..objects.expressions import FOLLOW, is_expression
 from ..objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
+from . import choices
 from .quantity import PlainQuantity, QuantityField
 from .texts import tr, translated
 
@@ -24,7 +25,9 @@ _NUMBERS = (*_QUANTITIES, f.TURN_RATE, f.NUMBER, f.RATIO)
 _POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
 _POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
 _PLAIN = re.compile(r"[-+]?(?:\d+|\d*\.\d+)(?:[eE][-+]?\d+)?")
+Texts = Callable[[], list[tuple[str, str]]]
 _LARGEST = 2_147_483_647
+LEAST_MM = 1e-3  # FreeCAD shows shorter lengths in nm
 
 
 class Field:
@@ -76,10 +79,10 @@ class Field:
 
 
 def make(
-    row: Row, value: Any, suggestions: Callable[[], list[str]] | None = None, expression: str = "", section: str = ""
+    row: Row, value: Any, suggestions: Texts | None = None, expression: str = "", section: str = ""
 ) -> Field:
-    """The field of a row that shows an inner value, or the expression it follows; `suggestions` are texts to choose from.
-    The section, of a job file, is for its help."""
+    """The field of a row that shows an inner value, or the expression it follows; `suggestions`: texts to choose from, and
+    what is shown of each. The section, of a job file, is for its help."""
     field = _make(row, value, suggestions, expression)
     for widget in (field.widget, *field.widget.findChildren(QtGui.QWidget)):
         with contextlib.suppress(RuntimeError):  # a dead one, found at the same place in memory (docs/versions.md)
@@ -106,14 +109,15 @@ def whats_this(row: Row, section: str) -> str:
     return "<b>{}</b><p>{}</p>".format(translated(row.label), "<br>".join(map(html.escape, lines)))
 
 
-def _make(row: Row, value: Any, suggestions: Callable[[], list[str]] | None, expression: str) -> Field:
+def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> Field:
     shown = row.outer(value)
     if row.form == f.POSE:
         return _pose(row, shown)
     if row.form == f.SPEED:
         return _speed(row, shown, expression)
     if row.form in _QUANTITIES:
-        quantity = QuantityField(shown, row.unit, row.label, expression)
+        made = PlainQuantity if row.form == f.LENGTH and 0.0 < abs(shown) < LEAST_MM else QuantityField
+        quantity = made(shown, row.unit, row.label, expression)
         return Field(row, quantity.box, quantity.read, quantity.show)
     if row.form == f.CHOICE:
         return _choice(row, shown)
@@ -195,26 +199,18 @@ def _number(text: str, name: str) -> float | str:
 def _choice(row: Row, shown: str) -> Field:
     combo = QtGui.QComboBox()
     for choice in row.spec.choices:  # a job file and a macro have the word itself
-        combo.addItem(translated(choice), choice)
-    _shrink(combo)
+        combo.addItem(choices.worded(choice), choice)
+    choices.shrink(combo)
     combo.setCurrentIndex(row.spec.choices.index(shown))
     return Field(row, combo, combo.currentData)
 
 
-def _suggested(row: Row, shown: str, texts: list[str]) -> Field:
+def _suggested(row: Row, shown: str, texts: list[tuple[str, str]]) -> Field:
     combo = QtGui.QComboBox()
     combo.setEditable(True)
-    combo.addItems(texts)
-    _shrink(combo)
-    combo.setEditText(shown)
-    combo.lineEdit().setCursorPosition(0)
-    return Field(row, combo, lambda: combo.currentText().strip(), combo.setEditText)
-
-
-def _shrink(combo: Any) -> None:
-    """Let a box be narrower than its longest text: the panel is narrow."""
-    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
-    combo.setMinimumContentsLength(8)
+    choices.offer(combo, texts)
+    choices.enter(combo, shown)
+    return Field(row, combo, lambda: choices.entered(combo), lambda value: choices.enter(combo, value))
 
 
 def _pose(row: Row, shown: tuple[float, ...]) -> Field:

@@ -98,6 +98,12 @@ class Fold:
         widget.setEnabled(on)
         self.rows[widget.objectName()][0].setEnabled(on)
 
+    def show(self, widget: Any, on: bool) -> None:
+        """Show the row of a field, or leave it out; a part of the panel that has no row left goes as a whole."""
+        for one in self.rows[widget.objectName()]:
+            one.setVisible(on)
+        self.widget.setVisible(any(not name.isHidden() for name, _ in self.rows.values()))
+
     def add_below(self, widget: Any, more: Any) -> None:
         """A row of the whole width right below that of a field."""
         both = self.rows[widget.objectName()][1]

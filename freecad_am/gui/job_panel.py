@@ -17,7 +17,7 @@ from ..core.parameters.cell import CellParameters
 from ..objects import preferences
 from ..objects.progress import Cancelled
 from ..objects.staleness import UP_TO_DATE
-from . import guess, icons, inputs, picking, recorded, suggestions
+from . import choices, guess, icons, inputs, picking, recorded
 from .busy import carry_out
 from .colours import WRONG
 from .fold import Fold
@@ -78,9 +78,8 @@ class JobPanel:
         self.machine.setObjectName("Machine")
         self.machine.setToolTip(tr("The machine that deposits; the program is written for its controller"))
         self.machine.setEditable(True)
-        self.machine.setMinimumContentsLength(12)
-        self.machine.addItems(suggestions.of("cell", "machine")())
-        self.machine.setEditText(_machine_before(self.document))
+        choices.offer(self.machine, choices.machines())
+        choices.enter(self.machine, _machine_before(self.document))
         self.name = inputs.NameChoice("")
         self.fold = Fold(tr("Inputs"), True)
         rows = (
@@ -267,7 +266,7 @@ class JobPanel:
             told["faces"] = repr(list(first.names))
             if found.ground is not None:
                 told["substrate"] = recorded.reference(found.ground.obj)
-        machine = self.machine.currentText().strip()
+        machine = choices.entered(self.machine)
         if machine != CellParameters().machine:
             told["machine"] = repr(machine)
         if preferences.post():

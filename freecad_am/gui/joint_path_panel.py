@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ..core.issues import ERROR, Issue
+from ..core.issues import ERROR, InputError, Issue
 from ..core.kinematics import cell as cells
+from ..core.kinematics import machine as machines
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.judgement import Judgement, judged
-from ..core.planning.plan import plan_joints
+from ..core.planning.plan import OF_ROBOTS, plan_joints
 from ..core.planning.sampled import Sampled, sampled
-from ..objects import progress
+from ..objects import progress, user_machines
 from ..objects.joint_path import Job, JointPath
 from ..objects.stage import Outcome
 from . import inputs
@@ -27,6 +29,10 @@ from .texts import tr, translated
 
 MOST = 1000  # points that are planned for a preview, about: a second or two
 MOST_TOLD = 3  # findings
+METHOD = "joints_method"
+_ENDS = {"joints_rotation_range_low", "joints_rotation_range_high"}
+_OF_ROTARY_AXES = ("lock", "lock_at", "max_residual")
+_OF_METHODS = {"constant": ("rz",), "layer-by-layer": ("degree", "given", "parameter")}
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,25 @@ class JointPathPanel(PreviewPanel):
         super().__init__(
             tr("Joint path") if obj is None else obj.Label, inputs.of(JointPath, obj), obj, JointPathNodes()
         )
+        self.places[METHOD][0].widget.currentIndexChanged.connect(self._fit)
+        self._cell().widget.currentIndexChanged.connect(self._fit)
+        self._fit()
+
+    def _cell(self) -> Any:
+        return next(one for one in self.choices if isinstance(one, inputs.StageChoice) and one.link.kind == "cell")
+
+    def _fit(self, *_: Any) -> None:
+        """Leave out what has no meaning for the machine of the cell, or with the method."""
+        with contextlib.suppress(InputError, ReferenceError):  # told by the preview
+            cell = self._cell().value()
+            if cell is None:
+                return
+            if machines.load(cell.Machine, user_machines.folders()).is_table:
+                self.leave_out({_place(name) for name in OF_ROBOTS} | _ENDS)
+                return
+            method = self.places[METHOD][0].value
+            others = {name for one, names in _OF_METHODS.items() if one != method for name in names}
+            self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *others)})
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Trial]]:
         job = draft.stage.job(draft.obj)
@@ -84,6 +109,10 @@ class JointPathPanel(PreviewPanel):
         """What else stands back for the preview goes on doing so until the panel closes."""
         others = [] if visible else [one for one in self.aside.objects if one is not self.obj]
         self.aside.put(*others, None if visible else self.obj)
+
+
+def _place(name: str) -> str:
+    return f"joints_{name}"
 
 
 def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:

@@ -15,7 +15,7 @@ from ..core.kinematics import machine
 from ..objects import preferences, user_machines
 from ..objects.rows import MIXED
 from ..posts import catalogue
-from . import fields, suggestions
+from . import choices, fields
 from .texts import tr, translated
 
 
@@ -48,7 +48,7 @@ class PreferencesPage:
         self.machine = QtGui.QComboBox()
         self.machine.setObjectName("machine")
         self.machine.setEditable(True)
-        self.machine.addItems(suggestions.of("cell", "machine")())
+        choices.offer(self.machine, choices.machines())
         self.post = QtGui.QComboBox()
         self.post.setObjectName("post")
         self.post.addItem(tr("what the machine's controller reads"), "")
@@ -114,7 +114,7 @@ class PreferencesPage:
 
     def loadSettings(self) -> None:
         """Show what is kept."""
-        self.machine.setEditText(preferences.machine())
+        choices.enter(self.machine, preferences.machine())
         self.post.setCurrentIndex(max(0, self.post.findData(preferences.post())))
         self.machines.setText(preferences.machine_folder())
         self.programs.setText(preferences.text("ProgramsFolder"))
@@ -140,7 +140,7 @@ class PreferencesPage:
         preferences.keep("MachineColour", "" if colour.name() == plain else colour.name())
 
     def _keep_machine(self) -> None:
-        name = self.machine.currentText().strip() or preferences.builtin_machine()
+        name = choices.entered(self.machine) or preferences.builtin_machine()
         try:
             machine.load(name, user_machines.folders())
         except InputError as error:

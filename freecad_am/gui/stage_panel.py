@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import weakref
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import FreeCAD as App
@@ -194,10 +194,17 @@ class StagePanel:
         """What errors call the stage: by its label, while it is made and where it is but previewed."""
         return [self.draft, self.proxy.kind.capitalize(), *([] if self.obj is None else [self.obj.Label])]
 
+    def leave_out(self, places: Collection[str], also_entered: bool = False) -> None:
+        """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
+        for place, (field, _, fold) in self.places.items():
+            holds = not also_entered and self._entry(place) != repr(field.row.outer(field.row.default))
+            fold.show(field.widget, place not in places or holds)
+
     def _unfolded(self, place: str) -> Any:
         """The widget of a place, its part of the panel unfolded."""
         if place in self.places:
             field, _, fold = self.places[place]
+            fold.show(field.widget, True)
             fold.heading.setChecked(True)
             return field.widget
         self.heading.heading.setChecked(True)

@@ -12,12 +12,19 @@ from ..core.parameters.program import ProgramParameters
 from ..core.process import bead_table
 from ..objects import preferences, user_machines
 from ..posts import catalogue
+from .choices import machines
 
 
-def of(section: str, key: str) -> Callable[[], list[str]] | None:
-    """A function that lists the texts for a parameter, None where anything goes."""
+def of(section: str, key: str) -> Callable[[], list[tuple[str, str]]] | None:
+    """A function that lists the texts for a parameter and what is shown of each, None where anything goes."""
+    texts = _texts_of(section, key)
+    if (section, key) == ("cell", "machine"):
+        return machines
+    return None if texts is None else lambda: [(text, text) for text in texts()]
+
+
+def _texts_of(section: str, key: str) -> Callable[[], list[str]] | None:
     return {
-        ("cell", "machine"): lambda: [name for name, _ in machine.known(user_machines.folders())],
         ("cell", "limits"): lambda: ["maker", "paper"],
         ("cell", "branch"): _branches,
         ("program", "post"): lambda: [*catalogue.NAMES, "none"],

@@ -32,6 +32,11 @@ _OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS S
 # a comma that may begin decimals, a no-break blank that may group digits
 _TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
+_LABELS = {  # of parameters whose keys do not say it in words
+    "given": "Given polynomials", "degree": "Degree of the polynomials", "parameter": "Polynomials give",
+    "min_condition": "Least condition", "lock": "Axis that stands still", "lock_at": "It stands at",
+    "max_residual": "Largest direction error", "own_branch": "Branch of this path", "compare": "Compare with",
+}
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,8 @@ class Row:
     def label(self) -> str:
         """Its name in a panel: 'Layer height' for layer_height; the group is told by its box."""
         words = [("from", "to")[step] if isinstance(step, int) else step for step in self.path]
+        if len(words) == 1 and words[0] in _LABELS:
+            return _LABELS[words[0]]
         words = words[1:] if len(words) > 1 and words[-1] not in ("from", "to") else words
         return _headed(" ".join(words))
 

@@ -127,7 +127,7 @@ class Person:
 
     def choose(self, panel, name, text):
         box = self.field(panel, name)
-        index = box.findText(text)
+        index = max(box.findText(text), box.findData(text))  # what is shown, or the key it stands for
         assert index >= 0, f"{name} does not offer {text}"
         box.setCurrentIndex(index)
         self.idle(0.05)

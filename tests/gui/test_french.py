@@ -80,7 +80,7 @@ def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
     assert french.panel_error(panel) == f"0 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
     french.screenshot("french-feature")
     assert cut_off(french, panel) == []
-    french.choose(panel, "Spacing", "hauteur constante")
+    french.choose(panel, "Spacing", "le long de l'axe")
     hand.enter(panel, "LayerHeight", "2 mm")
     french.press("Ok")
     french.panel_closed()

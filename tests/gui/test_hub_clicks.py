@@ -322,17 +322,17 @@ def test_a_cell_follows_its_machine(person, rotor):
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
     fields = {name: person.field(panel, name) for name in ("Setup", "Branch", "DepositionPoint", "Machine", "MachineNote")}
-    assert fields["Branch"].isEnabled() and fields["Setup"].currentText() == "part-on-robot"
+    assert fields["Branch"].isVisible() and fields["Setup"].currentData() == "part-on-robot"
     person.type(panel, "Machine", "table-xyzbc")
-    person.until(lambda: fields["Setup"].currentText() == "rotary-table", "the set-up to follow", 5)
-    assert not any(fields[name].isEnabled() for name in ("Setup", "Branch", "DepositionPoint"))
+    person.until(lambda: fields["Setup"].currentData() == "rotary-table", "the set-up to follow", 5)
+    assert not any(fields[name].isVisible() for name in ("Setup", "Branch", "DepositionPoint"))
     person.screenshot("panel_cell_table")
     person.type(panel, "Machine", "table-xyz")
     person.until(fields["MachineNote"].isVisible, "what is wrong with the machine", 5)
     assert "did you mean table-xyz" in fields["MachineNote"].text()
     person.type(panel, "Machine", "kuka-kr16-2")
-    person.until(fields["Branch"].isEnabled, "the branch to be open again", 5)
-    assert fields["Setup"].currentText() == "part-on-robot"
+    person.until(fields["Branch"].isVisible, "the branch to be there again", 5)
+    assert fields["Setup"].currentData() == "part-on-robot"
     person.until(lambda: not fields["MachineNote"].isVisible(), "the preview to find nothing wrong any more", 10)
     person.type(panel, "Machine", "table-xyzac")
     person.press("Ok")  # before the panel has followed by itself

@@ -77,7 +77,7 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(pers
     # a cell, and a toolpath with its speed in m/min
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
-    assert person.field(panel, "Machine").currentText() == "kuka-kr16-2"
+    assert person.field(panel, "Machine").currentText() == "KUKA KR 16-2"
     person.press("Ok")
     person.panel_closed()
     cell = api.stages_of(hemisphere.Document, "cell")[0]
@@ -106,7 +106,7 @@ def test_a_new_job_takes_machine_process_and_post(person, clean, hemisphere, coa
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    assert person.field(panel, "Machine").currentText() == "fanuc-arcmate120ic-10l"
+    assert person.field(panel, "Machine").currentText() .startswith("FANUC ARC Mate 120iC/10L")
     person.until(lambda: person.field(panel, "Name").text() if panel.findChild(
         person.widgets.QLineEdit, "Name") else True, "a name")
     person.press("Ok")

@@ -30,6 +30,7 @@ from .urdf_reference import Reference, reference
 BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
 MAKER = "maker"
 NOT_TOLD = "a URDF does not tell what the controller shows"
+REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is no machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "verified",
     "check_poses", "shapes",
@@ -121,7 +122,7 @@ def _title(path: Path) -> str:
     try:
         return read(path)["title"].text()
     except InputError as error:
-        return f"BAD_MACHINE: {error.message}"
+        return f"{REFUSED}{error.message}"
 
 
 def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
@@ -179,15 +180,15 @@ def _near(name: str, names: list[str]) -> str:
 
 def _parse(top: Node) -> Machine:
     top.only(*KEYS)
-    keys = ("name", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration", "max_jerk")
+    keys = ("name", "label", "type", "origin", "rpy", "axis", "max_speed", "max_acceleration", "max_jerk")
     joints = [joint.only(*keys) for joint in top["joints"].items()]
     if not joints:
         raise top["joints"].bad("there is no joint")
     count = len(joints)
     sliding = np.array([_slides(joint) for joint in joints])
     units = unit_values(sliding)
-    # the axes of a robot go by number everywhere; those of a machine tool have names
-    names = tuple(joint["name"].text() if sliding.any() else f"q{index + 1}" for index, joint in enumerate(joints))
+    # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
+    names = tuple(_called(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
     controller = top["controller"].only("matrix", "offset", "remark", "posts")
     machine = Machine(
         id=top["id"].text(),
@@ -242,6 +243,13 @@ def _of_urdf(meant: Reference) -> Machine:
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
         sources=(f"{meant}",), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
     )
+
+
+def _called(joint: Node, numbered: str, has_name: bool) -> str:
+    """What messages and curves call an axis."""
+    if joint.has("label"):
+        return joint["label"].text()
+    return joint["name"].text() if has_name else numbered
 
 
 def _unit(node: Node) -> Array:

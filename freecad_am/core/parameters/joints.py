@@ -33,12 +33,12 @@ class JointParameters:
     given: tuple[str, ...] = f.parameter(
         (), f.TEXT,
         "Method layer-by-layer: polynomials that are given, not searched: layer/bead:constant:slope, or * for every other "
-        "bead, in deg and deg per turn.",
+        "bead, in deg and deg per turn.", advanced=True,
     )
     parameter: str = f.parameter(
         "rotation", f.CHOICE,
         "What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.",
-        choices=("rotation", "rz"),
+        choices=("rotation", "rz"), advanced=True,
     )
     rotation_range: tuple[float, float] = f.parameter(
         (-math.pi, math.pi), f.ANGLE_RANGE,
@@ -51,7 +51,7 @@ class JointParameters:
         low=0.0, high=1.0, words=("auto",),
     )
     characteristic_length: float = f.parameter(
-        1000.0, f.LENGTH, "Divides the translation rows of the Jacobian.", low=0.0, open_low=True
+        1000.0, f.LENGTH, "Divides the translation rows of the Jacobian.", low=0.0, open_low=True, advanced=True
     )
     tolerance: float = f.parameter(
         1e-8, f.NUMBER, "Change of the objective and of the coefficients at which the optimiser stops.",
@@ -76,7 +76,9 @@ class JointParameters:
         OF_CELL, f.CHOICE, "Shoulder, elbow and wrist of this joint path; cell: as the cell says.",
         choices=(OF_CELL, *BRANCHES), advanced=True,
     )
-    compare: tuple[str, ...] = f.parameter((), f.TEXT, "Further methods planned for the comparison of the report.")
+    compare: tuple[str, ...] = f.parameter(
+        (), f.TEXT, "Further methods planned for the comparison of the report.", advanced=True
+    )
 
     def __post_init__(self) -> None:
         f.check(self, "joints", skip=frozenset({"compare", "given"}))

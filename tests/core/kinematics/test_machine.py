@@ -53,6 +53,8 @@ def test_tables_have_the_kinematics_that_linuxcnc_gives_them():
 def test_the_arc_mate_is_that_of_the_data():
     arm = machine.load("fanuc-arcmate120ic")
     assert arm.axes == ("q1", "q2", "q3", "q4", "q5", "q6")
+    assert machine.load("kuka-kr16-2").axes == ("A1", "A2", "A3", "A4", "A5", "A6")
+    assert machine.load("motoman-mh12").axes == ("S", "L", "U", "R", "B", "T")
     assert np.array_equal(arm.base, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 525], [0, 0, 0, 1]])
     assert np.degrees(arm.limits("maker").lower) == pytest.approx((-170, -100, -90, -200, -140, -270))
     assert np.degrees(arm.limits("paper").upper) == pytest.approx((185, 160, 273, 200, 135, np.inf))

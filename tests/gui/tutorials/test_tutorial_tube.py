@@ -25,7 +25,7 @@ def test_the_tube(person, hand, lesson, root, tmp_path):
     panel = person.panel("RoboticAM_SurfaceFeature")
     lesson.hand.enter(panel, "LayerHeight", "5 mm")
     first_layer(person, panel)
-    lesson.choose(panel, "Mode", "symmetry-plane")
+    lesson.choose(panel, "Mode", "plane of symmetry")
     lesson.hand.enter(panel, "MaxTilt", "85 deg")
     first_layer(person, panel)
     lesson.picture("tube-wall", path=True)

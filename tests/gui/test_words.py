@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Panels show words and full names where documents hold keys, and no field without a meaning for the machine."""
+
+import pytest
+
+from freecad_am import api
+
+pytestmark = pytest.mark.gui
+
+OF_ROBOTS = ("Method", "Degree", "Objective", "MinCondition", "RotationRangeLow", "RotationRangeHigh")
+OF_TABLES = ("Lock", "LockAt", "MaxResidual")
+
+
+@pytest.fixture
+def cells(hemisphere):
+    """A toolpath with a robot's cell, and a cell of a five-axis machine."""
+    document = hemisphere.Document
+    robot = api.make_cell(document)
+    toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5), robot)
+    return toolpath, robot, api.make_cell(document, machine="table-xyzac", setup="rotary-table")
+
+
+def shown(person, panel, names):
+    """Of some fields those that are part of the panel, folded away or not."""
+    return {name for name in names if not person.field(panel, name).parentWidget().isHidden()}
+
+
+def test_machines_have_their_full_names(person, hemisphere):
+    person.click("RoboticAM_Cell")
+    panel = person.panel("RoboticAM_Cell")
+    machine = person.field(panel, "Machine")
+    names = {machine.itemText(row) for row in range(machine.count())}
+    assert {"KUKA KR 16-2", "Yaskawa AR1440 (arc welding)"} <= names and "kuka-kr16-2" not in names
+    assert machine.currentText().startswith("FANUC ARC Mate 120iC")
+    person.choose(panel, "Machine", "KUKA KR 16-2")
+    person.press("Ok")
+    person.panel_closed()
+    assert hemisphere.Document.Cell.Machine == "kuka-kr16-2"  # as job files and macros say it
+    person.double_click(hemisphere.Document.Cell)
+    panel = person.panel("RoboticAM_Cell")
+    assert person.field(panel, "Machine").currentText() == "KUKA KR 16-2"
+    person.press("Ok")
+    person.panel_closed()
+    assert hemisphere.Document.Cell.Machine == "kuka-kr16-2"
+
+
+def test_a_joint_path_has_the_fields_of_its_machine(person, cells):
+    toolpath, _, table = cells
+    person.select(toolpath)
+    person.click("RoboticAM_JointPath")
+    panel = person.panel("RoboticAM_JointPath")
+    assert shown(person, panel, (*OF_ROBOTS, *OF_TABLES)) == set(OF_ROBOTS)
+    method = person.field(panel, "Method")
+    assert [method.itemText(row) for row in range(3)] == ["layer by layer", "point by point", "constant"]
+    assert shown(person, panel, ("Degree", "Rz")) == {"Degree"}
+    person.choose(panel, "Method", "constant")
+    assert shown(person, panel, ("Degree", "Rz")) == {"Rz"}
+    person.choose(panel, "InputCell", table.Label)
+    assert shown(person, panel, OF_TABLES) == set(OF_TABLES)
+    assert shown(person, panel, OF_ROBOTS) == {"Method"}  # it holds another one than at first: it stays to be seen
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_keys_are_words_and_short_lengths_are_in_mm(person, hemisphere):
+    document = hemisphere.Document
+    feature = api.make_feature(document, hemisphere, spacing="iso-height", layer_height=15)
+    person.double_click(feature)
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    spacing = person.field(panel, "Spacing")
+    assert spacing.currentText() == "along the axis" and spacing.itemText(0) == "along the wall"
+    person.press("Cancel")
+    person.panel_closed()
+    from freecad_am.core.parameters.strategy import SurfaceParameters
+    from freecad_am.gui import fields
+    from freecad_am.objects.rows import rows
+
+    tolerance = next(row for row in rows(SurfaceParameters) if row.key == "tolerance")
+    field = fields.make(tolerance, tolerance.default)
+    assert field.widget.text() == "0.0001 mm" and field.value == 1e-4 and not field.changed
+
+
+def test_the_first_entry_of_a_program_s_menu_reads_it(person, hemisphere, coarse):
+    """FreeCAD draws the first one bold, as what a double click does."""
+    api.make_all(hemisphere.Document, hemisphere)
+    program = hemisphere.Document.Program
+    menu = person.widgets.QMenu()
+    program.ViewObject.Proxy.setupContextMenu(program.ViewObject, menu)
+    menu.actions()[0].trigger()
+    person.idle(0.2)
+    text = person.panel("RoboticAM_ProgramText")
+    assert "/PROG" in person.field(text, "text").toPlainText()
+    text.close()
