@@ -1252,6 +1252,11 @@
         <translation>L&apos;axe 3 est montré par rapport à l&apos;horizontale (FANUC, certains ABB)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Axis that stands still</source>
+        <translation>Axe à l&apos;arrêt</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
         <source>Back</source>
         <translation>Retour</translation>
@@ -1350,6 +1355,11 @@
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>Branch</source>
         <translation>Branche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Branch of this path</source>
+        <translation>Branche de cette trajectoire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -1572,14 +1582,14 @@
         <translation>Couleurs des trajectoires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Compare</source>
-        <translation>Comparer</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/spin_map/dock.py"/>
         <source>Compare methods</source>
         <translation>Comparer les méthodes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Compare with</source>
+        <translation>Comparer avec</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
@@ -2188,8 +2198,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Given</source>
-        <translation>Donnés</translation>
+        <source>Given polynomials</source>
+        <translation>Polynômes donnés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
@@ -2343,6 +2353,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>It stands at</source>
+        <translation>Il est arrêté à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Iterations after which the optimiser gives up on a layer.</source>
         <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
     </message>
@@ -2450,6 +2465,11 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Largest deviation.</source>
         <translation>Plus grand écart.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Largest direction error</source>
+        <translation>Écart de direction maximal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -2562,6 +2582,11 @@
         <translation>Minimum</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Least condition</source>
+        <translation>Condition minimale</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Least condition: {0:.3f}, in layer {2}</source>
         <translation>Condition la plus faible : {0:.3f}, couche {2}</translation>
@@ -2665,16 +2690,6 @@
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>Loaded parts and tools that stand on other tools have been tried with a dry run</source>
         <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Lock</source>
-        <translation>Blocage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Lock at</source>
-        <translation>Bloqué à</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -2802,11 +2817,6 @@
         <translation>Points max</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Max residual</source>
-        <translation>Résidu max</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Max tilt</source>
         <translation>Inclinaison max</translation>
@@ -2860,11 +2870,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Min condition</source>
-        <translation>Condition min</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -2970,11 +2975,6 @@
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>No axis is asked for more than its largest speed</source>
         <translation>Aucun axe ne doit dépasser sa vitesse maximale</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
-        <source>No choice for {}: the part lies on its table</source>
-        <translation>Pas de choix pour {} : la pièce repose sur sa table</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -3182,11 +3182,6 @@
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Own branch</source>
-        <translation>Branche propre</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
         <source>P[{0}] is not recorded</source>
         <translation>P[{0}] n&apos;est pas enregistré</translation>
@@ -3205,11 +3200,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Parallel contours, parallel lines, or either linked: spiral, zigzag.</source>
         <translation>Contours parallèles, lignes parallèles, ou les uns ou les autres liés : spirale, zigzag.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Parameter</source>
-        <translation>Paramètre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -3362,6 +3352,11 @@
         <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Polynomials give</source>
+        <translation>Les polynômes donnent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>Pose {}</source>
         <translation>Pose {}</translation>
@@ -3487,6 +3482,11 @@
         <translation>RZ comme dans Chalvin 2020, ou la vraie rotation autour de l&apos;axe de l&apos;outil</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>RZ of the paper</source>
+        <translation>RZ de l&apos;article</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Radius</source>
         <translation>Rayon</translation>
@@ -3520,6 +3520,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Rapid speed</source>
         <translation>Vitesse rapide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <source>Read the text…</source>
+        <translation>Lire le texte…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
@@ -5262,6 +5267,16 @@
         <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>along the axis</source>
+        <translation>le long de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>along the wall</source>
+        <translation>le long de la paroi</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>alternate</source>
         <translation>alterné</translation>
@@ -5330,6 +5345,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>arc-length</source>
         <translation>longueur d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>around the axis</source>
+        <translation>autour de l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -5472,6 +5492,11 @@
         <translation>l&apos;axe {0} irait à {1} {2}/s, il peut {3} ; {4}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>back</source>
+        <translation>arrière</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>back-down-flip</source>
         <translation>arrière-bas-retourné</translation>
@@ -5490,6 +5515,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>back-up-noflip</source>
         <translation>arrière-haut-non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>bead width</source>
+        <translation>largeur de cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/table.py"/>
@@ -5737,6 +5767,11 @@
         <translation>RZ constant</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>constant distance</source>
+        <translation>distance constante</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>constant-distance</source>
         <translation>distance constante</translation>
@@ -5842,6 +5877,11 @@
         <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>down</source>
+        <translation>bas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>draw it apart there, or let it overlap there and fuse it (Part, Boolean)</source>
         <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
@@ -5942,9 +5982,19 @@
         <translation>première couche : {} contours, {:.1f} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>five-axis machine</source>
+        <translation>machine à cinq axes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>fixed</source>
         <translation>fixe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>flip</source>
+        <translation>retourné</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/constant.py"/>
@@ -5965,6 +6015,11 @@
         <location filename="../../freecad_am/brep/turn.py"/>
         <source>from {0} to {1} deg</source>
         <translation>de {0} à {1} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>front</source>
+        <translation>avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>
@@ -6742,6 +6797,21 @@
         <translation>positions articulaires et cartésiennes sont mêlées</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>joint limits (Fournier)</source>
+        <translation>limites articulaires (Fournier)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>joint limits (Klein)</source>
+        <translation>limites articulaires (Klein)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>joint limits (Liégeois)</source>
+        <translation>limites articulaires (Liégeois)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>joint margin</source>
         <translation>marge articulaire</translation>
@@ -6790,6 +6860,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>layer</source>
         <translation>couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>layer by layer</source>
+        <translation>couche par couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -6905,6 +6980,11 @@
         <location filename="../../freecad_am/gui/path/path_view.py"/>
         <source>lines</source>
         <translation>lignes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>lines of the surface</source>
+        <translation>lignes de la surface</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -7085,6 +7165,11 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>no file of measured points is given; choose one</source>
         <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>no flip</source>
+        <translation>non retourné</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
@@ -7387,6 +7472,11 @@
         <translation>pièce</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>part on the robot</source>
+        <translation>pièce sur le robot</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>part-on-robot</source>
         <translation>pièce sur le robot</translation>
@@ -7412,9 +7502,19 @@
         <translation>position</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>plane of symmetry</source>
+        <translation>plan de symétrie</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>planned joints of the deposit driven through the joint-frame chain, which planning does not use</source>
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>point by point</source>
+        <translation>point par point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
@@ -8722,6 +8822,16 @@
         <translation>les axes de l&apos;outil sont {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>tool on the robot</source>
+        <translation>outil sur le robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>tool on the robot, part on a positioner</source>
+        <translation>outil sur le robot, pièce sur un positionneur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>tool-on-robot</source>
         <translation>outil sur le robot</translation>
@@ -8790,6 +8900,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>unreachable</source>
         <translation>hors d&apos;atteinte</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>up</source>
+        <translation>haut</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -10320,6 +10435,11 @@
         <location filename="../../freecad_am/gui/guess.py"/>
         <source>{}; {} is what they grow on</source>
         <translation>{} ; {} est ce sur quoi elles croissent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>µm</source>
+        <translation>µm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/joints.py"/>
