@@ -202,7 +202,7 @@ def test_a_message_that_begins_with_a_name_is_known():
         ("no bead model sets the speeds (process.bead_model)", "no bead model sets the speeds (“Bead model”)"),
         ("a wider strategy.band rounds them", "a wider “Band” rounds them"),
         ("raise process.between_layers.lift", "raise “Between layers, lift”"),
-        ("joints.given is of no effect; use process.seam.", "“Given” is of no effect; use “Seam”."),
+        ("joints.given is of no effect; use process.seam.", "“Given polynomials” is of no effect; use “Seam”."),
         ("my/process.bead_model.csv and strategy.nothing", "my/process.bead_model.csv and strategy.nothing"),
         ("cell.machine.json is no file", "cell.machine.json is no file"),
         ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),
