@@ -31,7 +31,7 @@ def run() -> list[Row]:
     name = f"{len(faces):,} triangles cut by {CUTS} cones, loops included, against trimesh and {CUTS} planes"
     halves = f"{len(faces):,} triangles against twice the time of {len(half[1]):,}"
     return [
-        Row(name, whole, median(peers) if peers else None, "s", 1.0),
+        Row(name, whole, median(peers) if peers else None, "s", 1.5),
         Row(halves, whole, 2.0 * halved, "s", 0.6),
         Row(f"{2 * CUTS} cones against twice the time of {CUTS}", doubled, 2.0 * whole, "s", 0.6),
     ]

@@ -70,6 +70,15 @@ class Developable:
         level = math.cos(a) / np.maximum(rho, 1e-300)
         return np.stack([points[..., 0] * level, points[..., 1] * level, np.full_like(rho, math.sin(a))], axis=-1)
 
+    def along(self, at: Array, way: Array) -> tuple[Array, Array]:
+        """`distance` (n,) of points, and how it grows (n,) along vectors, both given by components (3, n)."""
+        a = self.taper
+        x, y, z = at
+        rho = np.hypot(x, y)
+        level = math.cos(a) / np.maximum(rho, 1e-300)
+        away = (rho - self.radius) * math.cos(a) + z * math.sin(a)
+        return away, x * level * way[0] + y * level * way[1] + math.sin(a) * way[2]
+
     @property
     def slant(self) -> float:
         """Way s0 from the apex to the base circle, mm."""
