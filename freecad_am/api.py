@@ -38,7 +38,7 @@ from .core.parameters.inspection import InspectionParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
-from .core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from .core.parameters.strategy import DevelopableParameters, RevolutionParameters, SolidParameters, SurfaceParameters
 from .objects import stage as stages
 from .objects import user_machines
 from .objects.cell import Cell
@@ -56,8 +56,9 @@ from .posts import written
 
 __all__ = (
     "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
-    "make_developable_feature", "make_feature", "make_joint_path", "make_program", "make_surface_feature", "make_toolpath",
-    "make_trajectory", "open_part", "proposed_name", "recompute", "result", "stages_of", "told_to",
+    "make_developable_feature", "make_feature", "make_joint_path", "make_program", "make_solid_feature",
+    "make_surface_feature", "make_toolpath", "make_trajectory", "open_part", "proposed_name", "recompute", "result",
+    "stages_of", "told_to",
 )
 
 
@@ -119,6 +120,22 @@ def make_developable_feature(
     return _make(doc, DevelopableFeature, "Feature", label, links, [strategy, build_direction], values)
 
 
+def make_solid_feature(
+    doc: Any, source: Any, substrate: Any = None, label: str = "Feature", *, further: Sequence[Any] = (),
+    fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
+
+    further: more objects to deposit; substrate: what they stand on, where that is no platform; fixtures: objects, solids or
+    meshes, that the nozzle must not touch either.
+    """
+    from .objects.solid_feature import SolidFeature
+
+    links = {"Source": _with_faces(source, ()), "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures)}
+    return _make(doc, SolidFeature, "Feature", label, links, [strategy, build_direction], values)
+
+
 def make_toolpath(
     doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, process: ProcessParameters | None = None,
     **values: Any,
@@ -171,10 +188,11 @@ def make_all(
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
-    kind: revolution, surface (a wall of the source's faces on the substrate) or developable (source and further solids on
-    the substrate, on its base_faces). The program is for the machine's controller, in the words of `post` where it reads
-    them; there is none when no post is known for it, or the joint path is infeasible. process: parameters of the toolpath
-    by key. A robot other than the default one gets a deposition point and a branch that suit it. `am.make_all(doc, doc.Pot)`
+    kind: revolution, surface (a wall of the source's faces on the substrate), developable (source and further solids on
+    the substrate, on its base_faces) or solid (source and further solids in plane layers). The program is for the
+    machine's controller, in the words of `post` where it reads them; there is none when no post is known for it, or the
+    joint path is infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a
+    deposition point and a branch that suit it. `am.make_all(doc, doc.Pot)`
     """
     chosen = cell_of(machine, user_machines.folders())
     with _one_step(doc, "New job"):
@@ -183,10 +201,12 @@ def make_all(
             made.append(make_surface_feature(doc, source, faces, substrate))
         elif kind == "developable":
             made.append(make_developable_feature(doc, source, substrate, base_faces, faces=faces, further=further))
+        elif kind == "solid":
+            made.append(make_solid_feature(doc, source, substrate, further=further))
         elif kind == "revolution":
             made.append(make_feature(doc, source, faces))
         else:
-            raise InputError("BAD_VALUE", "kind", f"{kind!r} is none of revolution, surface, developable")
+            raise InputError("BAD_VALUE", "kind", f"{kind!r} is none of revolution, surface, developable, solid")
         made.append(make_toolpath(doc, made[1], made[0], **(process or {})))
         made.append(make_joint_path(doc, made[2], made[0]))
         posts = machines.load(chosen.machine, user_machines.folders()).posts

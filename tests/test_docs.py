@@ -15,11 +15,12 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.strategies.families import FAMILIES
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 SECTIONS = (
-    *(("strategy", parameters) for parameters in job.STRATEGIES.values()),
+    *(("strategy", parameters) for parameters in [family.parameters for family in FAMILIES]),
     ("build_direction", BuildDirectionParameters),
     ("cell", CellParameters),
     ("joints", JointParameters),

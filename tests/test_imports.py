@@ -18,12 +18,13 @@ OURS = {
     "core/filling": {"core/issues", "core/geometry"},
     "core/toolpath": {"core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
+    "core/layers": {"core/issues", "core/parameters", "core/geometry", "core/slicing"},
     "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/collision": {"core/geometry"},
     "core/strategies": {
         "core/issues", "core/parameters", "core/geometry", "core/collision", "core/filling", "core/toolpath", "core/slicing",
-        "core/process",
+        "core/layers", "core/process",
     },
     "core/kinematics": {"core/issues", "core/parameters", "core/geometry", "core/collision"},
     "core/planning": {

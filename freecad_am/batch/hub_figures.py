@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
+from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.process.bead_model import MINUTE
 from freecad_am.core.toolpath import Array, Bead, Layer, Toolpath
 from freecad_am.plots.look import shade
@@ -15,6 +16,7 @@ from freecad_am.plots.look import shade
 from . import svg
 
 WIDE, EDGES = 388.0, 68.0  # of a picture, between and beside its frame
+AXES = (("around the hub, mm", "along it, mm"), ("x, mm", "y, mm"))
 PIECES = 6  # colours along a bead
 
 
@@ -48,7 +50,7 @@ def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
     plot = svg.Plot(
         f"{group.base.name}, layer {place}, laid flat", (low[0] - pad, high[0] + pad), (low[1] - pad, high[1] + pad),
-        "around the hub, mm", "along it, mm", height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
+        *AXES[isinstance(surface, Plane)], height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
     )
     speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
     slow, fast = float(speeds.min()), float(speeds.max())

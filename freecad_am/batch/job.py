@@ -18,14 +18,11 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.strategies.families import KINDS, NEEDED, NONE, family_of
 
 from . import fields, quantity, tree
 
-STRATEGIES: dict[str, type] = {
-    "revolution": RevolutionParameters, "surface": SurfaceParameters, "developable": DevelopableParameters,
-}
-Strategy = RevolutionParameters | SurfaceParameters | DevelopableParameters
 PLANNED_SETUPS = ("tool-on-robot+positioner",)
 SECTIONS = (
     "version", "name", "part", "substrate", "fixtures", "strategy", "build_direction", "cell", "joints", "process",
@@ -51,15 +48,15 @@ class PartSource:
 
 @dataclass(frozen=True)
 class Job:
-    """A checked job. `substrate` is there for SurfaceParameters, but where the part has start_edges, and may be there for
-    DevelopableParameters. `cell` or `program` None: the stages that need them are left out."""
+    """A checked job. `substrate` is there as the family of the strategy has it (`core.strategies.families`). `cell` or
+    `program` None: the stages that need them are left out."""
 
     path: str
     name: str
     part: PartSource
     substrate: PartSource | None
     fixtures: tuple[PartSource, ...]
-    strategy: Strategy
+    strategy: LayerParameters
     build_direction: BuildDirectionParameters
     joints: JointParameters
     process: ProcessParameters
@@ -134,23 +131,23 @@ def _name(value: Any, path: str) -> str:
     return name
 
 
-def _process(section: Any, strategy: Strategy) -> ProcessParameters:
-    """The process; where solids on hubs are filled a bead width that the job gives is meant, whatever it is."""
+def _process(section: Any, strategy: LayerParameters) -> ProcessParameters:
+    """The process; where solids are filled a bead width that the job gives is meant, whatever it is."""
     given = fields.mapping(section, "process")
-    if "bead_width" in given and isinstance(strategy, DevelopableParameters):
+    if "bead_width" in given and family_of(strategy).filled:
         given = {"fill_width": "bead_width", **given}
     return fields.build(ProcessParameters, given, "process")
 
 
-def _with_bead_model(process: ProcessParameters, strategy: Strategy, path: str) -> ProcessParameters:
+def _with_bead_model(process: ProcessParameters, strategy: LayerParameters, path: str) -> ProcessParameters:
     """The process with the path of its calibration table made absolute; the table is read, so that what is wrong with it is
     told at once."""
     if process.bead_model == "none":
         return process
-    if not isinstance(strategy, DevelopableParameters):
+    if not family_of(strategy).filled:
         raise InputError(
-            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind developable alone; "
-            "use none",
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind solid and "
+            "developable alone; use none",
         )
     from freecad_am.core.process import bead_table
 
@@ -161,23 +158,19 @@ def _with_bead_model(process: ProcessParameters, strategy: Strategy, path: str) 
 
 
 def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
-    if isinstance(strategy, DevelopableParameters) and build_direction.mode != "local":
-        raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode",
-            f"{build_direction.mode} is not for solids on a hub, which grow along its normals; use local",
-        )
-    if isinstance(strategy, RevolutionParameters) and build_direction.mode == "symmetry-plane":
-        raise InputError(
-            "NOT_FOR_FAMILY", "build_direction.mode",
-            "symmetry-plane is not for parts of revolution; use local, layer or fixed",
-        )
+    family = family_of(strategy)
+    if build_direction.mode not in family.modes:
+        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why.format(build_direction.mode))
 
 
 def _substrate(section: Any, strategy: Any, part: PartSource, path: str) -> PartSource | None:
-    if part.start_edges and not isinstance(strategy, SurfaceParameters):
+    family = family_of(strategy)
+    if part.start_edges and not family.edges:
         raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
         "them out")
-    if isinstance(strategy, SurfaceParameters):
+    if part.faces and not family.faces:
+        raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
+    if family.substrate == NEEDED:
         if section is None and part.start_edges:
             return None
         if section is None:
@@ -189,11 +182,9 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str) -> Part
         if found.faces:
             raise _not_yet("substrate.faces", ", ".join(found.faces), "the whole solid")
         return found
-    if section is not None and isinstance(strategy, DevelopableParameters):
-        return _part(fields.mapping(section, "substrate"), path, "substrate")
-    if section is not None:
+    if section is not None and family.substrate == NONE:
         raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
-    return None
+    return None if section is None else _part(fields.mapping(section, "substrate"), path, "substrate")
 
 
 def _fixtures(section: Any, path: str) -> tuple[PartSource, ...]:
@@ -264,14 +255,27 @@ def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
     return settings
 
 
-def _strategy(section: Any) -> Strategy:
+def _strategy(section: Any) -> LayerParameters:
     kind = fields.mapping(section, "strategy").get("kind", "revolution")
-    if not isinstance(kind, str) or kind not in STRATEGIES:
-        raise f.unknown_choice("strategy.kind", kind, tuple(STRATEGIES))
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise f.unknown_choice("strategy.kind", kind, tuple(KINDS))
+    if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
+        kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
     if kind == "developable":
         section = _with_base(section)
-    factory: type[Strategy] = STRATEGIES[kind]
+    if kind == "solid":
+        section = _with_direction(section)
+    factory: type[LayerParameters] = KINDS[kind].parameters
     return fields.build(factory, section, "strategy", also=("kind",))
+
+
+def _with_direction(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with a direction, a list of three numbers, as their text."""
+    direction = section.get("direction")
+    if not isinstance(direction, list):
+        return section
+    numbers = [quantity.read(number, f.NUMBER, "strategy.direction") for number in direction]
+    return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
 
 
 def _with_base(section: dict[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import os
 from typing import Any
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters
+from freecad_am.core.strategies.families import family_of
 
 from . import outputs, paths
 
@@ -90,22 +90,13 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
 
 def _feature(document: Any, read: Any, session: Any) -> Any:
     """The feature of a job; its toolpath need not be made."""
-    from freecad_am import api
-
     from .part import bring
+    from .run import make_feature
 
     session.progress("feature ...")
-    solids = isinstance(read.strategy, DevelopableParameters)
-    part = bring(document, read.part, meshes=solids)
+    part = bring(document, read.part, meshes=family_of(read.strategy).meshes)
     substrate = None if read.substrate is None else bring(document, read.substrate, "substrate")
-    if isinstance(read.strategy, RevolutionParameters):
-        return api.make_feature(document, part, read.part.faces, strategy=read.strategy)
-    if solids:
-        bases = () if read.substrate is None else read.substrate.faces
-        return api.make_developable_feature(document, part, substrate, bases, faces=read.part.faces, strategy=read.strategy)
-    return api.make_surface_feature(
-        document, part, read.part.faces, substrate, start_edges=read.part.start_edges, strategy=read.strategy
-    )
+    return make_feature(document, read, part, substrate)
 
 
 def _of_document(path: str, name: str) -> tuple[Any, Any]:

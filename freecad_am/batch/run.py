@@ -6,13 +6,13 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
-from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from freecad_am.core.strategies.families import family_of
 
 from . import outputs, paths
 from .job import SECTIONS, Job
@@ -141,7 +141,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
 
     stages = Stages(document)
     with stages.timed("part", session):
-        part = bring(document, job.part, meshes=isinstance(job.strategy, DevelopableParameters))
+        part = bring(document, job.part, meshes=family_of(job.strategy).meshes)
         substrate = None if job.substrate is None else bring(document, job.substrate, "substrate")
         fixtures = [bring(document, fixture, f"fixtures[{number}]") for number, fixture in enumerate(job.fixtures)]
     cell = None
@@ -149,21 +149,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
         with stages.timed("cell", session):
             cell = api.make_cell(document, parameters=job.cell)
     with stages.timed("feature", session):
-        if isinstance(job.strategy, RevolutionParameters):
-            feature = api.make_feature(
-                document, part, job.part.faces, fixtures=fixtures, strategy=job.strategy,
-                build_direction=job.build_direction,
-            )
-        elif isinstance(job.strategy, DevelopableParameters):
-            feature = api.make_developable_feature(
-                document, part, substrate, () if job.substrate is None else job.substrate.faces, faces=job.part.faces,
-                fixtures=fixtures, strategy=job.strategy, build_direction=job.build_direction,
-            )
-        else:
-            feature = api.make_surface_feature(
-                document, part, job.part.faces, substrate, start_edges=job.part.start_edges, fixtures=fixtures,
-                strategy=job.strategy, build_direction=job.build_direction,
-            )
+        feature = make_feature(document, job, part, substrate, fixtures)
     stages.feature = feature
     stages.issues += api.issues(feature)
     with stages.timed("toolpath", session):
@@ -187,6 +173,22 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
         except InfeasibleError as error:
             stages.issues += error.issues or [Issue("error", error.code, error.message)]
     return stages
+
+
+def make_feature(document: Any, job: Job, part: Any, substrate: Any, fixtures: Sequence[Any] = ()) -> Any:
+    """The feature of a job, of the family of its strategy, from the objects that it is made of."""
+    from freecad_am import api
+
+    more: dict[str, Any] = {"strategy": job.strategy, "build_direction": job.build_direction, "fixtures": fixtures}
+    kind, faces = family_of(job.strategy).kind, job.part.faces
+    if kind == "revolution":
+        return api.make_feature(document, part, faces, **more)
+    if kind == "solid":
+        return api.make_solid_feature(document, part, substrate, **more)
+    if kind == "developable":
+        bases = () if job.substrate is None else job.substrate.faces
+        return api.make_developable_feature(document, part, substrate, bases, faces=faces, **more)
+    return api.make_surface_feature(document, part, faces, substrate, start_edges=job.part.start_edges, **more)
 
 
 def _write(
@@ -229,7 +231,7 @@ def _write(
     files.write(outputs.REPORT, [report.text(content)])
     if page:
         with stages.timed("page", session):
-            solids = api.result(stages.feature) if isinstance(job.strategy, DevelopableParameters) else None
+            solids = api.result(stages.feature) if family_of(job.strategy).filled else None
             page_text = _page(job, content, toolpath, motion, distances, planned, cell, compared, solids)
             files.write(outputs.PAGE, [page_text])
     written = files.publish(outputs.earlier_outputs(files.folder))
@@ -247,7 +249,7 @@ def _compare_spacings(
     job: Job, stages: Stages, content: dict[str, Any], toolpath: Any, distances: Any, planned: Any, cell: Any, session: Any
 ) -> Any:
     """Fill in what other spacings of a wall would be, nothing for other families; what the page draws of them."""
-    if not isinstance(job.strategy, SurfaceParameters):
+    if family_of(job.strategy).kind != "surface":
         content["spacing_comparison"] = []
         return ()
     from freecad_am import api

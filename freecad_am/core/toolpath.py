@@ -22,6 +22,7 @@ from .issues import Issue
 
 Array = NDArray[np.float64]
 
+FILLED = ("developable", "solid")  # families whose beads fill solids
 PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
 
 
@@ -279,6 +280,11 @@ class Toolpath:
         for i, layer in enumerate(self.layers):
             for j, bead in enumerate(layer.beads):
                 yield i, j, bead
+
+    @property
+    def filled(self) -> bool:
+        """Whether beads fill solids, most of them inside; else they are walls of one bead."""
+        return self.family in FILLED
 
     @property
     def bead_count(self) -> int:

@@ -19,7 +19,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
-from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from ..core.parameters.strategy import FilledParameters, RevolutionParameters, SolidParameters, SurfaceParameters
 from ..core.process import bead_table, deposit_balance, on_part
 from ..core.process.bead_model import BeadModel
 from ..core.process.wire import fed
@@ -59,8 +59,7 @@ class Toolpath(Stage):
         shape = stage_of(feature)
         assert shape is not None
         carried = None if cell is None else cell.Proxy.value(cell)
-        family = family_of(shape)
-        wall, strategy = shape.value(feature), shape.parameters(feature, family)
+        wall, strategy = shape.value(feature), shape.parameters(feature, strategy_of(shape))
         build, process = shape.parameters(feature, BuildDirectionParameters), self.parameters(obj, ProcessParameters)
         sources = tuple(taken(one) for one in (feature.Source[0], *getattr(feature, "Further", ())))
 
@@ -85,6 +84,9 @@ def _looked_at(toolpath: CoreToolpath, wall: Any, sources: Sequence[Taken], stra
     """The toolpath with whether it lies on the shapes that it was made for; nobody looks where these have no faces."""
     progress.report(LOOKED, "looking whether the deposit lies on the part")
     places = on_part.places(toolpath)
+    if isinstance(strategy, SolidParameters):  # where the part was cut, above the plane that beads of the layer lie on
+        up = strategy.share_of_cut * strategy.layer_height * wall.groups[0].base.frame[:3, 2]
+        places = places._replace(points=places.points + up)
     limit = on_part.allowed(toolpath, getattr(strategy, "margin", 0.0))
     if isinstance(wall, SolidsOnHub):
         off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
@@ -100,13 +102,13 @@ def _off_solid(source: Taken, points: Any, limit: float) -> Any:
     return off_mesh(body.vertices, body.triangles, points)
 
 
-def family_of(feature: Stage) -> type:
+def strategy_of(feature: Stage) -> type:
     """The parameters dataclass of a feature's strategy."""
     return next(section.cls for section in feature.sections if section.prefix == "strategy")
 
 
 def planned(
-    wall: Any, strategy: RevolutionParameters | SurfaceParameters | DevelopableParameters,
+    wall: Any, strategy: RevolutionParameters | SurfaceParameters | FilledParameters,
     build: BuildDirectionParameters, process: ProcessParameters, cell: CellParameters | None,
 ) -> CoreToolpath:
     """The toolpath of a wall or of solids, the result of a feature, cut by the strategy of its family; what of it lies over
@@ -123,7 +125,7 @@ def planned(
 
 
 def _made(
-    wall: Any, strategy: RevolutionParameters | SurfaceParameters | DevelopableParameters,
+    wall: Any, strategy: RevolutionParameters | SurfaceParameters | FilledParameters,
     build: BuildDirectionParameters, process: ProcessParameters, cell: CellParameters | None,
 ) -> CoreToolpath:
     if process.bead_model == "none" and process.wire.feed_mode != "constant":
@@ -131,11 +133,11 @@ def _made(
             "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model the travel speed does not vary, and the wire "
             "has nothing to follow; use constant, or a process.bead_model"
         )
-    if isinstance(strategy, DevelopableParameters):
+    if isinstance(strategy, FilledParameters):
         return _of_solids(wall, strategy, build, process, cell)
     if process.bead_model != "none":
         raise InputError(
-            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids on a hub alone; use none"
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids alone; use none"
         )
     if isinstance(strategy, SurfaceParameters):
         from ..core.geometry.patch_wall import PatchWall
@@ -174,21 +176,26 @@ def _share(fraction: float, text: str) -> None:
 
 
 def _of_solids(
-    solids: SolidsOnHub, strategy: DevelopableParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
     cell: CellParameters | None,
 ) -> CoreToolpath:
-    """Solids on a hub: the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
-    from ..core.strategies import developable, wall_clearance
+    """Solids. On a hub the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
+    from ..core.strategies import wall_clearance
+    from ..core.strategies.solids import plan as solids_plan
 
     model = _model(process)
     if cell is not None and cell.mount != "feature":  # the feature's own frame is at its lowest end
         platform.refuse_solids_below(solids, np.eye(4), cell.platform_diameter)
-    toolpath = developable.plan(solids, strategy, build, process, model, _share)
+    toolpath = solids_plan.plan(solids, strategy, build, process, model, _share)
     if build.clearance == "none":
         return toolpath
     progress.report(STRATEGY, "keeping the nozzle clear")
     nozzle = NozzleParameters() if cell is None else cell.nozzle
-    return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, developable.without_axis_limits(build))
+    if not solids_plan.on_planes(solids):
+        return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, solids_plan.without_axis_limits(build))
+    if solids_plan.clear_by_itself(toolpath, solids):
+        return toolpath
+    return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, build)
 
 
 def _kept_clear(

@@ -62,6 +62,10 @@ class Developable:
         away: Array = (rho - self.radius) * math.cos(a) + points[..., 2] * math.sin(a)
         return away
 
+    def bend(self, distance: float, extent: float) -> float:
+        """The radius, mm, that beads `distance` mm further out are bent by, around a part of an extent, mm."""
+        return self.radius + distance
+
     def normals(self, points: Array) -> Array:
         """Unit normals (..., 3) out of the surface at points (..., 3); the same for all equidistant ones. On the axis, where
         there is none, what is left of it along the axis."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..issues import Issue
 from .columns import columns
 from .developable import TURN, Developable
+from .plane import Plane
 from .surroundings import Body
 
 Array = NDArray[np.float64]
@@ -23,7 +24,7 @@ class Base:
     Z its axis, towards the apex of a cone."""
 
     name: str
-    surface: Developable
+    surface: Developable | Plane
     frame: Array
 
     def inside(self, points: Array) -> Array:

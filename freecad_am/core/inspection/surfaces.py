@@ -95,7 +95,7 @@ def _outward(loop: Array, normals: Array) -> float:
 
 def _of_toolpath(toolpath: Toolpath, name: str) -> Planned:
     """The wall that beads one beside the other make, in the plane of each bead and its build direction."""
-    if toolpath.family == "developable":
+    if toolpath.filled:
         raise InputError(
             "NOT_FOR_FAMILY", name, "its beads fill solids, most are inside; compare the points with the feature"
         )

@@ -132,10 +132,9 @@ class BaseParameters:
 
 
 @dataclass(frozen=True)
-class DevelopableParameters(LayerParameters):
-    """How solids on a cylinder or cone are cut and filled (Dai 2020, section 2). mm and rad."""
+class FilledParameters(LayerParameters):
+    """How the layers of solids are filled with beads (Dai 2020, section 2). mm and rad."""
 
-    base: BaseParameters = f.group(BaseParameters, "The cylinder or cone that the solids grow on.")
     bead_spacing: float = f.parameter(
         5.0, f.LENGTH, "Distance between neighbouring beads of a layer.", low=0.0, open_low=True
     )
@@ -188,3 +187,61 @@ class DevelopableParameters(LayerParameters):
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")
+
+
+@dataclass(frozen=True)
+class BasedParameters(LayerParameters):
+    """What solids stand on."""
+
+    base: BaseParameters = f.group(BaseParameters, "The cylinder or cone that the solids grow on.")
+
+
+@dataclass(frozen=True)
+class DevelopableParameters(FilledParameters, BasedParameters):
+    """How solids on a cylinder or cone are cut by equidistant ones and filled (Dai 2020, section 2). First what they stand
+    on, as documents have it. mm and rad."""
+
+
+@dataclass(frozen=True)
+class SolidParameters(FilledParameters):
+    """How any solid is cut by planes and filled. mm and rad."""
+
+    layers: str = f.parameter(
+        "planes", f.CHOICE, "What the layers are: parallel planes.", choices=("planes",)
+    )
+    direction: str = f.parameter(
+        "0 0 1", f.TEXT, "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "
+        "one with the least area over nothing, of these the one with the least height.",
+    )
+    cut_at: str = f.parameter(
+        "middle", f.CHOICE, "Where in its height a layer takes its outline from the part.",
+        choices=("middle", "bottom", "top"),
+    )
+    fuse: str = f.parameter(
+        "auto", f.CHOICE, "Solids that touch or overlap are deposited as one (auto), or each by itself (none).",
+        choices=("auto", "none"), advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.stacking()
+
+    def stacking(self) -> tuple[float, float, float] | None:
+        """`direction` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no direction."""
+        if self.direction == "auto":
+            return None
+        try:
+            x, y, z = (float(word) for word in self.direction.replace(",", " ").split())
+        except ValueError:
+            x = y = z = math.nan
+        if not 0.0 < math.hypot(x, y, z) < math.inf:
+            raise InputError(
+                "BAD_VALUE", "strategy.direction",
+                f"{self.direction!r} is not a direction; give three numbers such as [0, 0, 1], or auto",
+            )
+        return x, y, z
+
+    @property
+    def share_of_cut(self) -> float:
+        """How many layer heights above the plane of a layer the part is cut."""
+        return {"middle": 0.5, "bottom": 0.0, "top": 1.0}[self.cut_at]

@@ -36,7 +36,7 @@ OF_ROBOTS = (
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
 SCREENED, TRIED = 12, 3
-REVOLUTION, ON_HUBS = "revolution", "developable"
+REVOLUTION = "revolution"
 
 
 def _silent(fraction: float, text: str) -> None:
@@ -157,7 +157,7 @@ def _planned(
 
 def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
-    if toolpath.family == ON_HUBS:
+    if toolpath.filled:
         done, told = corners_slowed(cell, paths, toolpath.layer_height, toolpath.law)
     else:
         done, told = rings_slowed(cell, paths, toolpath.layer_height)

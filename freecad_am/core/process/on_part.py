@@ -45,7 +45,7 @@ def places(toolpath: Toolpath) -> Places:
 def allowed(toolpath: Toolpath, margin: float = 0.0) -> float:
     """How far off the part, mm, places may be: on walls the chord error and what rounding leaves; solids on hubs are filled,
     and beads in what is narrower than they are, or in a margin, stand out of it by no more than half of their width."""
-    if toolpath.family != "developable":
+    if not toolpath.filled:
         return toolpath.chord_error + ROUNDED
     return 0.5 * (toolpath.bead_width or 0.0) + abs(margin) + toolpath.chord_error
 

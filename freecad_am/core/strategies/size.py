@@ -21,7 +21,7 @@ from ..issues import InputError
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (
     MOST_LAYERS,
-    DevelopableParameters,
+    FilledParameters,
     LayerParameters,
     RevolutionParameters,
     SurfaceParameters,
@@ -65,7 +65,7 @@ def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
     return _of_patches(wall, strategy) if isinstance(wall, PatchWall) else _of_tube(wall, strategy)
 
 
-def of_solids(solids: SolidsOnHub, strategy: DevelopableParameters, spacing: float | None = None) -> Size:
+def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | None = None) -> Size:
     """That of solids on a hub. spacing: mm between beads; None: as the parameter says, and nothing is told of points where
     an overlap takes its place."""
     if spacing is None:
@@ -79,8 +79,9 @@ def of_solids(solids: SolidsOnHub, strategy: DevelopableParameters, spacing: flo
             deep.append((away + strategy.margin) / strategy.layer_height)
             length = _volume(body) * away / max(away + within, 1e-9) / strategy.layer_height / spacing
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
-            around = 0.5 / math.sqrt(4.0 * strategy.chord_error * (group.base.surface.radius + away))
-            points += length * max(around, 2.0 / float(np.linalg.norm(np.ptp(body.vertices, axis=0))))
+            extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
+            around = 0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(away, extent))
+            points += length * max(around, 2.0 / extent)
         layers += sum(deep) if strategy.order == "feature" else max(deep, default=0.0)
     return Size(layers, points)
 
@@ -121,8 +122,8 @@ def _causes(strategy: LayerParameters, width: float | None) -> list[_Cause]:
     ]
     if width is not None:
         found.append(_Cause("process.bead_width", width, ProcessParameters().bead_width))
-    elif isinstance(strategy, DevelopableParameters):
-        found.append(_Cause("strategy.bead_spacing", strategy.bead_spacing, DevelopableParameters().bead_spacing))
+    elif isinstance(strategy, FilledParameters):
+        found.append(_Cause("strategy.bead_spacing", strategy.bead_spacing, FilledParameters().bead_spacing))
     return found
 
 

@@ -19,7 +19,7 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build, returning
 from freecad_am.core.program import Moves, WaitBelow
-from freecad_am.core.strategies import developable
+from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.core.planning.test_leaning_programs import CHORD_ERROR, HUB, ON_ROBOT, TABLE, UP
@@ -39,7 +39,7 @@ def toolpath(frame, order="around-axis", apart=0.9):
         bodies.append(dataclasses.replace(one, name=f"blade {number}", vertices=turned @ frame[:3, :3].T))
     strategy = DevelopableParameters(layer_height=5.0, chord_error=CHORD_ERROR, bead_spacing=6.0, order=order)
     solids = SolidsOnHub("part", (Group(Base("hub", HUB, frame), tuple(bodies)),), 0.0)
-    return developable.plan(solids, strategy, BuildDirectionParameters(), ProcessParameters(), None)
+    return plan_solids(solids, strategy, BuildDirectionParameters(), ProcessParameters(), None)
 
 
 def planned(settings, frame, **changes):

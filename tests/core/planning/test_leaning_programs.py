@@ -22,7 +22,7 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build
 from freecad_am.core.process import bead_table
-from freecad_am.core.strategies import developable
+from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.toolpath import Bead, Layer, SpeedLaw, Toolpath
 from freecad_am.posts import catalogue
 from tests.core.strategies.test_developable import box
@@ -47,7 +47,7 @@ def toolpath(held, frame, **changes):
     turned = BuildDirectionParameters(**{"tilt": math.radians(LEAN) if held == "tilted" else 0.0, **changes})
     process = ProcessParameters(bead_width=9.5, wire=WireParameters(feed=model.wire_feed))
     solid = SolidsOnHub("part", (Group(Base("hub", HUB, frame), (body,)),), 0.0)
-    return developable.plan(solid, strategy, turned, process, model)
+    return plan_solids(solid, strategy, turned, process, model)
 
 
 def motion_of(cell, path):

@@ -16,7 +16,8 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters
-from freecad_am.core.strategies import developable, revolution, support
+from freecad_am.core.strategies import revolution, support
+from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 WIDTH, HEIGHT = 8.0, 2.0
@@ -160,7 +161,7 @@ def mushroom():
 @pytest.fixture(scope="module")
 def mushroom_path():
     base = Base("the rod", Developable(10.0), np.eye(4))
-    made = developable.plan(
+    made = plan_solids(
         SolidsOnHub("part", (Group(base, (mushroom(),)),), 0.0),
         DevelopableParameters(layer_height=4.0, chord_error=0.05, bead_spacing=6.0, fill="lines", fill_angle_step=0.0),
         BuildDirectionParameters(), ProcessParameters(), None,

@@ -16,7 +16,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.strategy import DevelopableParameters
 from freecad_am.core.process import bead_table
-from freecad_am.core.strategies import developable
+from freecad_am.core.strategies.solids.plan import plan as plan_solids
 
 CYLINDER, CONE = Developable(45.0), Developable(60.0, 200.0)
 LOW, HIGH = np.array([20.0, -17.0, 20.0]), np.array([84.0, 17.0, 95.0])  # of the box that is a blade
@@ -64,7 +64,7 @@ def solids(surface, *bodies, frame=None):
 
 def planned(made, build=None, process=None, model=None, **values):
     given = {"layer_height": 6.0, "chord_error": ERROR, "bead_spacing": 6.0, **values}
-    return developable.plan(
+    return plan_solids(
         made, DevelopableParameters(**given), build or BuildDirectionParameters(), process or ProcessParameters(), model
     )
 

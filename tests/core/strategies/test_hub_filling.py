@@ -15,7 +15,8 @@ from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import DevelopableParameters
-from freecad_am.core.strategies import developable, hub_filling
+from freecad_am.core.strategies.solids import filling
+from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.objects.store import pack, unpack
 from tests.core.strategies.test_developable import collar
 
@@ -38,7 +39,7 @@ def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
     bodies = tuple(box(turn, thick) for turn in turns)
     made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), bodies),), 0.0)
     given = {"layer_height": 12.0, "bead_spacing": 6.0, "order": "feature", **values}
-    return developable.plan(
+    return plan_solids(
         made, DevelopableParameters(**given), BuildDirectionParameters(),
         ProcessParameters(bead_width=width, fill_width=fill_width), None,
     )
@@ -49,8 +50,8 @@ def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
 def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeypatch):
     turns = (0.1, 0.1 + 2.0 * math.pi / 3.0, 4.0)
     calls = []
-    real = hub_filling.fill
-    monkeypatch.setattr(hub_filling, "fill", lambda *given: calls.append(given) or real(*given))
+    real = filling.fill
+    monkeypatch.setattr(filling, "fill", lambda *given: calls.append(given) or real(*given))
     together = planned(hub, turns, fill=fill)
     layers = len(together.layers) // 3
     assert len(calls) == layers
@@ -115,7 +116,7 @@ def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, 
     made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), (box(0.3), ring)),), 0.0)
 
     def beads(pattern):
-        path = developable.plan(
+        path = plan_solids(
             made, DevelopableParameters(layer_height=12.0, bead_spacing=6.0, fill=pattern, order="feature"),
             BuildDirectionParameters(), ProcessParameters(), None,
         )

@@ -6,7 +6,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.strategies.hub_beads import CLOSE, dense
+from freecad_am.core.layers.round_layer import RoundLayer
+from freecad_am.core.strategies.solids.beads import CLOSE, dense
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -16,7 +17,7 @@ def test_points_that_all_but_coincide_are_one(seed):
     angle = rng.uniform(-1.0, 1.0, count)
     steps = 10.0 ** rng.uniform(-9.0, 0.5, (count, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     line = np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
-    got = dense(line, Developable(60.0, 200.0), 0.01)
+    got = dense(line, RoundLayer(Developable(60.0, 200.0)), 0.01)
     np.testing.assert_array_equal(got[[0, -1]], line[[0, -1]])
     gaps = np.linalg.norm(np.diff(got, axis=0), axis=1)
     if line[-1, 0] > 2.0 * CLOSE:

@@ -19,7 +19,8 @@ from freecad_am.core.parameters.strategy import (
     RevolutionParameters,
     SurfaceParameters,
 )
-from freecad_am.core.strategies import developable, revolution, size, surface, wall_fronts
+from freecad_am.core.strategies import revolution, size, surface, wall_fronts
+from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, solids
 from tests.core.strategies.test_surface import TILTED, bend, tube
 from tests.core.strategies.test_wall_fronts import WALLS
@@ -44,7 +45,7 @@ def on_part(wall, **values):
 
 def on_hub(made, **values):
     strategy = DevelopableParameters(**{"layer_height": 3.0, "bead_spacing": 3.0, **values})
-    return size.of_solids(made, strategy), developable.plan(made, strategy, BuildDirectionParameters(), PROCESS, None)
+    return size.of_solids(made, strategy), plan_solids(made, strategy, BuildDirectionParameters(), PROCESS, None)
 
 
 @pytest.mark.parametrize("make", [
@@ -133,7 +134,7 @@ def test_beads_by_overlap_are_told_by_their_width():
     strategy = DevelopableParameters(layer_height=3.0, bead_overlap=0.3)
     size.refuse_absurd(size.of_solids(made, strategy), strategy)  # the feature knows no width yet
     with pytest.raises(InputError, match=r"1e-05 mm makes about [\d,]+ points") as caught:
-        developable.plan(made, strategy, BuildDirectionParameters(), thin, None)
+        plan_solids(made, strategy, BuildDirectionParameters(), thin, None)
     assert (caught.value.code, caught.value.where) == ("TOO_MANY", "process.bead_width")
 
 

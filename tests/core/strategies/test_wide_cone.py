@@ -10,12 +10,13 @@ from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.region import Region
 from freecad_am.core.geometry.strip import Strip, strips
+from freecad_am.core.layers.round_layer import RoundLayer
+from freecad_am.core.layers.surface import Slice
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import DevelopableParameters
-from freecad_am.core.strategies.hub_beads import rolled
-from freecad_am.core.strategies.hub_filling import Pictures
-from freecad_am.core.strategies.hub_layers import Slice, period
+from freecad_am.core.strategies.solids.beads import rolled
+from freecad_am.core.strategies.solids.filling import Pictures
 
 CONE = Developable(60.0, 20.0)  # laid flat a turn is 342 deg
 LOW, HIGH = 24.0, 62.0  # mm from the apex: the ring
@@ -38,7 +39,7 @@ def ring(at):
     way = np.r_[np.full(40, NEAR), along, np.full(40, FAR), along[::-1]]
     (found,) = strips([
         (flat(theta, np.full(720, HIGH)), 1), (flat(theta[::-1], np.full(720, LOW)), -1), (flat(turn, way), 0),
-    ], period(CONE))  # fmt: skip
+    ], RoundLayer(CONE).period)  # fmt: skip
     assert isinstance(found, Strip) and len(found.holes) == 1
     return found
 
@@ -47,7 +48,7 @@ def ring(at):
 def test_what_is_left_of_a_ring_knows_how_far_round_it_is(at):
     (part,) = ring(at).grown(-0.5 * SPACING, 0.1)
     assert isinstance(part, Region)
-    turn = period(CONE).around
+    turn = RoundLayer(CONE).period.around
     u = math.remainder(part.sheet - (at + math.pi) / (2.0 * math.pi) * turn, turn)  # opposite to the hole
     assert abs(u) < 1e-3 * turn
     assert part.grown(-1.0, 0.1)[0].sheet == part.simple(0.1).sheet == part.sheet
@@ -59,9 +60,10 @@ def test_beads_on_both_sides_of_a_hole_stay_out_of_it(fill, contour, at):
     """No bead runs through the hole, and they come as near to it on one side as on the other."""
     strategy = DevelopableParameters(bead_spacing=SPACING, fill=fill, contour=contour, chord_error=0.2)
     base, process = Base("the hub", CONE, np.eye(4)), ProcessParameters()
-    curves = Pictures(strategy, process).filled(Slice(0, CONE, 0.0, (ring(at),), ()), 0.0, base).curves
+    curves = Pictures(strategy, process).filled(Slice(0, RoundLayer(CONE), (ring(at),), ()), 0.0, base).curves
     points = np.vstack([
-        rolled(curve, CONE, 0.0, base, strategy, BuildDirectionParameters(), process, None).bead.points for curve in curves
+        rolled(curve, RoundLayer(CONE), base, strategy, BuildDirectionParameters(), process, None).bead.points
+        for curve in curves
     ])
     way = np.hypot(points[:, 0], points[:, 1]) / math.sin(CONE.taper)
     past = np.remainder(np.arctan2(points[:, 1], points[:, 0]) - at + math.pi, 2.0 * math.pi) - math.pi

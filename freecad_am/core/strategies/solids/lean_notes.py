@@ -6,11 +6,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..issues import NOTE, WARNING, Issue
-from ..parameters.build_direction import BuildDirectionParameters
-from ..toolpath import Layer
-from .hub_beads import Rolled
-from .hub_lean import TOLD, Turned
+from ...issues import NOTE, WARNING, Issue
+from ...parameters.build_direction import BuildDirectionParameters
+from ...toolpath import Layer
+from .beads import Rolled
+from .lean import TOLD, Turned
 
 
 def lean_notes(made: Sequence[Rolled], layers: Sequence[Layer], build: BuildDirectionParameters) -> list[Issue]:

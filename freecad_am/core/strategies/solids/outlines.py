@@ -7,20 +7,20 @@ import math
 
 import numpy as np
 
-from ..filling.curve import PlaneCurve
-from ..geometry.plane_curve import Array, nearest, steps
-from ..geometry.region import Region
-from ..parameters.build_direction import BuildDirectionParameters
-from ..parameters.strategy import DevelopableParameters
-from .hub_layers import Slice, period
-from .hub_lean import Lean
+from ...filling.curve import PlaneCurve
+from ...geometry.plane_curve import Array, nearest, steps
+from ...geometry.region import Region
+from ...layers.surface import Slice
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.strategy import FilledParameters
+from .lean import Lean
 
 NEAR = 0.55  # of the bead spacing; beads along an outline are half a spacing inside of it, the next are farther
 PROBES = 9  # edges that tell on which side the outline is, the longest
 
 
 def leaning(
-    curve: PlaneCurve, layer: Slice, strategy: DevelopableParameters, build: BuildDirectionParameters
+    curve: PlaneCurve, layer: Slice, strategy: FilledParameters, build: BuildDirectionParameters
 ) -> Lean:
     """How the torch leans on a curve: as the build direction says, and by the deflection towards the outline where the curve
     is a contour or a spiral that begins along it, a spiral for as long as it does."""
@@ -55,7 +55,9 @@ def _borders(layer: Slice) -> list[tuple[Array, bool]]:
             found += [(ring, True) for ring in part.rings()]
             continue
         for ring, turns in part.rings():
-            copies = [period(layer.surface).moved(ring, k) for k in (-1, 0, 1)]
+            period = layer.surface.period
+            assert period is not None  # strips go round it
+            copies = [period.moved(ring, k) for k in (-1, 0, 1)]
             found += [(copy, True) for copy in copies] if not turns else [(np.vstack(copies[::turns]), False)]
     return found
 

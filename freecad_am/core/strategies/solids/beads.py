@@ -1,29 +1,27 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads on a cylinder or cone from curves on the plane: rolled up, with directions and speeds."""
+"""Beads of a layer from curves on the plane: wrapped, with directions and speeds."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..filling.curve import PlaneCurve
-from ..geometry.columns import columns
-from ..geometry.developable import TURN, Array, Developable
-from ..geometry.on_hub import Base
-from ..geometry.region import simplified
-from ..parameters.build_direction import BuildDirectionParameters
-from ..parameters.process import ProcessParameters
-from ..parameters.strategy import DevelopableParameters
-from ..process.bead_model import BeadModel
-from ..process.bead_speed import followed, radii
-from ..process.wire import with_model
-from ..toolpath import Bead
-from .hub_layers import period
-from .hub_lean import Course, Lean, Turned, held, unrolled
+from ...filling.curve import PlaneCurve
+from ...geometry.developable import TURN, Array
+from ...geometry.on_hub import Base
+from ...geometry.region import simplified
+from ...layers.surface import LayerSurface
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import FilledParameters
+from ...process.bead_model import BeadModel
+from ...process.bead_speed import followed, radii
+from ...process.wire import with_model
+from ...toolpath import Bead
+from .lean import Course, Lean, Turned, held
 
 Mask = NDArray[np.bool_]
 
@@ -44,17 +42,18 @@ class Rolled(NamedTuple):
 
 
 def rolled(
-    curve: PlaneCurve, surface: Developable, middle: float, base: Base, strategy: DevelopableParameters,
+    curve: PlaneCurve, surface: LayerSurface, base: Base, strategy: FilledParameters,
     build: BuildDirectionParameters, process: ProcessParameters, model: BeadModel | None, lean: Lean | None = None,
 ) -> Rolled:
     """The bead of a curve on the plane, in part coordinates; its polynomial's variable is the arc length, 2 pi in all.
 
     lean: of the torch, by default that of the build direction.
     """
-    start = period(surface).moved(curve.points[:1], curve.turns) if curve.turns else curve.points[:1]
+    period = surface.period
+    start = period.moved(curve.points[:1], curve.turns) if curve.turns and period is not None else curve.points[:1]
     ended = np.vstack([curve.points, start]) if curve.closed else curve.points
     flat = dense(ended, surface, ROLLED * strategy.chord_error)
-    course = Course(flat, curve.closed, surface, middle + _behind(flat, surface, curve.sheet))
+    course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     lean = Lean(build.lead, build.tilt) if lean is None else lean
     flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
     points = base.placed(local)
@@ -68,16 +67,6 @@ def rolled(
     if model is None:
         return Rolled(bead, turned=turned)
     return _at_speed(bead, flat, curve.closed and not curve.turns, process, model)._replace(turned=turned)
-
-
-def _behind(flat: Array, surface: Developable, sheet: float) -> float:
-    """By what azimuth, rad, a curve (n, 2) that lies about u = `sheet` mm is farther round than the plane alone tells: on a
-    wide cone it may have come round behind the apex."""
-    if surface.is_cylinder:
-        return 0.0
-    sine = math.sin(surface.taper)
-    away = sheet / surface.slant - float(unrolled(flat, surface)[0].mean()) * sine
-    return TURN * round(away / TURN) / sine
 
 
 def _needed(flat: Array, tolerance: float) -> Array:
@@ -95,35 +84,21 @@ def _apart(flat: Array) -> Array:
     kept = np.r_[True, np.diff(np.floor(way / CLOSE)) > 0.0]
     kept &= (way < way[-1] - CLOSE) | (way == 0.0)
     kept[0] = kept[-1] = True
-    chosen = flat[kept]
+    chosen: Array = flat[kept]
     near = np.r_[False, np.linalg.norm(np.diff(chosen, axis=0), axis=1) < CLOSE]
     near[-1] = False  # neighbours across a step of the count: the first of the two is enough
     return chosen[~near] if len(chosen) - int(near.sum()) >= 2 else chosen[[0, -1]]
 
 
-def dense(flat: Array, surface: Developable, chord_error: float) -> Array:
-    """A polyline (n, 2) on the plane with so many points that its chords, rolled up, keep within the chord error.
-
-    An edge is a geodesic: its curvature is that of the surface around the axis, by the square of its share of that way.
-    """
+def dense(flat: Array, surface: LayerSurface, chord_error: float) -> Array:
+    """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error."""
     flat = _apart(_needed(flat, NEEDLESS * chord_error))
     edge = np.diff(flat, axis=0)
-    length = np.linalg.norm(edge, axis=1)
-    theta, z = unrolled(flat, surface)
-    phi = theta * math.sin(surface.taper)
-    along, across = columns(edge)
-    heading = np.arctan2(across, along)
-    share = np.maximum(np.abs(np.cos(heading - phi[:-1])), np.abs(np.cos(heading - phi[1:])))
-    share = np.minimum(share + np.abs(np.diff(phi)), 1.0)
-    rho = np.full(len(z), surface.radius) if surface.is_cylinder else (surface.height - z) * math.tan(surface.taper)
-    # an edge comes nearer to the apex than its ends by no more than its sagitta seen from there
-    least = np.minimum(rho[:-1], rho[1:]) * np.cos(0.5 * np.abs(np.diff(phi)))
-    curvature = math.cos(surface.taper) * share**2 / least
-    count = np.maximum(np.ceil(length * np.sqrt(curvature / (8.0 * chord_error)) - 1e-9), 1.0).astype(np.intp)
+    count = surface.pieces(flat, chord_error)
     start = np.repeat(np.arange(len(edge)), count)
     number = np.arange(len(start)) - np.repeat(np.cumsum(count) - count, count)
-    points: Array = flat[start] + (number / count[start])[:, None] * edge[start]
-    return np.vstack([points, flat[-1:]])
+    points = flat[start] + (number / count[start])[:, None] * edge[start]
+    return np.asarray(np.vstack([points, flat[-1:]]))
 
 
 def _at_speed(bead: Bead, flat: Array, closed: bool, process: ProcessParameters, model: BeadModel) -> Rolled:

@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.columns import columns
-from ..geometry.developable import TURN, Array, Developable
-from ..geometry.region import simplified
-from ..parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
-from ..slicing.wall_direction import turn_rates
+from ...geometry.columns import columns
+from ...geometry.developable import TURN, Array
+from ...geometry.region import simplified
+from ...layers.surface import LayerSurface
+from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
+from ...slicing.wall_direction import turn_rates
 from .spread import Line, Zones, means, too_fast
 
 Mask = NDArray[np.bool_]
@@ -85,35 +86,19 @@ class Held(NamedTuple):
 
 @dataclass(frozen=True)
 class Course:
-    """A bead laid flat (n, 2) on its surface, and where the plane's x = 0 is, rad; a closed one repeats its first point, or
-    ends a period from it."""
+    """A bead laid flat (n, 2), and its surface; a closed one repeats its first point, or ends a period from it."""
 
     flat: Array
     closed: bool
-    surface: Developable
-    middle: float
+    surface: LayerSurface
 
     def at(self, s: Array, way: Array) -> tuple[Array, Array, Array, Array]:
         """Flat places (n, 2), points (n, 3), normals (n, 3) and the angle phi (n,) of the way round on the plane."""
         flat = np.stack([np.interp(s, way, column) for column in self.flat.T], axis=-1)
-        theta, z = unrolled(flat, self.surface)
-        rho = np.full(len(z), self.surface.radius) if self.surface.is_cylinder else (
-            (self.surface.height - z) * math.tan(self.surface.taper)
-        )
-        angle = theta + self.middle
-        points = np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
+        points, normals, turn = self.surface.wrap(flat)
         if self.closed:
-            points[-1] = points[0]
-        return flat, points, self.surface.normals(points), theta * math.sin(self.surface.taper)
-
-
-def unrolled(flat: Array, surface: Developable) -> tuple[Array, Array]:
-    """Azimuth and height (n,) along a curve (n, 2) on the plane, the azimuth counted on where the curve goes far round."""
-    theta, z = surface.unrolled(flat)
-    if surface.is_cylinder:
-        return theta, z
-    sine = math.sin(surface.taper)
-    return np.unwrap(theta * sine) / sine, z
+            points[-1], normals[-1] = points[0], normals[0]
+        return flat, points, normals, turn
 
 
 def held(course: Course, lean: Lean, build: BuildDirectionParameters, chord_error: float) -> Held:
@@ -227,7 +212,7 @@ def _spread(course: Course, way: Array, heading: Line, lean: Lean, most: float, 
     off, weight = (0.5 * (row[1:] + row[:-1]) @ share for row in (np.abs(values[:, 0] - asked[:, 0]) * leans, leans))
     if off > ASTRAY * weight:
         return None
-    wanted = directed(normal, asked[:, 0] - phi, lean.lead, asked[:, 1])
+    wanted = directed(course.surface, normal, asked[:, 0] - phi, lean.lead, asked[:, 1])
     apart = np.arctan2(np.linalg.norm(np.cross(wanted, tool), axis=1), (wanted * tool).sum(axis=1))
     touched = float((share * length)[np.maximum(apart[1:], apart[:-1]) > TOLD].sum())
     return Held(flat, points, normal, tool, Turned(1.0, 0.0, float(apart.max()) if touched else 0.0, touched))
@@ -277,7 +262,7 @@ class _Laid(NamedTuple):
 def _laid(course: Course, way: Array, s: Array, values: Array, lean: Lean) -> _Laid:
     """The bead at places s (n,) with its torch by headings and angles to the right, values (n, 2)."""
     flat, points, normal, phi = course.at(s, way)
-    tool = directed(normal, values[:, 0] - phi, lean.lead, values[:, 1])
+    tool = directed(course.surface, normal, values[:, 0] - phi, lean.lead, values[:, 1])
     if course.closed:
         tool[-1] = tool[0]
     return _Laid(flat, points, normal, tool, phi, turn_rates(points, tool))
@@ -295,13 +280,10 @@ def _needed(s: Array, values: Array, lead: float) -> Mask:
     return found
 
 
-def directed(normal: Array, heading: Array, lead: float, side: Array) -> Array:
-    """Tool axes (n, 3): the normals turned by `lead` towards the heading (n,), counted from the way round the hub, then by
-    `side` (n,) to the right of it, rad."""
-    x, y = columns(normal[:, :2])
-    level = np.hypot(x, y)
-    around = np.stack([-y / level, x / level, np.zeros(len(x))], axis=1)
-    up = np.cross(normal, around)
+def directed(surface: LayerSurface, normal: Array, heading: Array, lead: float, side: Array) -> Array:
+    """Tool axes (n, 3): the normals turned by `lead` towards the heading (n,), counted from the first axis of the surface,
+    then by `side` (n,) to the right of it, rad."""
+    around, up = surface.axes(normal)
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     along, right = cos * around + sin * up, sin * around - cos * up
     ahead = math.cos(lead) * normal + math.sin(lead) * along

@@ -7,20 +7,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..issues import NOTE, WARNING, Issue
-from ..parameters.process import ProcessParameters
-from ..parameters.strategy import DevelopableParameters
-from ..process.bead_model import MINUTE, BeadModel
-from ..process.predicted import heights_told
-from ..process.wire import with_model
-from ..toolpath import Array, Layer
-from .hub_beads import Rolled
+from ...issues import NOTE, WARNING, Issue
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import FilledParameters
+from ...process.bead_model import MINUTE, BeadModel
+from ...process.predicted import heights_told
+from ...process.wire import with_model
+from ...toolpath import Array, Layer
+from .beads import Rolled
 
 CLAMPED = 0.05  # of the length
 
 
 def notes(
-    made: Sequence[Rolled], layers: Sequence[Layer], mended: Sequence[Issue], strategy: DevelopableParameters,
+    made: Sequence[Rolled], layers: Sequence[Layer], mended: Sequence[Issue], strategy: FilledParameters,
     process: ProcessParameters, model: BeadModel | None,
 ) -> list[Issue]:
     """All of them."""
@@ -37,7 +37,7 @@ def notes(
     return found
 
 
-def _single_layers(layers: Sequence[Layer], strategy: DevelopableParameters) -> list[Issue]:
+def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[Issue]:
     """Solids, or groups of them laid in turn, that get one layer alone."""
     starts = [*(index for index, layer in enumerate(layers) if layer.first), len(layers)]
     single = [start for start, end in zip(starts, starts[1:]) if end - start == 1]
@@ -61,7 +61,7 @@ def _mended(issues: Sequence[Issue]) -> list[Issue]:
 
 
 def _of_model(
-    made: Sequence[Rolled], strategy: DevelopableParameters, process: ProcessParameters, model: BeadModel
+    made: Sequence[Rolled], strategy: FilledParameters, process: ProcessParameters, model: BeadModel
 ) -> list[Issue]:
     length = np.concatenate([np.linalg.norm(np.diff(one.bead.points, axis=0), axis=1) for one in made])
     speed = np.concatenate([one.bead.speed[1:] for one in made]) * MINUTE

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers on a hub filled: equal pictures once, and what stays open told with its place in the part."""
+"""Layers filled: equal pictures once, and what stays open told with its place in the part."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..filling.curve import Beads, PlaneCurve
-from ..filling.fill import fill, open_at_slits, open_places
-from ..geometry.developable import Array
-from ..geometry.on_hub import Base
-from ..geometry.plane_curve import nearest
-from ..geometry.region import Region
-from ..geometry.strip import Strip
-from ..geometry.told import place
-from ..issues import NOTE, WARNING, InputError, Issue
-from ..parameters.process import ProcessParameters
-from ..parameters.strategy import DevelopableParameters
-from ..process.bead_model import BeadModel
-from .hub_layers import ARCS, Slice
+from ...filling.curve import Beads, PlaneCurve
+from ...filling.fill import fill, open_at_slits, open_places
+from ...geometry.developable import Array
+from ...geometry.on_hub import Base
+from ...geometry.plane_curve import nearest
+from ...geometry.region import Region
+from ...geometry.strip import Strip
+from ...geometry.told import place
+from ...issues import NOTE, WARNING, InputError, Issue
+from ...layers.margins import ARCS
+from ...layers.surface import Slice
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import FilledParameters
+from ...process.bead_model import BeadModel
 
 SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
@@ -50,7 +51,7 @@ class Pictures:
     """Fills layers. Solids alike but for a turn about the hub's axis have equal pictures, but for rounding: the beads of the
     first, within SAME of its own, are those of all."""
 
-    def __init__(self, strategy: DevelopableParameters, process: ProcessParameters, width: float = 0.0) -> None:
+    def __init__(self, strategy: FilledParameters, process: ProcessParameters, width: float = 0.0) -> None:
         """width: mm of a bead, 0: the spacing."""
         self._strategy = strategy
         self._process = process
@@ -61,10 +62,10 @@ class Pictures:
         """The beads of a layer of a solid whose middle is at the azimuth `centre`, rad. InfeasibleError THIN_REGION."""
         strategy, process = self._strategy, self._process
         seam = process.seam.angle + one.layer * process.seam.step
-        turned = (one.middle - centre) * math.sin(one.surface.taper)  # of the picture, by the cutting line
+        turned = one.surface.turned(centre)  # the picture, by the cutting line
 
         def where(point: Array) -> str:
-            return place(base.placed(one.surface.rolled(point[None], one.middle))[0])
+            return place(base.placed(one.surface.wrap(point[None]).points)[0])
 
         beads = Beads(
             strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.shortest, strategy.thin,
@@ -104,7 +105,7 @@ class Pictures:
         if isinstance(region, Strip):
             whole = fill(region, beads, strategy.fill, angle, strategy.contour, links)
             return whole, open_places(region, whole, beads)
-        known = self._known.setdefault((one.layer, one.surface.radius, one.surface.height), [])
+        known = self._known.setdefault(one.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
             if alike and _equal(other.rings, region.rings()):
@@ -115,14 +116,14 @@ class Pictures:
         return curves, left
 
 
-def spaced(strategy: DevelopableParameters, process: ProcessParameters) -> DevelopableParameters:
+def spaced(strategy: FilledParameters, process: ProcessParameters) -> FilledParameters:
     """The same with the bead spacing that the overlap asks for, if one is given."""
     if strategy.bead_overlap is None:
         return strategy
     return replace(strategy, bead_spacing=process.bead_width * (1.0 - strategy.bead_overlap))
 
 
-def bead_width(strategy: DevelopableParameters, process: ProcessParameters, model: BeadModel | None) -> float:
+def bead_width(strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None) -> float:
     """How wide (mm) beads count: as `process.fill_width` says.
 
     InputError BEAD_SPACING where the spacing is larger, so that stripes would stay open."""

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Regions of a layer from its loops and those of the layers below it, grown by the margin that is machined off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+from ..geometry.region import Region, joined, mended, regions
+from ..issues import Issue
+from .surface import Array
+
+BORDER, ARCS = 0.05, 0.2  # shares of the chord error: of borders without needless points, of fillings
+
+Loops = TypeVar("Loops")
+
+
+def within_margin(
+    below: Sequence[Loops], height: float, margin: float, moved: Callable[[Loops, float], Loops]
+) -> list[tuple[float, Loops]]:
+    """Loops of the last layer, and of those below it within the margin moved up to it, with how far each has to grow.
+
+    Growing within a layer covers the margin beside the part; what ends below has the margin above itself.
+    """
+    last = len(below) - 1
+    found = [(margin, below[last])]
+    for layer in range(last - 1, -1, -1):
+        up = (last - layer) * height
+        if up >= margin:
+            break
+        found.append((math.sqrt(margin * margin - up * up), moved(below[layer], up)))
+    return found
+
+
+def grown(
+    near: Sequence[tuple[float, Sequence[Array]]], margin: float, chord_error: float, layer: int
+) -> tuple[tuple[Region, ...], tuple[Issue, ...]]:
+    """The regions of a layer from loops (n, 2) and how far (mm) each lot of them grows, without slits thinner than the chord
+    error; and what was mended."""
+    issues: tuple[Issue, ...] = ()
+    rings: list[Array] = []
+    whole: tuple[Region, ...] = ()
+    for distance, flat in near:
+        read = mended(flat)
+        issues += read.issues(layer)
+        whole = tuple(part for region in read.regions for part in region.grown(distance, ARCS * chord_error))
+        rings += [ring for region in whole for ring in region.rings()]
+    if margin > 0.0:
+        whole = regions(rings)
+    whole = joined(whole, chord_error)
+    return tuple(region.simple(BORDER * chord_error) for region in whole), issues

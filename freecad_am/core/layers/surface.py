@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A layer: a surface that can be laid flat without stretching, and what of the part lies on it.
+
+Fillings know the plane alone. What they lay there is wrapped onto the surface: an isometry, so that spacings, areas and
+angles within the layer are those of the plane.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.region import Region
+from ..geometry.strip import Period, Strip
+from ..issues import Issue
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+class Wrapped(NamedTuple):
+    """A curve of the plane on its surface: points and unit normals (n, 3) in the frame of the field, and by what angle (n,)
+    rad the x of the plane is turned there from the first direction of `axes`."""
+
+    points: Array
+    normals: Array
+    turn: Array
+
+
+class LayerSurface(Protocol):
+    """One surface of a field of layers, in the frame of the field (`on_hub.Base`)."""
+
+    @property
+    def alike(self) -> tuple[float, ...]:
+        """What regions on two surfaces must share beside their borders for their fillings to be the same."""
+
+    @property
+    def period(self) -> Period | None:
+        """What a turn round the surface is on the plane; None where there is none."""
+
+    def unroll(self, points: Array) -> Array:
+        """Points (n, 3) of the surface laid flat, (n, 2) mm."""
+
+    def wrap(self, flat: Array) -> Wrapped:
+        """A curve (n, 2) on the plane brought back."""
+
+    def followed(self, flat: Array, sheet: float) -> LayerSurface:
+        """The surface for a curve (n, 2) that lies about u = `sheet` mm (`strip.Period`)."""
+
+    def turned(self, azimuth: float) -> float:
+        """By what angle, rad, the plane is turned from where it would lie about another azimuth, rad."""
+
+    def pieces(self, flat: Array, chord_error: float) -> Index:
+        """In how many pieces (n - 1,) the edges of a polyline (n, 2) keep within the chord error, mm, when wrapped."""
+
+    def axes(self, normals: Array) -> tuple[Array, Array]:
+        """Two unit directions (n, 3) each within the surface where it has these normals (n, 3), at right angles, the second
+        to the left of the first seen from outside."""
+
+
+class Slice(NamedTuple):
+    """One layer of a part: its number, its surface, its regions laid flat, and findings."""
+
+    layer: int
+    surface: LayerSurface
+    regions: tuple[Region | Strip, ...]
+    issues: tuple[Issue, ...]

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The families of features that can be planned: what each is called, and what it takes. The one place to register one.
+
+What plans it is found by what its feature has found (`objects.toolpath`), how it is drawn by its proxy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..parameters.strategy import (
+    DevelopableParameters,
+    LayerParameters,
+    RevolutionParameters,
+    SolidParameters,
+    SurfaceParameters,
+)
+
+NEEDED, OPTIONAL, NONE = "needed", "optional", "none"
+
+
+@dataclass(frozen=True)
+class Family:
+    """kind: `strategy.kind` of a job. parameters: the dataclass of `strategy`. substrate: whether it grows on an existing
+    part: NEEDED (or edges to start from), OPTIONAL, NONE. meshes: a mesh may be the part. filled: solids are filled, so that
+    the width and the speed of beads are settings of their own. modes: those of `build_direction` that it knows, and why not
+    others. edges, faces: the part may name edges to start from, and faces.
+    """
+
+    kind: str
+    parameters: type[LayerParameters]
+    substrate: str
+    meshes: bool
+    filled: bool
+    modes: tuple[str, ...]
+    why: str
+    edges: bool = False
+    faces: bool = True
+
+
+FAMILIES = (
+    Family("revolution", RevolutionParameters, NONE, False, False, ("local", "layer", "fixed"),
+           "symmetry-plane is not for parts of revolution; use local, layer or fixed"),
+    Family("surface", SurfaceParameters, NEEDED, False, False, ("local", "layer", "symmetry-plane", "fixed"), "", True),
+    Family("developable", DevelopableParameters, OPTIONAL, True, True, ("local",),
+           "{} is not for solids on a hub, which grow along its normals; use local"),
+    Family("solid", SolidParameters, OPTIONAL, True, True, ("local", "layer", "fixed"),
+           "{} is for walls; plane layers grow along their normal: use local or fixed", faces=False),
+)
+KINDS = {family.kind: family for family in FAMILIES}
+
+
+def family_of(parameters: Any) -> Family:
+    """The family of parameters of a strategy."""
+    return next(family for family in FAMILIES if type(parameters) is family.parameters)

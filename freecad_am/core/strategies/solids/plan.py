@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids: cut by a field of layers, filled, laid in order, at speeds that hold the bead's width (Dai 2020)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...geometry.developable import Array
+from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
+from ...issues import InfeasibleError, InputError, Issue
+from ...layers.field import Piece, pieces, upwards
+from ...layers.surface import Slice
+from ...parameters.build_direction import BuildDirectionParameters
+from ...parameters.process import ProcessParameters
+from ...parameters.strategy import FilledParameters
+from ...process.bead_model import BeadModel
+from ...process.order import Laid, ordered, waited
+from ...toolpath import Toolpath
+from .. import size
+from ..progress import Progress, silent
+from .beads import Rolled, reversed_curve, rolled
+from .filling import Filled, Pictures, bead_width, spaced
+from .lean_notes import lean_notes
+from .notes import notes
+from .outlines import leaning
+
+LEVEL = 1e-6  # mm, and of the cosine of an angle
+
+
+def plan(
+    solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    model: BeadModel | None, progress: Progress = silent,
+) -> Toolpath:
+    """The toolpath of solids, in part coordinates; layer i lies i layer heights from what they stand on.
+
+    model: sets the speeds, None for the travel speed everywhere. progress(fraction, text) may raise to cancel. Raises
+    InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
+    THIN_REGION.
+    """
+    _refuse_mode(solids, build)
+    strategy = spaced(strategy, process)
+    width = None if strategy.bead_overlap is None else process.bead_width
+    size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy, width)
+    counted = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, counted)
+    laid: list[Laid] = []
+    made: list[Rolled] = []
+    mended: list[Issue] = []
+    found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
+             for number, piece in enumerate(pieces(one, strategy))]
+    for done, (group, base, number, piece) in enumerate(found):
+        for layer in piece.slices:
+            mended += layer.issues
+            progress(done / len(found), f"{piece.name} layer {layer.layer}")
+            beads = _filled(layer, piece, base, pictures)
+            mended += beads.issues
+            for curve in beads.curves:
+                if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
+                    curve = reversed_curve(curve)
+                lean = leaning(curve, layer, strategy, build)
+                bead = rolled(curve, layer.surface, base, strategy, build, process, model, lean)
+                made.append(bead)
+                laid.append(Laid(group, number, layer.layer, curve.ring, bead.bead))
+    if not laid:
+        raise InputError(
+            "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.shortest:g} mm or more finds room in any layer; "
+            "use a smaller bead spacing, or thin = single",
+        )
+    course = ordered(laid, strategy.order)
+    layers = waited(course, strategy.wait, process.rapid_speed)
+    issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
+    return Toolpath(
+        layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
+        "solid" if on_planes(solids) else "developable",
+        solids.surroundings, None if model is None else model.law(process.acceleration), counted,
+    )
+
+
+def _refuse_mode(solids: SolidsOnHub, build: BuildDirectionParameters) -> None:
+    if on_planes(solids):
+        if build.mode == "symmetry-plane":
+            raise InputError(
+                "NOT_FOR_FAMILY", "build_direction.mode", "symmetry-plane is for walls; plane layers grow along their "
+                "normal: use local or fixed",
+            )
+    elif build.mode != "local":
+        raise InputError(
+            "NOT_FOR_FAMILY", "build_direction.mode", f"{build.mode} is not for solids on a hub, which grow along its "
+            "normals; use local",
+        )
+
+
+def on_planes(solids: SolidsOnHub) -> bool:
+    """Whether the layers are planes, one above the other."""
+    return all(upwards(group) for group in solids.groups)
+
+
+def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
+    """Whether nothing can stand above the tip of the nozzle: layers are planes, each wholly below the next, the tool stands
+    upright on them, and what is around ends below the first."""
+    up, origin = solids.groups[0].base.frame[:3, 2], solids.groups[0].base.frame[:3, 3]
+    before = -np.inf
+    for _, _, bead in toolpath:
+        height = float((bead.points[0] - origin) @ up)
+        if height < before - LEVEL or (bead.tool @ up).min() < 1.0 - LEVEL:
+            return False
+        before = height
+    return all(float(((body.vertices - origin) @ up).max()) < LEVEL for body in solids.surroundings)
+
+
+def _filled(layer: Slice, piece: Piece, base: Base, pictures: Pictures) -> Filled:
+    try:
+        return pictures.filled(layer, piece.centre, base)
+    except InfeasibleError as error:
+        where = f"{piece.name} layer {layer.layer}"
+        raise InfeasibleError(
+            error.code, where, error.message, (Issue("error", error.code, f"{piece.name}: {error.message}", layer.layer),)
+        ) from None
+
+
+def _frame(solids: SolidsOnHub) -> Array:
+    """The frame of the feature (interface.md, mount): Z the axis of the first base, upwards in the part; origin where the
+    lowest end of the solids is; X the part's X seen along Z. Of planes Z is the stacking direction, wherever it points."""
+    base: Base = solids.groups[0].base
+    if on_planes(solids):
+        return base.frame
+    z = base.frame[:3, 2]
+    z = -z if downwards(z) else z
+    vertices = np.vstack([body.vertices for group in solids.groups for body in group.bodies])
+    low = float(((vertices - base.frame[:3, 3]) @ z).min())
+    return upright(base.frame[:3, 3] + low * z, z)
+
+
+def without_axis_limits(build: BuildDirectionParameters) -> BuildDirectionParameters:
+    """The same with tool axes that may point anywhere: on a hub they do, and the machine turns it."""
+    return replace(build, max_tilt=np.pi)
