@@ -91,12 +91,13 @@ def _checked(job: tree.Tree, path: str) -> Job:
         raise InputError("BAD_VERSION", "version", f"{quantity.shown(version)} is not understood; this program reads 1")
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
-    strategy = _strategy(values.get("strategy") or {})
+    part_section = fields.mapping(values["part"], "part")
+    strategy = _strategy(_with_fuse(values.get("strategy") or {}, part_section))
     process = _process(values.get("process") or {}, strategy)
     process = _with_bead_model(process, strategy, path)
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     _refuse_direction(strategy, build_direction)
-    part = _part(fields.mapping(values["part"], "part"), path)
+    part = _part({key: value for key, value in part_section.items() if key != "fuse"}, path)
     return Job(
         path=path,
         name=_name(values.get("name"), path),
@@ -267,6 +268,15 @@ def _strategy(section: Any) -> LayerParameters:
         section = _with_direction(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
     return fields.build(factory, section, "strategy", also=("kind",))
+
+
+def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
+    """The section of the strategy with what the part says about solids that touch."""
+    if "fuse" not in part:
+        return section
+    if fields.mapping(section, "strategy").get("kind") != "solid":
+        raise InputError("NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out")
+    return {**section, "fuse": part["fuse"]}
 
 
 def _with_direction(section: dict[str, Any]) -> dict[str, Any]:

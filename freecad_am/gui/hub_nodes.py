@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on a hub in the 3D view: the cylinders and cones they grow on, and the contours of their first layers."""
+"""Solids in the 3D view: the cylinders, cones or plane they grow on, and the contours of their first layers."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.geometry.on_hub import Base, Group, SolidsOnHub
-from ..core.slicing.equidistant import Facets
-from ..core.slicing.laid_flat import cut
+from ..core.geometry.plane import Plane
+from ..core.layers.field import footprints
 from .lines import Array, Lines
 from .wall_nodes import WallNodes, unpickable
 
@@ -72,17 +72,14 @@ def drawing(solids: SolidsOnHub) -> Drawing:
 
 def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
     """Where each solid of a group leaves the base: closed curves (k, 3) in part coordinates, the first point repeated."""
-    found = []
-    for body in group.bodies:
-        facets = Facets(group.base.surface, group.base.inside(body.vertices), body.triangles, body.name)
-        loops = [group.base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)]
-        found.append([np.concatenate([loop, loop[:1]]) for loop in loops])
-    return found
+    return [[np.concatenate([loop, loop[:1]]) for loop in some] for some in footprints(group, chord_error)]
 
 
 def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array]]:
     """Points and triangles of the base about contours, and lines along its ends and up it."""
     base = group.base
+    if isinstance(base.surface, Plane):
+        return _plane(base, np.concatenate(contours or [body.vertices for body in group.bodies]))
     low, high = _reach(base, contours or [body.vertices for body in group.bodies])
     outside = base.surface.offset(OUTSIDE * base.surface.radius)
     turn = np.linspace(0.0, 2.0 * np.pi, SIDES + 1)
@@ -93,6 +90,16 @@ def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array
     ])
     up = [np.stack([rings[0][number], rings[1][number]]) for number in range(0, SIDES, SIDES // 8)]
     return np.concatenate(rings), corners, [*rings, *up]
+
+
+def _plane(base: Base, around: Array) -> tuple[Array, Array, list[Array]]:
+    """Points, triangles and border of a rectangle of the base about points (n, 3)."""
+    flat = base.inside(around)[:, :2]
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    more = BEYOND * float((high - low).max())
+    (x0, y0), (x1, y1) = low - more, high + more
+    corners = base.placed(np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]]))
+    return corners, np.array([[0, 1, 2], [0, 2, 3]]), [np.concatenate([corners, corners[:1]])]
 
 
 def _reach(base: Base, curves: list[Array]) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from PySide import QtCore
 
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.job_group import is_group
+from ..objects.solid_feature import SolidFeature
 from ..objects.stage import Stage
 from . import preference_watch, view_job
 from .busy import carry_out
@@ -47,7 +48,7 @@ preference_watch.listen(_preferences_changed)
 
 def view_of(stage: Stage) -> type[StageView]:
     """The view provider of a stage."""
-    return HubView if isinstance(stage, DevelopableFeature) else VIEWS[stage.kind]
+    return HubView if isinstance(stage, (DevelopableFeature, SolidFeature)) else VIEWS[stage.kind]
 
 
 def attach(obj: Any) -> None:

@@ -9,8 +9,11 @@ from typing import NamedTuple
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Group, middle_azimuth
 from ..parameters.strategy import DevelopableParameters, FilledParameters, SolidParameters
+from ..slicing.equidistant import Facets
+from ..slicing.laid_flat import cut
 from . import planes, rotary
-from .surface import Slice
+from .plane_layer import PlaneLayer
+from .surface import Array, Slice
 
 
 class Piece(NamedTuple):
@@ -37,6 +40,17 @@ def pieces(group: Group, strategy: FilledParameters) -> list[Piece]:
         Piece(lot[0].name if len(lot) == 1 else f"{len(lot)} solids", 0.0, planes.slices(group.base, lot, strategy))
         for lot in lots
     ]
+
+
+def footprints(group: Group, chord_error: float) -> list[list[Array]]:
+    """Where each solid of a group leaves its base: closed curves (k, 3) in part coordinates, the first point not repeated.
+    InputError OPEN_MESH."""
+    base, surface = group.base, group.base.surface
+    if isinstance(surface, Developable):
+        made = [Facets(surface, base.inside(body.vertices), body.triangles, body.name) for body in group.bodies]
+        return [[base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made]
+    found = [planes.footprint(base, body, chord_error) for body in group.bodies]
+    return [[base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in loops] for loops in found]
 
 
 def upwards(group: Group) -> bool:

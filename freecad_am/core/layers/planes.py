@@ -60,6 +60,11 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
             yield Slice(layer, PlaneLayer(layer * strategy.layer_height), found, issues)
 
 
+def footprint(base: Base, body: Body, chord_error: float) -> list[Array]:
+    """The loops (n, 2) in which a body stands on the plane of its base, cut a chord error above it."""
+    return next(PlaneCuts(base.inside(body.vertices), body.triangles).loops([chord_error]))
+
+
 def _highest(base: Base, local: Sequence[Array]) -> str:
     points = np.vstack(local)
     return place(base.placed(points[points[:, 2].argmax()][None])[0])
