@@ -31,10 +31,11 @@ INSTEAD = {"spiral": "contours", "zigzag": "lines"}  # round a hub
 
 
 class Filled(NamedTuple):
-    """The beads of a layer on the plane, and what to know about them."""
+    """The beads of a layer on the plane, what to know about them, and the number of the region that each fills."""
 
     curves: list[PlaneCurve]
     issues: tuple[Issue, ...]
+    islands: list[int]
 
 
 class _Picture(NamedTuple):
@@ -76,9 +77,11 @@ class Pictures:
         curves: list[PlaneCurve] = []
         issues: list[Issue] = []
         gaps: list[tuple[Array, float]] = []
-        for region in one.regions:
+        islands: list[int] = []
+        for number, region in enumerate(one.regions):
             found, left = self._picture(one, region, beads, angle)
             curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
+            islands += [number] * len(found)
             gaps += left
         plain = [region for region in one.regions if isinstance(region, Region)]
         if len(plain) == len(one.regions):
@@ -95,7 +98,7 @@ class Pictures:
                 NOTE, "PATTERN_ROUND_HUB", f"a layer all the way round the hub is filled with {INSTEAD[strategy.fill]}; "
                 f"strategy.fill = {strategy.fill} is for regions with an end", one.layer,
             ))
-        return Filled(curves, tuple(issues))
+        return Filled(curves, tuple(issues), islands)
 
     def _picture(
         self, one: Slice, region: Region | Strip, beads: Beads, angle: float

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...filling.curve import PlaneCurve
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
 from ...issues import InfeasibleError, InputError, Issue
@@ -22,10 +23,12 @@ from .. import size
 from ..progress import Progress, silent
 from .beads import Rolled, reversed_curve, rolled
 from .filling import Filled, Pictures, bead_width, spaced
+from .islands import island_by_island
 from .lean_notes import lean_notes
 from .notes import notes
 from .outlines import leaning
 
+FEWER = 1_000_000  # beads that a layer of a solid has
 LEVEL = 1e-6  # mm, and of the cosine of an angle
 
 
@@ -50,19 +53,21 @@ def plan(
     mended: list[Issue] = []
     found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
              for number, piece in enumerate(pieces(one, strategy))]
+    planes, at = on_planes(solids), None
     for done, (group, base, number, piece) in enumerate(found):
         for layer in piece.slices:
             mended += layer.issues
             progress(done / len(found), f"{piece.name} layer {layer.layer}")
             beads = _filled(layer, piece, base, pictures)
             mended += beads.issues
-            for curve in beads.curves:
-                if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
-                    curve = reversed_curve(curve)
-                lean = leaning(curve, layer, strategy, build)
-                bead = rolled(curve, layer.surface, base, strategy, build, process, model, lean)
-                made.append(bead)
-                laid.append(Laid(group, number, layer.layer, curve.ring, bead.bead))
+            here = [_bead(curve, layer, base, strategy, build, process, model) for curve in beads.curves]
+            made += here
+            ranks = [curve.ring for curve in beads.curves]
+            if planes:
+                order = island_by_island([one.bead for one in here], beads.islands, at)
+                ranks = (-number * FEWER - np.argsort(order)).tolist()
+                at = here[order[-1]].bead.points[-1] if order else at
+            laid += [Laid(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
     if not laid:
         raise InputError(
             "NOTHING_TO_DEPOSIT", solids.label, f"no bead of {strategy.shortest:g} mm or more finds room in any layer; "
@@ -76,6 +81,16 @@ def plan(
         "solid" if on_planes(solids) else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
     )
+
+
+def _bead(
+    curve: PlaneCurve, layer: Slice, base: Base, strategy: FilledParameters, build: BuildDirectionParameters,
+    process: ProcessParameters, model: BeadModel | None,
+) -> Rolled:
+    if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
+        curve = reversed_curve(curve)
+    lean = leaning(curve, layer, strategy, build)
+    return rolled(curve, layer.surface, base, strategy, build, process, model, lean)
 
 
 def _refuse_mode(solids: SolidsOnHub, build: BuildDirectionParameters) -> None:

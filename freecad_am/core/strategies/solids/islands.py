@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""In which order the beads of a plane layer are laid: island by island, the nearest one next, and from inside out in each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...toolpath import Array, Bead
+
+
+def island_by_island(beads: Sequence[Bead], islands: Sequence[int], at: Array | None) -> list[int]:
+    """The numbers of beads in the order of deposit. islands: which one each belongs to. at: (3,) mm, where the torch is;
+    None: the first island comes first."""
+    waiting: dict[int, list[int]] = {}
+    for number, island in enumerate(islands):
+        waiting.setdefault(island, []).append(number)
+    rows = {island: sorted(some, key=lambda number: -beads[number].ring) for island, some in waiting.items()}
+    left, order = list(rows), []
+    while left:
+        starts = np.array([beads[rows[island][0]].points[0] for island in left])
+        nearest = 0 if at is None else int(np.argmin(np.linalg.norm(starts - at, axis=1)))
+        order += rows[left.pop(nearest)]
+        at = beads[order[-1]].points[-1]
+    return order
