@@ -13,12 +13,11 @@ from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.joints import JointParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from ..core.strategies.families import FAMILIES
 from ..objects.rows import group_of, rows
 
 _SECTIONS = (
-    ("cell", CellParameters), ("strategy", RevolutionParameters), ("strategy", SurfaceParameters),
-    ("strategy", DevelopableParameters), ("build_direction", BuildDirectionParameters), ("process", ProcessParameters),
+    ("cell", CellParameters), *(("strategy", family.parameters) for family in FAMILIES), ("build_direction", BuildDirectionParameters), ("process", ProcessParameters),
     ("joints", JointParameters), ("program", ProgramParameters), ("inspection", InspectionParameters),
 )
 _KEY = re.compile(rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])")

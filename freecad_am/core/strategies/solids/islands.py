@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""In which order the beads of a plane layer are laid: island by island, the nearest one next, and from inside out in each."""
+"""In which order the beads of a plane layer are laid: island by island, the nearest next, from inside out in each."""
 
 from __future__ import annotations
 
