@@ -234,6 +234,11 @@
         <translation>Autres espacements dont les trajectoires articulaires sont planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Height along the stacking direction.</source>
+        <translation>Hauteur suivant la direction d&apos;empilement.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Heights above the part&apos;s base, in mm, at which circularity is told; none: a sixth, a half and five sixths of what was measured.</source>
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
@@ -2225,6 +2230,11 @@
         <location filename="../../freecad_am/gui/fit_plot.py"/>
         <source>Height</source>
         <translation>Hauteur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>Height along the stacking direction.</source>
+        <translation>Hauteur suivant la direction d&apos;empilement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -4978,8 +4988,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>a bead model sets the travel speed of solids on a hub alone; use none</source>
-        <translation>un modèle de cordon ne règle la vitesse d&apos;avance que des solides sur moyeu ; utilisez none</translation>
+        <source>a bead model sets the travel speed of solids alone; use none</source>
+        <translation>un modèle de cordon ne règle que la vitesse d&apos;avance des solides ; choisissez none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
@@ -5007,7 +5017,7 @@
         <translation>une hauteur seule n&apos;est pas un cône ; donnez aussi le rayon de son cercle de base, ou base: auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>a layer all the way round the hub is filled with {0}; strategy.fill = {1} is for regions with an end</source>
         <translation>une couche sur tout le tour du moyeu est remplie de {0} ; strategy.fill = {1} est pour les régions qui ont une fin</translation>
     </message>
@@ -5552,12 +5562,12 @@
         <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>beads leave {0} gap(s) open, the widest of {1} mm at {2}; strategy.gap allows {3} mm</source>
         <translation>les cordons laissent {0} jour(s) ouverts, le plus large de {1} mm en {2} ; strategy.gap permet {3} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>beads {0} mm wide (process.bead_width), {1} mm apart, leave stripes of {2} mm open between them; use {3} mm or less, or wider beads</source>
         <translation>des cordons larges de {0} mm (process.bead_width), distants de {1} mm, laissent entre eux des bandes ouvertes de {2} mm ; prenez {3} mm ou moins, ou des cordons plus larges</translation>
     </message>
@@ -5627,7 +5637,7 @@
         <translation>directions de dépôt de {0} couches, en tenant la buse éloignée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
         <source>build_direction.max_turn ({0} deg/mm)</source>
         <translation>build_direction.max_turn ({0} deg/mm)</translation>
     </message>
@@ -7152,7 +7162,7 @@
         <translation>aucun modèle de cordon ne règle les vitesses (process.bead_model)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/developable.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>no bead of {0} mm or more finds room in any layer; use a smaller bead spacing, or thin = single</source>
         <translation>aucun cordon de {0} mm ou plus ne trouve place dans aucune couche ; prenez une plus petite distance des cordons, ou thin = single</translation>
     </message>
@@ -7392,27 +7402,27 @@
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the width asked for takes a speed outside of the table&apos;s {4} to {5} mm/min; it is kept within, and the width is not held: it is {6} mm at its farthest from the {7} mm</source>
         <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
         <source>on {0} of {1} beads in layer {2} bends follow one another too closely to turn the torch round them at {3}: it leans by {4} to {5} deg there instead of {6} deg; lean less, or allow a faster turn</source>
         <translation>sur {0} de {1} cordons de la couche {2} des courbes se suivent de trop près pour que la torche tourne à {3} : elle y penche de {4} à {5} deg au lieu de {6} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
         <source>on {0} of {1} beads in {2} layers from {3} to {4} bends follow one another too closely to turn the torch round them at {5}: it leans by {6} to {7} deg there instead of {8} deg; lean less, or allow a faster turn</source>
         <translation>sur {0} de {1} cordons dans {2} couches de {3} à {4} des courbes se suivent de trop près pour que la torche tourne à {5} : elle y penche de {6} à {7} deg au lieu de {8} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
         <source>on {0} of {1} beads the hub&apos;s normals alone turn by up to {2} deg/mm, faster than {3}; the torch follows them all the same</source>
         <translation>sur {0} de {1} cordons les normales du moyeu seules tournent jusqu&apos;à {2} deg/mm, plus vite que {3} ; la torche les suit malgré tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/lean_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
         <source>on {0} of {1} beads, {2} mm in all, the torch begins to turn ahead of corners, by up to {3} deg from what is asked, to turn no faster than {4}</source>
         <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les angles, jusqu&apos;à {3} deg de ce qui est demandé, pour ne pas tourner plus vite que {4}</translation>
     </message>
@@ -7505,6 +7515,11 @@
         <location filename="../../freecad_am/gui/choices.py"/>
         <source>plane of symmetry</source>
         <translation>plan de symétrie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <source>plane, {:.4g} mm high</source>
+        <translation>plan, haut de {:.4g} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
@@ -7837,6 +7852,11 @@
         <translation>plan de symétrie</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
+        <source>symmetry-plane is for walls; plane layers grow along their normal: use local or fixed</source>
+        <translation>symmetry-plane est pour les parois ; les couches planes croissent suivant leur normale : choisissez local ou fixed</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>symmetry-plane is not for parts of revolution; use local, layer or fixed</source>
         <translation>symmetry-plane n&apos;est pas pour les pièces de révolution ; utilisez local, layer ou fixed</translation>
@@ -8167,7 +8187,7 @@
         <translation>le fichier machine ne donne pas de vitesses maximales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no solid is returned to sooner than after {4} s</source>
         <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
     </message>
@@ -8387,7 +8407,7 @@
         <translation>le solide est retourné ; réparez-le (Part, Vérifier la géométrie)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_layers.py"/>
+        <location filename="../../freecad_am/core/layers/rotary.py"/>
         <source>the solid reaches over the end of the hub&apos;s axis, at {0}, where equidistant surfaces have an apex or an end; let it end beside the axis</source>
         <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
     </message>
@@ -8417,7 +8437,7 @@
         <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>the table was measured at a wire feed of {0} mm/s, the job has {1} mm/s; set process.wire.feed to auto or to that, or measure a table at it</source>
         <translation>le tableau a été mesuré avec un dévidage de {0} mm/s, le travail a {1} mm/s ; mettez process.wire.feed à auto ou à cette valeur, ou mesurez un tableau avec celle du travail</translation>
     </message>
@@ -8957,7 +8977,7 @@
         <translation>volume de la pièce plus profond qu’une demi-largeur de cordon sous la paroi, ou de ses solides à côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
     </message>
@@ -9082,12 +9102,12 @@
         <translation>zigzag</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>{0} (and {1} layers of solids more)</source>
         <translation>{0} (et {1} couches de solides de plus)</translation>
     </message>
@@ -9117,7 +9137,7 @@
         <translation>{0} à la couche {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_filling.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>{0} bead(s) alone in regions narrower than a bead of {1} mm stand out of them, by up to {2} mm at {3}</source>
         <translation>{0} cordon(s) seuls dans des régions plus étroites qu&apos;un cordon de {1} mm en dépassent, jusqu&apos;à {2} mm en {3}</translation>
     </message>
@@ -9453,13 +9473,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/api.py"/>
-        <source>{0} is none of revolution, surface, developable</source>
-        <translation>{0} n&apos;est ni revolution, ni surface, ni developable</translation>
+        <source>{0} is none of revolution, surface, developable, solid</source>
+        <translation>{0} n&apos;est ni revolution, ni surface, ni developable, ni solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>{0} is not a branch; use [front|back, up|down, flip|noflip] or auto</source>
         <translation>{0} n&apos;est pas une branche ; utilisez [front|back, up|down, flip|noflip] ou auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>{0} is not a direction; give three numbers such as [0, 0, 1], or auto</source>
+        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme [0, 0, 1], ou auto</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/spiral.py"/>
@@ -9552,7 +9577,7 @@
         <translation>{0} n&apos;est pas un objet avec les clés {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/developable.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>{0} is not for solids on a hub, which grow along its normals; use local</source>
         <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
     </message>
@@ -9657,6 +9682,16 @@
         <translation>{0} est hors de la plage ; donnez {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/stacking.py"/>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than 45 deg, and it is {5} mm high</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de 45 deg, et sa hauteur est de {5} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/stacking.py"/>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than 45 deg, and it is {5} mm high; along (0, 0, 1) it would be {6} mm^2 and {7} mm</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de 45 deg, et sa hauteur est de {5} mm ; suivant (0, 0, 1) ce serait {6} mm^2 et {7} mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>{0} is there twice; give each bead one</source>
         <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
@@ -9710,6 +9745,11 @@
         <location filename="../../freecad_am/core/geometry/file_unit.py"/>
         <source>{0} mm is no unit; give the length of one unit of the file, as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/planes.py"/>
+        <source>{0} mm is too much for {1}, {2} mm high along strategy.direction (the highest place is at {3}): no layer is cut in its {4}; give at most {5} mm</source>
+        <translation>{0} mm est trop pour {1}, haut de {2} mm suivant strategy.direction (le point le plus haut est en {3}) : aucune couche n&apos;est coupée ({4}) ; donnez {5} mm au plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
@@ -9812,7 +9852,7 @@
         <translation>{0} de {1} points ne peuvent pas être atteints avec cette branche ; déplacez le point de dépôt, choisissez une autre branche ou inclinez moins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/hub_notes.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>{0} of {1} solids or groups of solids get one layer alone, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
         <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
     </message>
