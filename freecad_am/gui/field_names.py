@@ -17,7 +17,8 @@ from ..core.strategies.families import FAMILIES
 from ..objects.rows import group_of, rows
 
 _SECTIONS = (
-    ("cell", CellParameters), *(("strategy", family.parameters) for family in FAMILIES), ("build_direction", BuildDirectionParameters), ("process", ProcessParameters),
+    ("cell", CellParameters), *(("strategy", family.parameters) for family in FAMILIES),
+    ("build_direction", BuildDirectionParameters), ("process", ProcessParameters),
     ("joints", JointParameters), ("program", ProgramParameters), ("inspection", InspectionParameters),
 )
 _KEY = re.compile(rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])")

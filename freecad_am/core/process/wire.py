@@ -24,8 +24,8 @@ def fed(toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None)
     """The toolpath with the speed of its wire, and an issue where that does not balance with its beads.
 
     Balanced is wire section x feed = bead width x layer height x travel speed. Beads of a model were measured with their
-    wire, and are told apart from that by `solids.notes`; a feed of 0 stands for no wire. Where nothing tells the width of beads
-    nothing is said.
+    wire, and are told apart from that by `solids.notes`; a feed of 0 stands for no wire. Where nothing tells the width of
+    beads nothing is said.
     """
     if model is not None:
         return replace(toolpath, wire_feed=with_model(process, model))
