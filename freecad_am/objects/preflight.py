@@ -18,6 +18,7 @@ from ..core.preflight.checks import Evidence, promises
 from ..core.preflight.promise import Promise
 from ..core.preflight.written import ReadBack
 from ..core.process import deposit_balance
+from ..core.simulation import rapid_look
 from ..core.strategies import clearance_look
 from ..core.toolpath import Array
 from ..posts import catalogue
@@ -28,8 +29,9 @@ from .findings import issues_of
 from .joint_path import Planned
 from .link_meshes import meshes_of
 
-# at which the arm and the nozzle are looked at: together a tenth of the time that planning takes, at most
-ARM_PLACES, NOZZLE_PLACES = 6_000, 4_000
+# at which the arm is looked at, and the nozzle depositing and on rapids: together a tenth of the time that planning takes,
+# at most
+ARM_PLACES, NOZZLE_PLACES, RAPID_PLACES = 6_000, 4_000, 12_000
 
 Work = Callable[[], tuple[Promise, ...]]
 
@@ -96,7 +98,10 @@ def of_motion(
     run = as_run(planned, cell, toolpath.chord_error, settings, known.issues)
     return promises(replace(
         known, toolpath=planned.joint_path.toolpath(toolpath), issues=run.issues, cell=cell, motion=run.motion,
-        condition=run.condition, threshold=run.threshold,
+        rapids=rapid_look.looked_at(
+            planned.motion, [one.bead for one in planned.joint_path.beads], cell, toolpath.surroundings,
+            toolpath.bead_width or known.process.bead_width, toolpath.layer_height, RAPID_PLACES,
+        ), condition=run.condition, threshold=run.threshold,
         arm=arm_of(run.motion, cell, toolpath, known.process, shapes, ARM_PLACES),
         true_shapes=bool(shapes) and None not in shapes,
         read=None if read is None else _read_back(read, toolpath.chord_error),

@@ -44,6 +44,8 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     assert 0.4 * whole < promises["All of the part is deposited"]["worst"] < 0.6 * whole
     assert promises["What is deposited lies on the part"]["ok"] is True
     assert promises["Every bead is carried by what lies below it"]["worst"] == 0.0
+    rapids = promises["The nozzle stays clear on the rapids"]
+    assert rapids["ok"] is True and (rapids["worst"], rapids["unit"]) == (0.0, "rapids") and " 0.5 mm apart" in rapids["how"]
     values = joints(rows)
     worst = promises[LIMITS]
     # the least distance of any row to any limit, rapids included

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pytest
 
+from freecad_am.core.collision import bead_ends
 from freecad_am.core.issues import ERROR
 from freecad_am.core.planning import rapids
 from freecad_am.posts import catalogue
@@ -112,10 +113,10 @@ def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
 def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
     """The same jobs planned by a check that misses something: the drive of the text finds it."""
     way = STACKED[0]
-    met, built = rapids.Surroundings.met, rapids.of_beads
+    met, built = rapids.Surroundings.met, bead_ends.of_beads
     with monkeypatch.context() as patch:
         if broken == "beads are lines":
-            patch.setattr(rapids, "of_beads", lambda points, build, width, *rest, **more: built(
+            patch.setattr(bead_ends, "of_beads", lambda points, build, width, *rest, **more: built(
                 points, build, 0.0 * width, *rest, **more))
         elif broken == "nothing is laid yet":
             patch.setattr(rapids.Surroundings, "met", lambda self, moves: met(self, moves._replace(laid=0 * moves.laid)))

@@ -3,18 +3,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..issues import ERROR, NOTE, Issue
 from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .rapid_ways import RapidWays
-from .rapids import collision
 from .retract_ways import ASKED, LIMIT, SINGULAR, Failure, Leg
 
 
 def findings(ways: RapidWays) -> tuple[Issue, ...]:
     """An error for each bead that cannot be come to or left, and notes about what was taken in place of what was asked."""
-    met = [collision(ways.told(k), ways.place(k).layer, ways.place(k).index) for k in ways.met]
+    met = [_collision(ways.told(k), ways.place(k).layer, ways.place(k).index) for k in ways.met]
     return (*met, *_failures(ways), *_lifted(ways), *_others(ways))
+
+
+def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
+    """About a bead on the rapid way to which the nozzle would meet what the names tell."""
+    return Issue(
+        ERROR, "RAPID_COLLISION",
+        f"on its way from the bead before the nozzle would meet {', '.join(names)} at every retract distance and direction "
+        "tried; move the seam or the part, or take a more slender nozzle", layer, bead,
+    )
 
 
 def _failures(ways: RapidWays) -> list[Issue]:

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.bead_ends import Beads
 from ..geometry.surroundings import Body
 from ..kinematics.cell import Cell
 from ..motion import APPROACH, RETRACT, TRAVEL
 from ..parameters.joints import JointParameters
 from .joint_path import BeadPath, JointPath
-from .rapids import Deposit, Moves, Surroundings
+from .rapids import Moves, Surroundings
 from .retract_ways import DIRECTIONS, Ends, Failure, Leg
 from .retracts import STRAY_MM, Retracts, branch_of
 
@@ -73,21 +74,9 @@ class RapidWays:
             self._ask()
         self.ways = [self._way(k, self.legs) for k in range(len(self.beads) + 1)]
         self.rows = np.concatenate([[0], np.cumsum([len(path.bead) for path in self.beads])])
-        self.surroundings = Surroundings(cell, self._deposit(width, height), bodies)
+        self.surroundings = Surroundings(cell, Beads.of([path.bead for path in self.beads], width, height), bodies)
         self.lifted: list[int] = []
         self.met = self._clear(self._attempts(bodies))
-
-    def _deposit(self, width: float, height: float) -> Deposit:
-        beads = [path.bead for path in self.beads]
-        first = np.zeros(int(self.rows[-1]), dtype=bool)
-        first[self.rows[:-1]] = True
-        points, build, tool = (
-            np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build", "tool"))
-        return Deposit(
-            points, build, tool,
-            np.concatenate([np.full(len(bead), width) if bead.width is None else bead.width for bead in beads]),
-            np.concatenate([np.full(len(bead), height) if bead.height is None else bead.height for bead in beads]), first,
-        )
 
     def _ask(self) -> None:
         """The legs as asked for, or what comes nearest where the machine cannot go them."""

@@ -8,24 +8,19 @@ deposited by then, and against the triangles of the bodies around the part.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.bead_ends import BeadEnds, Beads, Size
 from ..collision.bodies import Bodies
-from ..collision.deposit import of_beads
-from ..collision.frustum import beside_tip
-from ..collision.nozzle import Nozzle, travelling
+from ..collision.nozzle import Nozzle
 from ..collision.scene import scene
-from ..collision.standing import standing_heights
-from ..collision.tolerances import ABOVE_FACES
 from ..geometry.surroundings import Body, disc
-from ..issues import ERROR, Issue
 from ..kinematics.cell import Cell
-from ..motion import Motion
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -38,8 +33,6 @@ SLIDE = 5.0
 # anything, with the nozzle itself
 COARSE = 5.0
 FINE = 0.5
-# length of the pieces the deposit is looked at as, mm
-GRAIN = 1.5
 # moves driven at once, so that large jobs need no more memory than small ones
 MOVES = 4096
 
@@ -66,58 +59,20 @@ class Looks(NamedTuple):
     share: Array
 
 
-class Deposit(NamedTuple):
-    """Deposit rows in order: points, build directions and tool axes (m, 3), width and height (m,) mm of the beads, and
-    whether each is the first of one (m,)."""
-
-    points: Array
-    build: Array
-    tool: Array
-    width: Array
-    height: Array
-    first: Mask
-
-
-class _Ends(NamedTuple):
-    """Ends of beads by a number: points (m, 3), NaN where there is none, and the heights (m,) mm that are left out there."""
-
-    point: Array
-    height: Array
-
-
 class Surroundings:
     """What is in the way of rapids: beads of their width and height, with the row from which they are there, platform and
-    bodies.
+    bodies."""
 
-    Where the nozzle retracts from the end of a bead or comes to the start of one, it touches what it has laid and what that
-    stands on, as while depositing: there its part below a height is left out, less the distance of the tip from that
-    point. Against deposit it is the height to which the nozzle stands in it at the point (`standing_heights`), against
-    bodies that at which its side is one diameter of the tip from the point. Withdrawn along its axis, a cone stays within
-    the room that it had above that height: so nothing more need be left out, wherever the move leads.
-    """
-
-    def __init__(self, cell: Cell, deposit: Deposit, bodies: Sequence[Body]) -> None:
+    def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
         self.cell = cell
         platform = [disc(cell.platform_diameter, cell.mount, "the platform")] if cell.platform_diameter > 0.0 else []
         self.bodies = (*bodies, *platform)
-        self.laid = of_beads(deposit.points, deposit.build, deposit.width, deposit.height, deposit.first, grain=GRAIN)
-        self._left, self._entered = self._ends(deposit)
+        self.laid = deposit.solid()
+        nozzle = cell.nozzle
+        self._size = Size(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length)
+        self._ends = BeadEnds(deposit, self.laid, self._size)
         self._box = np.array([[np.inf] * 3, [-np.inf] * 3])
         self._bodies = scene((), deposit.points, 0.0).bodies
-
-    def _ends(self, deposit: Deposit) -> tuple[_Ends, _Ends]:
-        """Where beads are left and come to, by the number of rows (m + 1) that are there by then."""
-        starts = np.flatnonzero(deposit.first)
-        ends = np.append(starts[1:], len(deposit.points)) - 1
-        rows, when = np.concatenate([ends, starts]), np.concatenate([ends + 1, starts])
-        heights = standing_heights(
-            self.laid, *_sizes(self.cell), deposit.points[rows], deposit.tool[rows], deposit.height[rows], when)
-        found = []
-        for some in np.split(np.arange(len(rows)), 2):
-            point, height = np.full((len(deposit.points) + 1, 3), np.nan), np.zeros(len(deposit.points) + 1)
-            point[when[some]], height[when[some]] = deposit.points[rows[some]], heights[some]
-            found.append(_Ends(point, height))
-        return found[0], found[1]
 
     def met(self, moves: Moves) -> Mask:
         """(k,) whether the nozzle meets anything on each of the moves; not on those whose joints are NaN."""
@@ -168,63 +123,14 @@ class Surroundings:
             more = 0.5 * (high - low) if known else np.zeros(3)
             least, most = self._box
             self._box = np.array([np.where(low < least, low - more, least), np.where(high > most, high + more, most)])
-            radius, slope, length = _sizes(self.cell)
+            radius, slope, length = self._size
             reach = float(np.hypot(length, radius + slope * length))
             self._bodies = scene(self.bodies, self._box, reach).bodies
         return self._bodies
 
     def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
         """The nozzle at each look, less what touches rightly near the ends of beads."""
-        radius, slope, length = _sizes(self.cell)
-        laid = moves.laid[looks.move]
-        about = beside_tip(radius, slope) + ABOVE_FACES
-        bodies, deposit = np.zeros(len(laid)), np.zeros(len(laid))
-        for end in (self._left, self._entered):
-            away = np.linalg.norm(looks.tip - end.point[laid], axis=1)
-            bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[laid] - away)
-        return Nozzle(
-            travelling(radius, slope, length, bodies).bodies, travelling(radius, slope, length, deposit).deposit)
-
-
-def collisions(
-    motion: Motion, cell: Cell, among: Collection[tuple[int, int]] | None = None, bodies: Sequence[Body] = ()
-) -> list[Issue]:
-    """An issue for every bead on the rapid way to which, or after the last one, the nozzle would meet deposit, platform or
-    bodies; beads are lines here.
-
-    Only the ways to the beads `among` (layer, bead) are looked at, where they are given.
-    """
-    rows, moves = moves_of(motion)
-    if among is not None:
-        chosen = np.array([(int(motion.layer[row]), int(motion.bead[row])) in among for row in rows], dtype=bool)
-        rows, moves = rows[chosen], moves.of(np.flatnonzero(chosen))
-    laid = motion.deposit
-    none = np.zeros(int(laid.sum()))  # a motion does not tell how high its beads are
-    deposit = Deposit(motion.position[laid], motion.build[laid], motion.tool[laid], none, none, motion.point[laid] == 0)
-    surroundings = Surroundings(cell, deposit, bodies)
-    met = surroundings.met(moves)
-    places: dict[tuple[int, int], list[int]] = {}
-    for k in np.flatnonzero(met).tolist():
-        places.setdefault((int(motion.layer[rows[k]]), int(motion.bead[rows[k]])), []).append(k)
-    return [
-        collision(surroundings.names(moves.of(np.array(some))), layer, bead)
-        for (layer, bead), some in places.items()
-    ]
-
-
-def collision(names: Sequence[str], layer: int, bead: int) -> Issue:
-    """The issue about a bead on the rapid way to which the nozzle would meet what the names tell."""
-    return Issue(
-        ERROR, "RAPID_COLLISION",
-        f"on its way from the bead before the nozzle would meet {', '.join(names)} at every retract distance and direction "
-        "tried; move the seam or the part, or take a more slender nozzle", layer, bead,
-    )
-
-
-def moves_of(motion: Motion) -> tuple[Index, Moves]:
-    """The rows (k,) of a motion that a rapid move leads to, and the moves. The way to its first row is not known."""
-    rows = np.flatnonzero(~motion.deposit[1:]) + 1
-    return rows, Moves(motion.joints[rows - 1], motion.joints[rows], np.searchsorted(np.flatnonzero(motion.deposit), rows))
+        return self._ends.nozzle(looks.tip, moves.laid[looks.move])
 
 
 def _driven(cell: Cell, moves: Moves, largest: float) -> Looks:
@@ -263,8 +169,3 @@ def _thicker(nozzle: Nozzle, more: float) -> Nozzle:
         for solid in (nozzle.bodies, nozzle.deposit)
     ))
 
-
-def _sizes(cell: Cell) -> tuple[float, float, float]:
-    """Radius of the nozzle's tip, tangent of its half angle, and its length, mm."""
-    nozzle = cell.nozzle
-    return 0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length

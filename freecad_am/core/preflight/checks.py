@@ -14,6 +14,7 @@ from ..motion import Motion
 from ..parameters.process import ProcessParameters
 from ..process.deposit_balance import Balance
 from ..simulation.arm import ArmTouches
+from ..simulation.rapid_look import RapidsLooked
 from ..strategies.clearance_look import Looked
 from ..toolpath import Toolpath
 from . import clearance, deposit, joints, written
@@ -36,7 +37,7 @@ class Evidence:
     shapes that were given for all of them. read: how the program was read back, None without one. on_controller: what only
     the controller can show. distances: those between its layers, of `spacing`, where they are known. balance: of part and
     beads, None where it is not known. looked: what the nozzle touches while depositing, None where the job asks for no
-    clearance."""
+    clearance. rapids: what the nozzle meets on them."""
 
     toolpath: Toolpath
     process: ProcessParameters
@@ -52,6 +53,7 @@ class Evidence:
     distances: tuple[Array, ...] | None = None
     balance: Balance | None = None
     looked: Looked | None = None
+    rapids: RapidsLooked | None = None
 
 
 def promises(evidence: Evidence) -> tuple[Promise, ...]:
@@ -72,9 +74,11 @@ def promises(evidence: Evidence) -> tuple[Promise, ...]:
 
 def _of_motion(evidence: Evidence) -> list[Promise]:
     cell, motion = evidence.cell, evidence.motion
-    if cell is None or motion is None or evidence.condition is None or evidence.threshold is None:
+    rapids = evidence.rapids
+    if cell is None or motion is None or rapids is None or evidence.condition is None or evidence.threshold is None:
         return [Promise(what, "not checked: there is no joint path", None) for what in OF_MOTION]
     return [
         *joints.promises(motion, cell, evidence.condition, evidence.threshold),
-        clearance.rapids(evidence.issues), clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
+        clearance.rapids(evidence.issues, rapids),
+        clearance.arm(motion, cell, evidence.arm, evidence.true_shapes),
     ]

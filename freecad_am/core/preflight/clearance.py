@@ -13,6 +13,7 @@ from ..kinematics.arm_contact import NONE
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..simulation.arm import ArmTouches
+from ..simulation.rapid_look import RapidsLooked
 from ..strategies.clearance_look import Looked
 from .promise import Place, Promise, issue_place, number, of_codes, row_place
 
@@ -34,13 +35,16 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
     return Promise(what, how, not found and not looked.touched, float(looked.touched), "points", 0.0, place)
 
 
-def rapids(issues: Sequence[Issue]) -> Promise:
+def rapids(issues: Sequence[Issue], looked: RapidsLooked) -> Promise:
     """On the way between beads."""
+    what = "The nozzle stays clear on the rapids"
     found = of_codes(issues, RAPIDS)
-    return Promise(
-        "The nozzle stays clear on the rapids", "retract, travel and approach driven in small steps as they are written",
-        not found, place=issue_place(found),
+    how = (
+        f"retracts, travels and approaches driven anew, at {looked.places} places {number(looked.step)} mm apart, against "
+        "bodies, platform and beads as wide and high as they are by then"
     )
+    place = issue_place(found) if looked.place is None else Place(*looked.place)
+    return Promise(what, how, not found and not len(looked.rows), float(len(looked.rows)), "rapids", 0.0, place)
 
 
 def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:

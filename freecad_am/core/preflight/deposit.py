@@ -46,7 +46,7 @@ def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     what = "All of the part is deposited"
     if balance is None:
         return Promise(what, "not checked: the part encloses no volume", None)
-    found = of_codes(issues, (deposit_balance.LEFT_OUT,), WARNING)
+    found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.LEFT_OUT,), WARNING)
     how = "volume of the part deeper than half of a bead's width below the wall, or of its solids aside"
     worst = None if balance.left_out is None else balance.left_out / MM3
     return Promise(what, how, not found, worst, "cm3")
@@ -57,7 +57,7 @@ def nothing_beside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     what = "Nothing is deposited beside the part"
     if balance is None or balance.beside is None:
         return Promise(what, "not checked: the part encloses no volume, or is filled with beads", None)
-    found = of_codes(issues, (deposit_balance.BESIDE,), WARNING)
+    found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.BESIDE,), WARNING)
     how = "volume of the beads, as wide as they count, that is wider than the part is thick"
     return Promise(what, how, not found, balance.beside / MM3, "cm3")
 
@@ -69,7 +69,8 @@ def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
         return Promise(what, "not checked: it is not known how wide the beads count", None)
     found = of_codes(issues, (support.CODE,), WARNING)
     how = "each short piece of a bead, against its build direction, over earlier deposit as wide as it is and what is there"
-    return Promise(what, how, not found, toolpath.unsupported, "mm", 0.0, issue_place(found))
+    kept = not found and toolpath.unsupported <= 0.0
+    return Promise(what, how, kept, toolpath.unsupported, "mm", 0.0, issue_place(found))
 
 
 def fed(toolpath: Toolpath, process: ProcessParameters) -> Promise:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am import verify
+from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics import machine, opw
 from freecad_am.core.parameters.joints import JointParameters
@@ -15,11 +16,12 @@ from freecad_am.core.parameters.program import ProgramParameters, StartParameter
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.program import build, check_controller
-from freecad_am.core.planning.rapids import Deposit, Surroundings, collisions
 from freecad_am.core.planning.rapids import Moves as Driven
+from freecad_am.core.planning.rapids import Surroundings
 from freecad_am.core.planning.straight import kept_straight
 from freecad_am.core.planning.task import Task
 from freecad_am.core.program import FIRST_TIME, Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
+from freecad_am.core.simulation import rapid_look
 from freecad_am.kdl import chain as kdl
 from freecad_am.posts import catalogue
 
@@ -90,12 +92,17 @@ def test_overlap_runs_on_over_the_beginning_and_survives_the_read_back(planned, 
 
 def test_a_rapid_through_the_part_is_refused(planned):
     """The same rapids with the deposit moved up in front of the nozzle: every travel of the upper layers meets it."""
-    _, cell, _, motion = planned()
-    assert collisions(motion, cell) == []
-    raised = motion.position + np.where(motion.deposit, 25.0, 0.0)[:, None] * [0.0, 0.0, 1.0]
-    found = collisions(dataclasses.replace(motion, position=raised), cell)
-    assert found and all(issue.code == "RAPID_COLLISION" and issue.layer is not None for issue in found)
-    assert collisions(dataclasses.replace(motion, position=motion.position + [0.0, 0.0, -500.0]), cell) == []
+    _, cell, path, motion = planned()
+    beads = [one.bead for one in path.beads]
+
+    def met(up):
+        moved = [dataclasses.replace(bead, points=bead.points + [0.0, 0.0, up]) for bead in beads]
+        return rapid_look.looked_at(motion, moved, cell, (), 8.0, 1.0, 20_000)
+
+    assert not len(met(0.0).rows) and met(0.0).place is None and met(0.0).moves == (~motion.deposit[1:]).sum()
+    assert not len(met(-500.0).rows)
+    raised = met(25.0)
+    assert raised.place is not None and not motion.deposit[raised.rows].any() and len(raised.rows) > 5
 
 
 @pytest.mark.parametrize(
@@ -114,7 +121,7 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     _, cell, _, motion = planned()
     some = motion.deposit
     flat = np.zeros(int(some.sum()))
-    deposit = Deposit(motion.position[some], motion.build[some], motion.tool[some], flat, flat, motion.point[some] == 0)
+    deposit = Beads(motion.position[some], motion.build[some], motion.tool[some], flat, flat, motion.point[some] == 0)
     surroundings = Surroundings(cell, deposit, ())
     poses = cell.machine.opw.inverse(cell.flange_poses(np.array([tip]), np.array([axis]), np.zeros(1)))[:, 0]
     joints = poses[np.isfinite(poses).all(axis=1)][:1]

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads among which rapids are driven, and what of the nozzle is left out near the ends that they leave and come to.
+
+Where the nozzle retracts from the end of a bead or comes to the start of one, it touches what it has laid and what that
+stands on, as while depositing: there its part below a height is left out, less the distance of the tip from that point.
+Withdrawn along its axis, a cone stays within the room that it had above that height: so nothing more need be left out,
+wherever the move leads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from .deposit import of_beads
+from .frustum import Array, Index, Mask, beside_tip
+from .nozzle import Nozzle, exempt_height, travelling
+from .obstacles import Obstacles
+from .tolerances import ABOVE_FACES, CHORD
+
+GRAIN = 1.5  # length of the pieces the deposit is looked at as, mm
+HALVINGS = 6  # of a nozzle's length: to a hundredth of it
+
+
+class Bead(Protocol):
+    """A bead of a toolpath: points, unit build directions and tool axes (n, 3), width and height (n,) mm, None where it does
+    not tell them."""
+
+    @property
+    def points(self) -> Array: ...
+    @property
+    def build(self) -> Array: ...
+    @property
+    def tool(self) -> Array: ...
+    @property
+    def width(self) -> Array | None: ...
+    @property
+    def height(self) -> Array | None: ...
+
+
+class Beads(NamedTuple):
+    """All points of beads in order: points, build directions and tool axes (m, 3), width and height (m,) mm, and whether
+    each is the first of a bead (m,)."""
+
+    points: Array
+    build: Array
+    tool: Array
+    width: Array
+    height: Array
+    first: Mask
+
+    @classmethod
+    def of(cls, beads: Sequence[Bead], width: float, height: float) -> Beads:
+        """Those of beads; width and height, mm, of those that do not tell theirs."""
+        points = np.concatenate([bead.points for bead in beads])
+        counts = np.array([len(bead.points) for bead in beads])
+        first = np.zeros(len(points), dtype=bool)
+        first[np.cumsum(counts) - counts] = True
+        return cls(
+            points, np.concatenate([bead.build for bead in beads]), np.concatenate([bead.tool for bead in beads]),
+            np.concatenate([np.full(len(one.points), width) if one.width is None else one.width for one in beads]),
+            np.concatenate([np.full(len(one.points), height) if one.height is None else one.height for one in beads]), first,
+        )
+
+    def solid(self) -> Obstacles:
+        """The deposit, each piece from the number of its last point on."""
+        return of_beads(self.points, self.build, self.width, self.height, self.first, grain=GRAIN)
+
+
+class Size(NamedTuple):
+    """Radius of a nozzle's tip, tangent of its half angle, and its length, mm."""
+
+    radius: float
+    slope: float
+    length: float
+
+
+class _Ends(NamedTuple):
+    """Ends of beads by how many points of all are there (m + 1): the points (m + 1, 3), NaN where there is none, and the
+    heights (m + 1,) mm that are left out there."""
+
+    point: Array
+    height: Array
+
+
+class BeadEnds:
+    """The nozzle of a size on rapids between beads, whose deposit is `laid`."""
+
+    def __init__(self, beads: Beads, laid: Obstacles, size: Size) -> None:
+        self._size = size
+        starts = np.flatnonzero(beads.first)
+        ends = np.append(starts[1:], len(beads.points)) - 1
+        rows, when = np.concatenate([ends, starts]), np.concatenate([ends + 1, starts])
+        heights = standing_heights(laid, size, beads.points[rows], beads.tool[rows], beads.height[rows], when)
+        found = []
+        for some in np.split(np.arange(len(rows)), 2):
+            point, height = np.full((len(beads.points) + 1, 3), np.nan), np.zeros(len(beads.points) + 1)
+            point[when[some]], height[when[some]] = beads.points[rows[some]], heights[some]
+            found.append(_Ends(point, height))
+        self._ends = found
+
+    def nozzle(self, tip: Array, laid: Index) -> Nozzle:
+        """The nozzle with tips (k, 3), where so many points (k,) are there: the last of these is left, the one after it come
+        to. Against deposit it is without what stands in it there, against bodies without what is below the height at which
+        its side is one diameter of the tip from the point."""
+        radius, slope, _ = self._size
+        about = beside_tip(radius, slope) + ABOVE_FACES
+        bodies, deposit = np.zeros(len(tip)), np.zeros(len(tip))
+        for end in self._ends:
+            away = np.linalg.norm(tip - end.point[laid], axis=1)
+            bodies, deposit = np.fmax(bodies, about - away), np.fmax(deposit, end.height[laid] - away)
+        return Nozzle(travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit)
+
+
+def standing_heights(laid: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index) -> Array:
+    """(k,) mm over the tips (k, 3) on points of beads, below which nozzles along unit axes (k, 3) are not looked at there.
+
+    The tip stands in the bead of the height (k,) mm whose end it is: up to that height deposit is about it rightly. Where
+    more of the nozzle is in the deposit that is there before the moment (k,) - a nozzle that leans over its own bead, or a
+    job that asks for no clearance - it is as much as that: no way off the point avoids it, and what it touches while
+    depositing is looked at elsewhere. CHORD more is left out, as of all of a nozzle on rapids.
+    """
+    known, which = np.unique(height, return_inverse=True)
+    least = np.array([exempt_height(size.radius, size.slope, float(each)) for each in known])
+    found = np.minimum(least[which.ravel()], size.length)
+    rows = np.flatnonzero(laid.touched(travelling(*size, found).deposit, tip, axis, moment))
+    low, high = found[rows], np.full(len(rows), size.length)
+    for _ in range(HALVINGS if len(rows) else 0):
+        middle = 0.5 * (low + high)
+        touched = laid.touched(travelling(*size, middle).deposit, tip[rows], axis[rows], moment[rows])
+        low, high = np.where(touched, middle, low), np.where(touched, high, middle)
+    found[rows] = high
+    standing: Array = np.minimum(found + CHORD, size.length)
+    return standing

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the nozzle meets on the rapids of a motion, looked at alone: whatever planning found, or tried, of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..collision.bead_ends import Bead, BeadEnds, Beads, Size
+from ..collision.scene import scene
+from ..geometry.surroundings import Body, disc
+from ..kinematics.cell import Cell
+from ..motion import Motion
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+# mm between two looks along the way of any point of the nozzle, at the least, and at how many shares a move is measured
+STEP, SHARES = 0.5, np.linspace(0.0, 1.0, 9)
+PIECE = 2048  # moves or looks done together
+
+
+@dataclass(frozen=True)
+class RapidsLooked:
+    """How many rapids were driven and at how many places, so far apart (mm) at most; rows: (k,) those of the motion on the
+    way to which the nozzle met something; place: layer, bead and point of the first of these, None without any."""
+
+    moves: int
+    places: int
+    step: float
+    rows: Index
+    place: tuple[int, int, int] | None
+
+
+def looked_at(
+    motion: Motion, beads: Sequence[Bead], cell: Cell, bodies: Sequence[Body], width: float, height: float, most: int
+) -> RapidsLooked:
+    """Whether the nozzle meets bodies, the platform or beads that are there by then on any rapid, which runs straight in the
+    joints; at so many places at most, evenly along all rapids.
+
+    beads: those of the motion, in order; width, height: mm, of those that do not tell theirs. The way to the first row, and
+    what is not reached, is not known and not driven.
+    """
+    rows = 1 + np.flatnonzero(~motion.deposit[1:] & motion.reachable[1:] & motion.reachable[:-1])
+    start, turned = motion.joints[rows - 1], motion.joints[rows] - motion.joints[rows - 1]
+    chain, size = cell.machine.chain, Size(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)),
+                                           cell.nozzle.length)
+    way, corners = np.zeros(len(rows)), [np.zeros((0, 3))]
+    for some in _pieces(len(rows)):
+        joints = start[some, None] + SHARES[:, None] * turned[some, None]
+        tip, axis = (each.reshape(len(some), len(SHARES), 3) for each in cell.tip_in_part(
+            chain.forward(joints.reshape(-1, chain.axes))))
+        for end in (tip, tip + size.length * axis):
+            way[some] = np.maximum(way[some], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1))
+        corners += [tip.min(axis=(0, 1))[None], tip.max(axis=(0, 1))[None]]
+    # a row more for each move: both of its ends are looked at
+    step = max(STEP, float(way.sum()) / max(most - 2 * len(rows), 1))
+    count = 2 + np.floor(way / step).astype(np.intp)
+    move = np.repeat(np.arange(len(rows)), count)
+    share = (np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
+
+    columns = Beads.of(beads, width, height)
+    deposit = columns.solid()
+    ends = BeadEnds(columns, deposit, size)
+    platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []
+    reach = float(np.hypot(size.length, size.radius + size.slope * size.length))
+    around = scene([*bodies, *platform], np.concatenate(corners), reach, deposit) if len(rows) else None
+    laid = np.cumsum(motion.deposit)[rows]
+    met = np.zeros(len(rows), dtype=bool)
+    for some in _pieces(len(move)):
+        assert around is not None
+        own = move[some]
+        tip, axis = cell.tip_in_part(chain.forward(start[own] + share[some, None] * turned[own]))
+        hit = around.touched(ends.nozzle(tip, laid[own]), tip, axis, laid[own])
+        met[own[hit]] = True
+    touched, place = rows[met], None
+    if len(touched):
+        row = touched[0]
+        place = (int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
+    return RapidsLooked(len(rows), len(move), step, touched, place)
+
+
+def _pieces(count: int) -> list[Index]:
+    return [np.arange(first, min(first + PIECE, count)) for first in range(0, count, PIECE)]

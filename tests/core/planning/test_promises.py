@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Every promise of the preflight is broken once, by evidence that is changed in one place: it is found there, and nothing
+else is. What planning has concluded stays as it was: there are no issues."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.planning.motion import assemble
+from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.preflight.checks import Evidence, promises
+from freecad_am.core.preflight.written import ReadBack
+from freecad_am.core.process.deposit_balance import Balance
+from freecad_am.core.simulation.arm import ArmTouches
+from freecad_am.core.simulation.rapid_look import looked_at
+from freecad_am.core.strategies import clearance_look
+
+WIDTH, HEIGHT = 3.0, 10.0
+ROW = 300  # of the deposit, of which something is changed
+
+
+@pytest.fixture(scope="module")
+def sound(sliced, cell_of):
+    """A cell, joint path, and evidence of a sound job with the whole motion."""
+    toolpath = sliced("sphere", HEIGHT)
+    toolpath = dataclasses.replace(toolpath, on_part=(500.0, 0.01, 0.2), unsupported=0.0, wire_feed=None, bead_width=WIDTH)
+    cell = cell_of(toolpath)
+    path = plan_joints(toolpath, cell, JointParameters())
+    process = dataclasses.replace(ProcessParameters(), bead_width=WIDTH)
+    motion, issues = assemble(path, cell, process, (), None, HEIGHT)
+    assert not issues and path.feasible
+    n = len(motion)
+    fed = WIDTH * HEIGHT * process.travel_speed / process.wire.section
+    return cell, path, Evidence(
+        dataclasses.replace(toolpath, wire_feed=fed), process, (), cell, motion, np.full(n, 0.3), np.full(n, 0.1),
+        ArmTouches(np.full(n, -1), np.full(n, -1), ("platform",), 0.02), True, ReadBack(True, 1e-3, 0.01, 2e-3, 0.05, 2),
+        ("UFRAME 1",), None, Balance("Part", 1e5, 0.0, 1e5, 0.0), clearance_look.Looked(100, 0, None),
+        driven(cell, path, motion),
+    )
+
+
+def driven(cell, path, motion, up=0.0):
+    """What is looked at on rapids, the beads raised by so much."""
+    beads = [dataclasses.replace(one.bead, points=one.bead.points + [0.0, 0.0, up]) for one in path.beads]
+    return looked_at(motion, beads, cell, (), WIDTH, HEIGHT, 20_000)
+
+
+def broken(evidence):
+    """The promises that are not kept."""
+    return {entry.promise: entry for entry in promises(evidence) if entry.ok is False}
+
+
+def place_of(motion, row):
+    return (int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
+
+
+def changed(motion, row, **columns):
+    """The motion with other values in a row."""
+    new = {name: getattr(motion, name).copy() for name in columns}
+    for name, value in columns.items():
+        new[name][row] = value
+    return dataclasses.replace(motion, **new)
+
+
+def test_a_sound_job_keeps_all_promises_and_says_what_was_not_checked(sound):
+    entries = promises(sound[2])
+    assert not broken(sound[2])
+    assert {entry.promise for entry in entries if entry.ok is None} == {"UFRAME 1"}
+    assert all(entry.worst is not None for entry in entries if entry.ok)
+
+
+@pytest.mark.parametrize("role", [0, 1, 2, 3])
+def test_a_row_beyond_a_limit(sound, role):
+    cell, _, evidence = sound
+    motion = evidence.motion
+    row = int(np.flatnonzero(motion.role == role)[5])
+    joints = motion.joints[row].copy()
+    joints[1] = cell.limits.upper[1] + np.radians(0.5)
+    found = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=joints)))
+    entry = found["Every axis stays within its limits"]
+    assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(-0.5, abs=1e-6)
+
+
+def test_joints_that_lead_elsewhere(sound):
+    evidence = sound[2]
+    motion = evidence.motion
+    row = int(np.flatnonzero(motion.deposit)[ROW])
+    joints = motion.joints[row] + np.radians([0.0, 0.0, 0.01, 0.0, 0.0, 0.0])
+    found = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=joints)))
+    entry = found["The joints bring the tool to every point"]
+    assert tuple(entry.place) == place_of(motion, row) and 0.01 < entry.worst < 0.5
+    lost = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=np.nan)))
+    assert tuple(lost["The joints bring the tool to every point"].place) == place_of(motion, row)
+
+
+@pytest.mark.parametrize("rapid", [False, True])
+def test_an_axis_asked_for_too_much(sound, rapid):
+    cell, _, evidence = sound
+    motion = evidence.motion
+    rows = np.flatnonzero(motion.deposit != rapid)
+    turned = np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1])).max(axis=1)
+    row = int(rows[turned[rows] > 1e-4][2])
+    share = (np.abs(motion.joints[row] - motion.joints[row - 1]) / cell.machine.max_speed).max()
+    found = broken(dataclasses.replace(evidence, motion=changed(motion, row, duration=share / 1.1)))
+    assert set(found) == {"No axis is asked for more than its largest speed"}
+    entry, = found.values()
+    assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(110.0)
+
+
+def test_a_nozzle_that_meets_deposit_on_rapids_though_planning_found_nothing(sound):
+    cell, path, evidence = sound
+    assert evidence.rapids.moves == int((~evidence.motion.deposit[1:]).sum()) and evidence.rapids.step <= 2.0
+    found = broken(dataclasses.replace(evidence, rapids=driven(cell, path, evidence.motion, 25.0)))
+    assert set(found) == {"The nozzle stays clear on the rapids"}
+    entry, = found.values()
+    assert entry.worst >= 5.0 and entry.place is not None
+
+
+@pytest.mark.parametrize(
+    ("promise", "change"),
+    [
+        ("What is deposited lies on the part", lambda e: {"toolpath": dataclasses.replace(
+            e.toolpath, on_part=(500.0, 0.21, 0.2))}),
+        ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
+        ("Nothing is deposited beside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
+        ("Every bead is carried by what lies below it", lambda e: {"toolpath": dataclasses.replace(
+            e.toolpath, unsupported=2.0)}),
+        ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(
+            e.toolpath, wire_feed=1.1 * e.toolpath.wire_feed)}),
+        ("The nozzle stays clear of deposit, part and platform while it deposits", lambda e: {
+            "looked": clearance_look.Looked(100, 1, (2, 0, 7))}),
+        ("The tool keeps away from singularities while it deposits", lambda e: {"condition": np.where(
+            np.arange(len(e.condition)) == 40, 0.05, e.condition)}),
+        ("The arm stays clear of part, deposit, platform and nozzle", lambda e: {"arm": ArmTouches(
+            np.where(np.arange(len(e.motion)) == 40, 3, -1), np.where(np.arange(len(e.motion)) == 40, 0, -1),
+            ("platform",), 0.02)}),
+        ("The text takes the tool to the planned points", lambda e: {"read": dataclasses.replace(e.read, at_points=3e-3)}),
+        ("Between its points the text keeps to the planned path", lambda e: {"read": dataclasses.replace(
+            e.read, between=0.06)}),
+    ],
+)  # fmt: skip
+def test_what_is_broken_is_told_and_nothing_else(sound, promise, change):
+    evidence = sound[2]
+    found = broken(dataclasses.replace(evidence, **change(evidence)))
+    assert set(found) == {promise}
+
+
+def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound):
+    evidence = sound[2]
+    found = broken(dataclasses.replace(evidence, read=dataclasses.replace(evidence.read, ok=False)))
+    assert set(found) == {
+        "The text takes the tool to the planned points", "Between its points the text keeps to the planned path"}
