@@ -7397,7 +7397,7 @@
         <translation>écart</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids.py"/>
+        <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
         <source>on its way from the bead before the nozzle would meet {0} at every retract distance and direction tried; move the seam or the part, or take a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
@@ -7648,8 +7648,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>retract, travel and approach driven in small steps as they are written</source>
-        <translation>retrait, transfert et approche menés à petits pas tels qu’ils sont écrits</translation>
+        <source>retracts, travels and approaches driven anew, at {0} places {1} mm apart, against bodies, platform and beads as wide and high as they are by then</source>
+        <translation>retraits, transferts et approches menés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
