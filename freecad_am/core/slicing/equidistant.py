@@ -24,6 +24,7 @@ from ..issues import InputError
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
+Edges = NDArray[np.int32]
 
 NEWTON = 60
 HALVINGS = 14  # of the cut through one facet
@@ -51,22 +52,21 @@ class Facets:
         self.base, self.vertices, self.faces = base, vertices, faces
         self.away = base.distance(vertices)
         following = faces[:, [1, 2, 0]]
-        self.forward: Mask = faces < following
         key = (np.minimum(faces, following).astype(np.int64) * len(vertices) + np.maximum(faces, following)).ravel()
         order = np.argsort(key, kind="stable")
         ranked = key[order]
         if len(ranked) % 2 or (ranked[::2] != ranked[1::2]).any() or (ranked[2::2] == ranked[1:-1:2]).any():
             raise self._open(ranked, label)
-        self.edge_of: Index = np.empty(len(key), dtype=np.intp)
-        self.edge_of[order] = np.repeat(np.arange(len(key) // 2), 2)
-        self.edge_of = self.edge_of.reshape(-1, 3)
-        self.start, self.end = np.divmod(ranked[::2], len(vertices))
-        self.sides: Index = (order.reshape(-1, 2) // 3).astype(np.intp)  # the two faces of each edge
-        ends = self.away.take(self.start), self.away.take(self.end)
+        # per edge the vertices at its ends, and the sides of faces that it is: 3 face + side, doubled, and 1 where the face
+        # goes along it; all in one place, for a cut touches edges all over the memory
+        self.edges = np.empty((len(order) // 2, 4), dtype=np.int32)
+        self.edges[:, 0], self.edges[:, 1] = np.divmod(ranked[::2], len(vertices))
+        self.edges[:, 2:] = (2 * order + (faces < following).ravel().take(order)).reshape(-1, 2)
+        ends = [self.away.take(self.edges[:, k]) for k in range(2)]
         self.lower, self.upper = np.minimum(*ends), np.maximum(*ends)
         self.dips, self.least = self._least_on_edges()
-        self.number: Index = np.full((len(self.start), 2), -1, dtype=np.intp)  # of crossings; room kept between cuts
         self.pierced, self.piercing = self._pierced()
+        self.around = [np.flatnonzero((self.edges[:, 2:] // 6 == face).any(axis=1)) for face in self.pierced]
 
     def cut(self, distance: float, chord_error: float) -> list[Loop]:
         """The loops in which the equidistant surface at `distance` mm cuts the mesh, in a fixed order."""
@@ -76,13 +76,9 @@ class Facets:
         loops = [self._round(face, spot, distance, chord_error) for face, spot in self._islands(distance)]
         if not len(once) and not len(twice):
             return loops
-        nodes = self._crossings(once, twice, inside, distance)
-        self.number[once, 0] = np.arange(len(once))
-        self.number[twice, 0] = len(once) + 2 * np.arange(len(twice))
-        self.number[twice, 1] = self.number[twice, 0] + 1
-        touched = np.unique(self.sides[np.r_[once, twice]])
-        following, face = self._links(touched, self.number, inside, len(nodes), len(twice) > 0)
-        self.number[once] = self.number[twice] = -1
+        single, double = self.edges.take(once, axis=0), self.edges.take(twice, axis=0)
+        nodes = self._crossings(single, double, inside, distance)
+        following, face = _links(single, double, inside, len(nodes))
         for chain, _ in chains(following):
             points = self._followed(nodes, chain, following, face, distance, chord_error)
             if len(points) >= 3:
@@ -101,7 +97,7 @@ class Facets:
     def _least_on_edges(self) -> tuple[Index, Array]:
         """The edges (k,) that come nearest to the base between their ends, and how near (k,), mm."""
         maybe = self._may_dip()
-        p, q = self.vertices[self.start[maybe]], self.vertices[self.end[maybe]]
+        p, q = (self.vertices.take(self.edges[maybe, k], axis=0) for k in range(2))
         way = q - p
         level = (way[:, :2] ** 2).sum(axis=1)
         cos, sin = np.cos(self.base.taper), np.sin(self.base.taper)
@@ -120,7 +116,7 @@ class Facets:
         """The edges along which the distance falls at first and rises at last, or nearly so."""
         x, y, z = columns(self.vertices)
         rho = np.hypot(x, y)
-        start, end = self.start, self.end
+        start, end = (self.edges[:, k].astype(np.intp) for k in range(2))
         across = x.take(start) * x.take(end) + y.take(start) * y.take(end)
         one, other = rho.take(start), rho.take(end)
         rise = np.tan(self.base.taper) * (z.take(end) - z.take(start))
@@ -145,25 +141,28 @@ class Facets:
             return []
         low = self.base.distance(self.piercing) < distance
         clear = (self.away[self.faces[self.pierced]] >= distance).all(axis=1)
-        clear &= ~np.isin(self.edge_of[self.pierced], self.dips[self.least < distance]).any(axis=1)
+        dipping = self.dips[self.least < distance]
+        clear &= ~np.array([np.isin(edges, dipping).any() for edges in self.around])
         return [(int(self.pierced[k]), self.piercing[k]) for k in np.flatnonzero(low & clear)]
 
-    def _crossings(self, once: Index, twice: Index, inside: Mask, distance: float) -> Array:
+    def _crossings(self, single: Edges, double: Edges, inside: Mask, distance: float) -> Array:
         """Points where edges are crossed: (k, 3), those crossed twice with both points in the edge's own direction."""
-        starts_inside = inside[self.start[once]]
-        outer = np.where(starts_inside, self.end[once], self.start[once])
-        inner = np.where(starts_inside, self.start[once], self.end[once])
-        single = self._met(self.vertices[outer], self.vertices[inner], distance)
-        p, q = self.vertices[self.start[twice]], self.vertices[self.end[twice]]
+        start, end = single[:, 0], single[:, 1]
+        starts_inside = inside.take(start)
+        outer, inner = np.where(starts_inside, end, start), np.where(starts_inside, start, end)
+        once = self._met(self.vertices.take(outer, axis=0), self.vertices.take(inner, axis=0), distance)
+        if not len(double):
+            return once
+        p, q = self.vertices.take(double[:, 0], axis=0), self.vertices.take(double[:, 1], axis=0)
         both = np.stack([self._met(p, q, distance), self._met(q, p, distance)], axis=1)
-        return np.vstack([single, both.reshape(-1, 3)])
+        return np.vstack([once, both.reshape(-1, 3)])
 
     def _met(self, outer: Array, other: Array, distance: float) -> Array:
         """Where lines from points outside first meet the surface: Newton on a convex function never oversteps."""
         way = other - outer
         t = np.zeros(len(outer))
         start, along = columns(outer), columns(way)
-        for _ in range(NEWTON if len(outer) else 0):
+        for _ in range(NEWTON):
             away, slope = self.base.along(start + t * along, along)
             step = (away - distance) / np.minimum(slope, -1e-300)
             new = np.minimum(np.maximum(np.where(slope < 0.0, t - step, t), t), 1.0)
@@ -171,31 +170,6 @@ class Facets:
                 break
             t = new
         return np.asarray(outer + t[:, None] * way)
-
-    def _links(self, touched: Index, number: Index, inside: Mask, count: int, has_twice: bool) -> tuple[Index, Index]:
-        """The node that follows each node with the solid to its left, and the face between them. has_twice: whether any edge
-        is crossed twice."""
-        edges = self.edge_of.take(touched, axis=0)
-        slots, leaves = number[:, 0].take(edges), inside.take(self.faces.take(touched, axis=0))
-        high = number[:, 1].take(edges) if has_twice else None
-        if high is not None:
-            # along an edge crossed twice one goes in, then out; one crossed once tells by where it starts
-            double, forward = high >= 0, self.forward[touched]
-            first, second = np.where(double & ~forward, high, slots), np.where(double & forward, high, slots)
-            slots = np.stack([first, np.where(double, second, -1)], axis=2).reshape(-1, 6)
-            leaves = np.stack([leaves & ~double, np.ones_like(double)], axis=2).reshape(-1, 6)
-        used = slots >= 0
-        following, between = np.full(count, -1, dtype=np.intp), np.full(count, -1, dtype=np.intp)
-        node, out, face = slots[used], leaves[used], np.repeat(touched, used.sum(axis=1))
-        # the next place of the same face; after the last one its first
-        last = np.r_[face[1:] != face[:-1], True]
-        first = np.flatnonzero(np.r_[True, last[:-1]])
-        after = np.r_[node[1:], -1]
-        after[last] = node[first]
-        out &= after != node
-        following[after[out]] = node[out]
-        between[after[out]] = face[out]
-        return following, between
 
     def _followed(
         self, nodes: Array, chain: Index, following: Index, face: Index, distance: float, chord_error: float
@@ -257,6 +231,35 @@ class Facets:
     def _turns(self, points: Array) -> int:
         step = np.diff(self.base.around(points), append=self.base.around(points[:1]))
         return int(np.round((np.remainder(step + np.pi, TURN) - np.pi).sum() / TURN))
+
+
+def _links(single: Edges, double: Edges, inside: Mask, count: int) -> tuple[Index, Index]:
+    """The node (count,) that follows each node with the solid to its left, and the face between them. single, double: edges
+    that are crossed once and twice, whose nodes come in this order."""
+    once = np.repeat(np.arange(len(single)), 2)
+    place = single[:, 2:].ravel()
+    forward = (place & 1).astype(bool)
+    # one crossed once tells by where it starts whether the cut goes in or out; along one crossed twice it goes in, then out
+    out = np.repeat(inside.take(single[:, 0]), 2) == forward
+    place = place & ~1
+    if len(double):
+        low = np.repeat(len(single) + 2 * np.arange(len(double)), 2)
+        again = double[:, 2:].ravel()
+        back = (again & 1) == 0
+        once = np.r_[once, low + back, low + ~back]
+        place = np.r_[place, again & ~1, again | 1]
+        out = np.r_[out, np.zeros(len(again), dtype=bool), np.ones(len(again), dtype=bool)]
+    order = np.argsort(place)
+    node, out, face = once[order], out[order], place[order] // 6
+    # the next place of the same face; after the last one its first
+    last = np.r_[face[1:] != face[:-1], True]
+    after = np.r_[node[1:], -1]
+    after[last] = node[np.r_[True, last[:-1]]]
+    out &= after != node
+    following, between = np.full(count, -1, dtype=np.intp), np.full(count, -1, dtype=np.intp)
+    following[after[out]] = node[out]
+    between[after[out]] = face[out]
+    return following, between
 
 
 def _cross(one: Array, other: Array) -> Array:
