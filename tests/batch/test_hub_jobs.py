@@ -40,6 +40,10 @@ def read(tmp_path):
 
 
 def test_the_base_in_its_forms(read):
+    filled = read(START + "  fill: gyroid\n  fill_density: 20 %\n  walls: inf\n  solid_layers: 3\n").strategy
+    assert (filled.fill, filled.fill_density, filled.walls, filled.solid_layers) == ("gyroid", 0.2, "inf", 3)
+    with pytest.raises(InputError, match="fill_density: 0 % is out of range; give at least 1 % and at most 100 %"):
+        read(START + "  fill_density: 0 %\n")
     assert read(START).strategy == DevelopableParameters() == read(START + "  base: auto\n").strategy
     job = read(START + "  base: {radius: 6 cm, height: 200 mm, axis: [[0, 1 cm, 280], [0, 0, 1]]}\n")
     assert (job.strategy.base.radius, job.strategy.base.height) == (60.0, 200.0)

@@ -14,38 +14,46 @@ from .centre import left_open
 from .contours import contours
 from .curve import Beads, PlaneCurve
 from .lines import lines
+from .sparse import Infill, sparse
 from .spiral import spiral
 from .strip_closing import strip_left_open
 from .strip_lines import lines_along, lines_round
 from .strips import strip_contours
 from .zigzag import zigzag
 
-PATTERNS = ("contours", "lines", "spiral", "zigzag")
+PATTERNS = ("contours", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
+CURVED = ("contours", "spiral")  # without walls: the border's parallel curves are all they have
+WHOLE = Infill()
 
 
 def fill(
-    region: Region | Strip, beads: Beads, pattern: str = "contours", angle: float = 0.0, ring: bool = False,
-    longest_link: float = 0.0,
+    region: Region | Strip, beads: Beads, pattern: str = "contours", angle: float = 0.0, walls: float = 0,
+    longest_link: float = 0.0, infill: Infill = WHOLE,
 ) -> tuple[PlaneCurve, ...]:
     """The beads that fill a region in one of PATTERNS, from outside in.
 
-    angle (rad) and ring (a contour first) are for lines and zigzags, longest_link (mm, by default 3 spacings) is for these.
-    Round a hub, lines run round it where the angle is nearer to that and along it otherwise; spirals are contours there and
-    zigzags lines. InputError PATTERN for another pattern, InfeasibleError THIN_REGION, InputError MISSING_LIBRARY.
+    angle (rad) is for lines and zigzags, longest_link (mm, by default 3 spacings) for these; walls: how many contours lie
+    round the others, infinity for contours alone. Grid, triangles, honeycomb and gyroid are lines where the whole is filled.
+    Round a hub, lines run round it where the angle is nearer to that and along it otherwise; all that is not contours or
+    spirals, which are contours there, is lines. InputError PATTERN for another pattern, InfeasibleError THIN_REGION,
+    InputError MISSING_LIBRARY.
     """
     if pattern not in PATTERNS:
         raise InputError("PATTERN", "filling", f"there is no pattern {pattern!r}; use one of {', '.join(PATTERNS)}")
-    straight = pattern in ("lines", "zigzag")
+    if pattern not in CURVED and math.isinf(walls):
+        pattern, infill = "contours", WHOLE
     if isinstance(region, Strip):
-        if not straight:
+        if pattern in CURVED:
             return tuple(strip_contours(region, beads))
         upright = abs(math.sin(angle)) > abs(math.cos(angle))
-        return tuple((lines_along if upright else lines_round)(region, beads, ring))
-    if pattern == "lines":
-        return tuple(lines(region, beads, angle, ring))
+        return tuple((lines_along if upright else lines_round)(region, beads, int(walls), infill.density))
+    if infill.density < 1.0:
+        return tuple(sparse(region, beads, pattern, angle, 0 if math.isinf(walls) else int(walls), longest_link, infill))
+    if pattern in CURVED:
+        return tuple((contours if pattern == "contours" else spiral)(region, beads))
     if pattern == "zigzag":
-        return tuple(zigzag(region, beads, angle, ring, longest_link))
-    return tuple((contours if pattern == "contours" else spiral)(region, beads))
+        return tuple(zigzag(region, beads, angle, int(walls), longest_link))
+    return tuple(lines(region, beads, angle, int(walls)))
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> list[tuple[Array, float]]:

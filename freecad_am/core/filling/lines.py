@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,12 +12,13 @@ from ..geometry.plane_curve import Array, length, turned
 from ..geometry.region import Region
 from .centre import closing, necks, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
+from .lattice import crossings
 
 TOGETHER, APART = 0.01, 0.002  # of the spacing; lines are moved no more than that so that they come out even
 
 
 class Frame(NamedTuple):
-    """curves: the contour round the lines, if any; room: the regions between whose borders lines are spread; ends: those
+    """curves: the contours round the lines, if any; room: the regions between whose borders lines are spread; ends: those
     that they run through, which reach onto the contour; thin: the region, or necks of it, narrower than a bead."""
 
     curves: list[PlaneCurve]
@@ -27,38 +27,47 @@ class Frame(NamedTuple):
     thin: tuple[Region, ...]
 
 
-def frame(region: Region, beads: Beads, ring: bool) -> Frame:
-    """Where lines may run: half a bead inside the border, or a spacing inside of a contour that is laid first, onto which
-    they end."""
+def frame(region: Region, beads: Beads, walls: int) -> Frame:
+    """Where lines may run: half a bead inside the border, or a spacing inside of the last of so many contours that are laid
+    first, onto which they end."""
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner = region.grown(-beads.inset, error)
     if not inner:
         return Frame([], (), (), (region,))
     thin = necks(region, inner, beads)
-    if not ring:
+    if not walls:
         return Frame([], inner, inner, thin)
-    curves = [begun(PlaneCurve(line, True, "contour", 0), beads) for part in inner for line in part.rings()]
+    curves = []
+    for k in range(walls):
+        if k:
+            inner = tuple(
+                part for part in region.grown(-beads.inset - 2 * k * half, error)
+                if length(part.rings()[0], True) >= beads.shortest
+            )
+        curves += [begun(PlaneCurve(line, True, "contour", k), beads) for part in inner for line in part.rings()]
+        if not inner:
+            break
     room, ends = (
         tuple(piece for part in inner for piece in part.grown(-way, error)) for way in (2.0 * half, half)
     )
     return Frame(curves, room, ends, thin)
 
 
-def lines(region: Region, beads: Beads, angle: float = 0.0, ring: bool = False) -> list[PlaneCurve]:
-    """Lines at an angle (rad), every other one the other way round; with `ring` a contour round them comes first.
+def lines(region: Region, beads: Beads, angle: float = 0.0, walls: int = 0) -> list[PlaneCurve]:
+    """Lines at an angle (rad), every other one the other way round; so many contours round them come first.
 
-    First and last line are half a bead inside the border (with a ring: a spacing inside of that), and the rest
+    First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest
     at the spacing from these. Where the breadth is no multiple of the spacing the lines move evenly if that takes no more
-    than TOGETHER and APART; otherwise what is left over is in the middle and has a line of its own. With a ring, lines end
-    on it. What lines leave open elsewhere, beside borders almost along them, is filled too, as is the place of lines that
-    would be too short. InfeasibleError THIN_REGION, see `Beads`.
+    than TOGETHER and APART; otherwise what is left over is in the middle and has a line of its own. With walls, lines end
+    on the last. What lines leave open elsewhere, beside borders almost along them, is filled too, as is the place of lines
+    that would be too short. InfeasibleError THIN_REGION, see `Beads`.
     """
-    place = frame(region, beads, ring)
+    place = frame(region, beads, walls)
     curves = single_beads(place.thin, beads) + place.curves
     for row, cuts in enumerate(rows(place, beads, angle)):
         cuts = [cut for cut in cuts if length(cut, False) >= beads.shortest]
-        curves += [PlaneCurve(cut[::-1] if row % 2 else cut, False, "line", int(ring)) for cut in cuts]
-    curves += closing(region, curves, beads, int(ring))
+        curves += [PlaneCurve(cut[::-1] if row % 2 else cut, False, "line", walls) for cut in cuts]
+    curves += closing(region, curves, beads, walls)
     return long_enough(curves, beads.shortest)
 
 
@@ -70,7 +79,7 @@ def rows(place: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     height = np.concatenate([turned(part.rings()[0], -angle)[:, 1] for part in place.room])
     found = []
     for level in levels_between(float(height.min()), float(height.max()), beads):
-        x = _crossings(rings, level)
+        x = crossings(rings, level)
         ends = np.stack([x, np.full(len(x), level)], axis=1).reshape(-1, 2, 2)
         found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
     return found
@@ -92,14 +101,3 @@ def levels_between(low: float, high: float, beads: Beads) -> Array:
         levels = np.r_[first, 0.5 * (first[-1] + last[0]), last] if len(last) else np.array([low, high])
     found: Array = np.clip(levels, low + hair, high - hair)
     return found
-
-
-def _crossings(rings: Sequence[Array], level: float) -> Array:
-    """Where rings cross a height, ascending; an even number."""
-    found = []
-    for ring in rings:
-        following = np.roll(ring, -1, axis=0)
-        k = np.flatnonzero((ring[:, 1] <= level) != (following[:, 1] <= level))
-        a, b = ring[k], following[k]
-        found.append(a[:, 0] + (level - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))
-    return np.sort(np.concatenate(found))

@@ -29,25 +29,28 @@ class _Frame(NamedTuple):
     inset: float
 
 
-def _frame(strip: Strip, beads: Beads, ring: bool) -> _Frame:
+def _frame(strip: Strip, beads: Beads, walls: int) -> _Frame:
     """See `lines.frame`; without anything where the strip is nowhere as wide as a bead."""
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner = strip.grown(-beads.inset, error)
-    if not ring or not inner:
+    if not walls or not inner:
         return _Frame([], inner, beads.inset)
-    return _Frame(borders(inner, beads, 0), grown(inner, -half, error), beads.inset + 2.0 * half)
+    curves, laid = borders(inner, beads, 0), 1
+    while laid < walls and (further := grown(inner, -2.0 * half, error)):
+        curves, inner, laid = curves + borders(further, beads, laid), further, laid + 1
+    return _Frame(curves, grown(inner, -half, error), beads.inset + 2.0 * half * laid)
 
 
-def lines_round(strip: Strip, beads: Beads, ring: bool = False) -> list[PlaneCurve]:
+def lines_round(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
     """Lines round the hub, half a bead inside the borders' farthest places and at the spacing between, see `lines`.
-    Closed where nothing interrupts them."""
-    place = _frame(strip, beads, ring)
+    Closed where nothing interrupts them. density: below 1, lines are as much farther apart."""
+    place = _frame(strip, beads, walls)
     if not place.ends and not place.curves:
         return single(strip, beads)
     low, high = strip.levels
     turn, room = strip.period.around, _Room(strip, place.ends)
     curves = list(place.curves)
-    for row, level in enumerate(levels_between(low + place.inset, high - place.inset, beads)):
+    for row, level in enumerate(_levels(low + place.inset, high - place.inset, beads, density)):
         count = round_count(strip, level, beads)
         u = -0.5 * turn + turn / count * np.arange(count + 1)
         inside = room.contains(np.stack([u, np.full(len(u), level)], axis=1))
@@ -57,19 +60,20 @@ def lines_round(strip: Strip, beads: Beads, ring: bool = False) -> list[PlaneCur
             back = (row % 2 == 1) if not whole else beads.clockwise
             sense = 0 if not whole else (-1 if back else 1)
             sheet = float(cover[:, 0].mean())
-            curves.append(PlaneCurve(points[::-1] if back else points, whole, "line", int(ring), sense, sheet))
+            curves.append(PlaneCurve(points[::-1] if back else points, whole, "line", walls, sense, sheet))
     curves = long_enough(curves, beads.shortest)
-    return curves + strip_closing(strip, curves, beads, int(ring), "closing")
+    return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
 
 
-def lines_along(strip: Strip, beads: Beads, ring: bool = False) -> list[PlaneCurve]:
+def lines_along(strip: Strip, beads: Beads, walls: int = 0, density: float = 1.0) -> list[PlaneCurve]:
     """Lines along generatrices, evenly round the hub, no farther apart than the spacing; on a cone that is where they are
     farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
-    place = _frame(strip, beads, ring)
+    place = _frame(strip, beads, walls)
     if not place.ends and not place.curves:
         return single(strip, beads)
     turn, room = strip.period.around, _Room(strip, place.ends)
-    count = max(1, math.ceil(turn * _stretch(strip) / beads.spacing - 0.01 * turn / beads.spacing))
+    apart = beads.spacing / density
+    count = max(1, math.ceil(turn * _stretch(strip) / apart - 0.01 * turn / apart))
     low, high = strip.levels
     v: Array = np.linspace(low, high, max(2, math.ceil((high - low) / (PROBE * beads.spacing))))
     u: Array = np.asarray(-0.5 * turn + turn / count * (np.arange(count) + 0.5), dtype=np.float64)
@@ -83,9 +87,17 @@ def lines_along(strip: Strip, beads: Beads, ring: bool = False) -> list[PlaneCur
     curves = list(place.curves)
     for number, *levels in zip(line.tolist(), bottom, top):
         ends = strip.period.laid(np.stack([np.full(2, u[number]), levels], axis=1))
-        curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", int(ring)))
+        curves.append(PlaneCurve(ends[::-1] if number % 2 else ends, False, "line", walls))
     curves = long_enough(curves, beads.shortest)
-    return curves + strip_closing(strip, curves, beads, int(ring), "closing")
+    return curves + (strip_closing(strip, curves, beads, walls, "closing") if density == 1.0 else [])
+
+
+def _levels(low: float, high: float, beads: Beads, density: float) -> Array:
+    """Heights of lines: even between the borders, or as far apart as the density asks for, the same in all layers."""
+    if density == 1.0:
+        return levels_between(low, high, beads)
+    apart = beads.spacing / density
+    return np.asarray(apart * np.arange(math.ceil(low / apart), math.floor(high / apart) + 1))
 
 
 class _Room:

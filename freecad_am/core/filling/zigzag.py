@@ -18,26 +18,35 @@ FLOOR = 4.0  # chord errors; no edge is shorter
 
 
 def zigzag(
-    region: Region, beads: Beads, angle: float = 0.0, ring: bool = False, longest_link: float = 0.0
+    region: Region, beads: Beads, angle: float = 0.0, walls: int = 0, longest_link: float = 0.0
 ) -> list[PlaneCurve]:
     """Lines as of `lines`, each linked to the next along the border of the room that beads have, so that no link is outside.
 
     longest_link: mm, by default LINK spacings; where a link would be longer another zigzag begins.
     """
     limit = longest_link if longest_link > 0.0 else LINK * beads.spacing
-    place = frame(region, beads, ring)
-    borders = [line for part in place.ends for line in part.rings()]
-    least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
-    levels = [[cut for cut in cuts if length(cut, False) > least] for cuts in rows(place, beads, angle)]
-    open_ = [list(range(len(level))) for level in levels]
+    place = frame(region, beads, walls)
     curves = single_beads(place.thin, beads) + place.curves
+    curves += linked(rows(place, beads, angle), place.ends, beads, walls, limit)
+    curves += closing(region, curves, beads, walls)
+    return long_enough(curves, beads.shortest)
+
+
+def linked(
+    rows: Sequence[Sequence[Array]], ends: Sequence[Region], beads: Beads, ring: int, limit: float
+) -> list[PlaneCurve]:
+    """Zigzags of rows of lines (2, 2) that end on the borders of regions, links no longer than `limit` mm."""
+    borders = [line for part in ends for line in part.rings()]
+    least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
+    levels = [[cut for cut in cuts if length(cut, False) > least] for cuts in rows]
+    open_ = [list(range(len(level))) for level in levels]
+    curves = []
     for row in range(len(levels)):
         while open_[row]:
             points = _chain(levels, open_, row, borders, limit, least)
             if length(points, False) >= beads.shortest:
-                curves.append(PlaneCurve(points, False, "zigzag", int(ring)))
-    curves += closing(region, curves, beads, int(ring))
-    return long_enough(curves, beads.shortest)
+                curves.append(PlaneCurve(points, False, "zigzag", ring))
+    return curves
 
 
 def _chain(

@@ -125,6 +125,19 @@ class Region:
         both = shapely().ops.unary_union([other.shape for other in others])
         return _parts(self.shape.intersection(both), SLIVER * self.extent**2)
 
+    def pieces(self, line: Array) -> list[Array]:
+        """What of an open line (n, 2), which does not meet itself, lies inside: pieces (m, 2) in its order and sense."""
+        library = shapely()
+        whole = library.geometry.LineString(line)
+        cut = whole.intersection(self.shape)
+        cut = library.ops.linemerge(cut) if cut.geom_type == "MultiLineString" else cut
+        parts = [part for part in getattr(cut, "geoms", [cut]) if part.geom_type == "LineString" and not part.is_empty]
+        found = []
+        for part in parts:
+            ends = [float(whole.project(library.geometry.Point(part.coords[k]))) for k in (0, -1)]
+            found.append((min(ends), np.array(part.coords, dtype=float)[:: 1 if ends[0] <= ends[1] else -1]))
+        return [piece for _, piece in sorted(found, key=lambda item: item[0])]
+
     def distance(self, other: Region) -> float:
         """Shortest way (mm) to another region, 0 where they touch."""
         return float(self.shape.distance(other.shape))

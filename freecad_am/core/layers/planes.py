@@ -15,6 +15,7 @@ from ..geometry.told import place
 from ..issues import InputError
 from ..parameters.strategy import SolidParameters
 from ..slicing.plane_sections import PlaneCuts
+from .covered import with_covered
 from .margins import grown, within_margin
 from .plane_layer import PlaneLayer
 from .surface import Array, Slice
@@ -36,6 +37,10 @@ def count(top: float, strategy: SolidParameters) -> int:
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
     out. InputError TOO_LOW where no layer reaches into them."""
+    return with_covered(_cut(base, bodies, strategy), strategy.thick)
+
+
+def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     local = [base.inside(body.vertices) for body in bodies]
     top = max(float(points[:, 2].max()) for points in local)
     number = count(top, strategy)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Base, middle_azimuth
-from ..geometry.region import Region
+from ..geometry.region import Region, regions
 from ..geometry.strip import Strip, strips
 from ..geometry.surroundings import Body
 from ..geometry.told import place
@@ -18,6 +18,7 @@ from ..issues import InputError
 from ..parameters.strategy import DevelopableParameters
 from ..slicing.equidistant import Facets, Loop
 from ..slicing.laid_flat import count, cut, moved, opened
+from .covered import under_and_over
 from .margins import ARCS, grown, within_margin
 from .round_layer import RoundLayer
 from .surface import Slice
@@ -34,22 +35,46 @@ def slices(base: Base, surface: Developable, body: Body, strategy: DevelopablePa
     centre = middle_azimuth(base, body.vertices)
     error, height = strategy.chord_error, strategy.layer_height
     below: list[list[Loop]] = []
-    for layer in range(count(facets, height, strategy.margin, error)):
-        loops = cut(facets, layer * height, CUT * error)
+    ahead: list[list[Loop]] = []
+    layers, thick = count(facets, height, strategy.margin, error), strategy.thick
+    for layer in range(layers):
+        while len(ahead) <= thick and layer + len(ahead) < layers:
+            ahead.append(cut(facets, (layer + len(ahead)) * height, CUT * error))
+        loops = ahead.pop(0)
         where = f"{body.name} layer {layer}"
         at = surface.offset(layer * height)
         _refuse_apex(loops, at, base, where)
         below.append(loops)
         near = within_margin(below, height, strategy.margin, lambda some, up: [moved(surface, loop, up) for loop in some])
         if any(loop.turns for _, some in near for loop in some):
-            one = Slice(layer, RoundLayer(at), _all_round(near, at, strategy), ())
+            covered = () if thick > min(layer, layers - 1 - layer) else None
+            one = Slice(layer, RoundLayer(at), _all_round(near, at, strategy), (), covered)
         else:
-            flat = opened(at, [loop for _, some in near for loop in some], centre, where)
+            beside = _beside(surface, below, ahead, height, thick)
+            flat = opened(at, [loop for _, some in [*near, *beside] for loop in some], centre, where)
             loops_flat = iter(flat.loops)
             lots = [(distance, [next(loops_flat) for _ in some]) for distance, some in near]
             one = Slice(layer, RoundLayer(at, flat.middle), *grown(lots, strategy.margin, error, layer))
+            if thick:
+                there = [regions([next(loops_flat) for _ in some]) for _, some in beside]
+                one = one._replace(covered=under_and_over([
+                    [part for one in found for part in one.grown(strategy.margin, ARCS * error)] for found in there
+                ]))
         if one.regions:
             yield one
+
+
+def _beside(
+    base: Developable, below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], height: float, thick: int
+) -> list[tuple[int, list[Loop]]]:
+    """The loops of so many layers under and over the last one below, moved to it, each lot with its number from there: none
+    of those that are not there, or that go round the hub."""
+    here = len(below) - 1
+    found = []
+    for k in (k for step in range(1, thick + 1) for k in (-step, step)):
+        there = below[here + k] if -here <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
+        found.append((k, [moved(base, loop, -k * height) for loop in there if not loop.turns]))
+    return found
 
 
 def _refuse_apex(loops: Sequence[Loop], surface: Developable, base: Base, where: str) -> None:

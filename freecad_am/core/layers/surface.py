@@ -61,9 +61,11 @@ class LayerSurface(Protocol):
 
 
 class Slice(NamedTuple):
-    """One layer of a part: its number, its surface, its regions laid flat, and findings."""
+    """One layer of a part: its number, its surface, its regions laid flat, and findings. covered: what of the plane is near
+    to neither a top nor a bottom (`covered.under_and_over`); None where nobody asks."""
 
     layer: int
     surface: LayerSurface
     regions: tuple[Region | Strip, ...]
     issues: tuple[Issue, ...]
+    covered: tuple[Region, ...] | None = None

@@ -111,7 +111,7 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
         also = f" or {', '.join(spec.words)}" if spec.words else ""
         raise InputError("BAD_VALUE", key, f"{value!r} is not a number{also}")
-    if spec.kind == COUNT and value != int(value):
+    if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
         raise InputError("BAD_VALUE", key, f"{value!r} is not a whole number")
     too_low = spec.low is not None and (value <= spec.low if spec.open_low else value < spec.low)
     if too_low or (spec.high is not None and value > spec.high):

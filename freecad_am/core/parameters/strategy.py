@@ -143,8 +143,16 @@ class FilledParameters(LayerParameters):
         low=0.0, high=0.9, optional=True,
     )
     fill: str = f.parameter(
-        "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: spiral, zigzag.",
-        choices=("contours", "lines", "spiral", "zigzag"),
+        "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: spiral, zigzag; below 100 % also grid, "
+        "triangles, honeycomb, gyroid.",
+        choices=("contours", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid"),
+    )
+    fill_density: float = f.parameter(
+        1.0, f.RATIO, "Share of the area inside of the walls that beads fill: their length times their spacing.", low=0.01,
+        high=1.0,
+    )
+    solid_layers: int = f.parameter(
+        0, f.COUNT, "So many layers under tops and over bottoms are filled at 100 %.", low=0, high=1000
     )
     fill_angle: float = f.parameter(
         0.0, f.ANGLE, "Direction of lines and zigzags; 0 runs around the hub, 90 deg along it."
@@ -152,7 +160,10 @@ class FilledParameters(LayerParameters):
     fill_angle_step: float = f.parameter(
         math.pi / 2.0, f.ANGLE, "How far the direction of lines and zigzags turns from layer to layer."
     )
-    contour: bool = f.parameter(True, f.FLAG, "A contour is laid round lines and zigzags.")
+    contour: bool = f.parameter(True, f.FLAG, "Contours are laid round lines and the like.")
+    walls: int | str = f.parameter(
+        1, f.COUNT, "How many contours lie round lines and the like; inf: contours alone.", low=0, words=("inf",)
+    )
     margin: float = f.parameter(
         0.0, f.LENGTH, "How far the deposit stands out on all sides of the part, to be machined off.", low=0.0
     )
@@ -186,7 +197,24 @@ class FilledParameters(LayerParameters):
     )
 
     def __post_init__(self) -> None:
+        if self.walls == math.inf:
+            object.__setattr__(self, "walls", "inf")
         f.check(self, "strategy")
+        if self.fill == "spiral" and self.fill_density < 1.0:
+            raise InputError(
+                "BAD_VALUE", "strategy.fill_density", f"{self.fill} fills the whole, not {100.0 * self.fill_density:g} %; "
+                "use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid",
+            )
+
+    @property
+    def rounds(self) -> float:
+        """How many contours lie round lines and the like; infinity for contours alone."""
+        return 0 if not self.contour else math.inf if self.walls == "inf" else float(self.walls)
+
+    @property
+    def thick(self) -> int:
+        """So many layers over and under one tell what of it is filled as a whole; 0 where all of it is."""
+        return self.solid_layers if self.fill_density < 1.0 else 0
 
 
 @dataclass(frozen=True)

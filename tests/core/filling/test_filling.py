@@ -33,7 +33,7 @@ def filled(name, pattern, beads=BEADS, **options):
 def test_cover_gaps_and_nothing_outside(name, pattern):
     loops = SHAPES[name]
     gap = 1.0  # the gap allowed decides how much stays open
-    curves = filled(name, pattern, Beads(S, gap, 0.0), angle=0.4, ring=True)
+    curves = filled(name, pattern, Beads(S, gap, 0.0), angle=0.4, walls=1)
     border = tree([(loop, True) for loop in loops], STEP)
     beads = tree([(curve.points, curve.closed) for curve in curves], STEP)
     # no middle of a bead nearer to the border than half a bead, minus the chord error
@@ -169,7 +169,7 @@ def test_thin_regions_and_necks():
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
     least = 12.0
-    curves = filled("wavy 1", pattern, Beads(S, GAP, least), ring=True)
+    curves = filled("wavy 1", pattern, Beads(S, GAP, least), walls=1)
     lines = [np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points for curve in curves]
     lengths = [np.hypot(*np.diff(line, axis=0).T).sum() for line in lines]
     assert min(lengths) >= least - 1e-9

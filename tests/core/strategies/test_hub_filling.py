@@ -165,3 +165,62 @@ def test_a_single_bead_wider_than_its_region_is_told_with_place_and_overhang():
     border = min(1.5 - y, z - 20.0, 60.0 - z)
     assert out == pytest.approx(4.75 - border, abs=0.05) and out > 3.2
     assert not [issue for issue in planned("cylinder", (0.0,)).issues if issue.code == "THIN_SINGLE"]
+
+
+def lengths(path):
+    return np.array([sum(bead.length for bead in layer.beads) for layer in path.layers])
+
+
+@pytest.mark.parametrize("hub", HUBS)
+def test_less_than_the_whole_between_solid_layers(hub):
+    """First and last layers as at 100 %, those between at the density, all of them round hubs too."""
+    given = {"layer_height": 6.0, "bead_spacing": 1.5, "walls": 2, "chord_error": 0.05, "contour": True}
+    whole = planned(hub, (0.3,), 36.0, fill="lines", **given)
+    part = planned(hub, (0.3,), 36.0, fill="gyroid", fill_density=0.25, solid_layers=1, **given)
+    share = lengths(part) / lengths(whole)
+    assert share[[0, -1]] == pytest.approx(1.0, abs=0.02)
+    # 2 walls of 1.5 mm take 3 mm all round of 40 mm by 36 mm or a little more
+    assert (share[1:3] > 0.35).all() and (share[1:3] < 0.55).all()  # farther out the flat top comes nearer
+    for layer in part.layers[:3]:
+        assert sorted({bead.ring for bead in layer.beads if bead.kind == "contour"}) == [0, 1]
+    alone = planned(hub, (0.3,), 36.0, fill="grid", **{**given, "walls": "inf"})
+    assert {bead.kind for _, _, bead in alone} <= {"contour", "centre"}
+    assert not [issue for issue in part.issues if issue.code == "OPEN_GAP"]
+
+
+def test_round_hubs_lines_stand_farther_apart_between_solid_layers():
+    base, body = Base("the hub", Developable(40.0), np.eye(4)), collar(40.0, 65.0, 10.0, 60.0)
+    made = SolidsOnHub("part", (Group(base, (body,)),), 0.0)
+
+    def path(**values):
+        given = {"layer_height": 5.0, "bead_spacing": 2.0, "chord_error": 0.05, "fill_angle_step": 0.0, **values}
+        return plan_solids(
+            made, DevelopableParameters(**given), BuildDirectionParameters(), ProcessParameters(), None
+        )
+    whole, part = path(fill="lines"), path(fill="grid", fill_density=0.2, solid_layers=1)
+    share = lengths(part) / lengths(whole)
+    assert share[[0, -1]] == pytest.approx(1.0, abs=0.01)
+    assert share[1:-1] == pytest.approx(0.2 + 0.8 * 4.0 / 50.0, abs=0.05)  # the contour along both borders is there anyway
+    assert "PATTERN_ROUND_HUB" in {issue.code for issue in part.issues}
+
+
+def test_tops_of_a_step_are_filled():
+    """Two boxes side by side, one of them lower, of one body: what is under the top of the lower one is filled."""
+    low, high = box(0.2, 20.0), box(0.9, 20.0)
+    squeezed = low.vertices * np.where(np.hypot(low.vertices[:, 0], low.vertices[:, 1]) > 50.0, 0.8, 1.0)[:, None]
+    squeezed[:, 2] = low.vertices[:, 2]
+    body = Body("step", np.vstack([squeezed, high.vertices]), np.vstack([low.triangles, high.triangles + 8]))
+    made = SolidsOnHub("part", (Group(Base("the hub", HUBS["cylinder"], np.eye(4)), (body,)),), 0.0)
+
+    def one(layer, **values):
+        given = {"layer_height": 4.0, "bead_spacing": 1.0, "fill": "lines", "chord_error": 0.05, **values}
+        beads = plan_solids(
+            made, DevelopableParameters(**given), BuildDirectionParameters(), ProcessParameters(), None
+        ).layers[layer].beads
+        angle = [math.atan2(*bead.points.mean(axis=0)[1::-1]) for bead in beads]
+        return [sum(b.length for b, a in zip(beads, angle) if (a < 0.55) == lower) for lower in (True, False)]
+    top = 6  # 24 mm above the hub; 56 mm, or a little less, is the lower one's top
+    whole, part = one(top), one(top, fill_density=0.2, solid_layers=1)
+    assert part[0] == pytest.approx(whole[0], rel=0.02) and part[1] < 0.5 * whole[1]
+    beside, under = one(top - 2), one(top - 2, fill_density=0.2, solid_layers=1)
+    assert under[0] < 0.5 * beside[0] and under[1] < 0.5 * beside[1]

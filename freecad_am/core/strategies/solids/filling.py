@@ -12,6 +12,7 @@ import numpy as np
 
 from ...filling.curve import Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
+from ...filling.sparse import Infill
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base
 from ...geometry.plane_curve import nearest
@@ -27,7 +28,9 @@ from ...process.bead_model import BeadModel
 
 SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
-INSTEAD = {"spiral": "contours", "zigzag": "lines"}  # round a hub
+INSTEAD = {  # round a hub
+    "spiral": "contours", "zigzag": "lines", "grid": "lines", "triangles": "lines", "honeycomb": "lines", "gyroid": "lines",
+}
 
 
 class Filled(NamedTuple):
@@ -39,10 +42,11 @@ class Filled(NamedTuple):
 
 
 class _Picture(NamedTuple):
-    """A region filled: what for, its borders, its beads, and places left open with their widths."""
+    """A region filled: what for and how, its borders, its beads, and places left open with their widths."""
 
     beads: Beads
     angle: float
+    infill: Infill
     rings: tuple[Array, ...]
     curves: tuple[PlaneCurve, ...]
     left: list[tuple[Array, float]]
@@ -74,17 +78,21 @@ class Pictures:
             self._width,
         )
         angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
+        infill = Infill()
+        if strategy.fill_density < 1.0:
+            height = one.layer * strategy.layer_height if strategy.fill == "gyroid" else 0.0
+            infill = Infill(strategy.fill_density, height, strategy.fill_angle - turned, one.covered)
         curves: list[PlaneCurve] = []
         issues: list[Issue] = []
         gaps: list[tuple[Array, float]] = []
         islands: list[int] = []
         for number, region in enumerate(one.regions):
-            found, left = self._picture(one, region, beads, angle)
+            found, left = self._picture(one, region, beads, angle, infill)
             curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
             islands += [number] * len(found)
             gaps += left
         plain = [region for region in one.regions if isinstance(region, Region)]
-        if len(plain) == len(one.regions):
+        if len(plain) == len(one.regions) and strategy.fill_density == 1.0:
             gaps = found_at if (found_at := open_at_slits(plain, curves, beads)) is not None else gaps
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
@@ -101,21 +109,29 @@ class Pictures:
         return Filled(curves, tuple(issues), islands)
 
     def _picture(
-        self, one: Slice, region: Region | Strip, beads: Beads, angle: float
+        self, one: Slice, region: Region | Strip, beads: Beads, angle: float, infill: Infill
     ) -> tuple[Sequence[PlaneCurve], list[tuple[Array, float]]]:
-        strategy = self._strategy
-        links = strategy.longest_link * beads.spacing
         if isinstance(region, Strip):
-            whole = fill(region, beads, strategy.fill, angle, strategy.contour, links)
-            return whole, open_places(region, whole, beads)
+            if one.covered == ():
+                infill = Infill()
+            return self._made(region, beads, angle, infill)
         known = self._known.setdefault(one.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
-            if alike and _equal(other.rings, region.rings()):
+            if alike and _equal(other.rings, region.rings()) and _same(other.infill, infill):
                 return other.curves, other.left
-        curves = fill(region, beads, strategy.fill, angle, strategy.contour, links)
-        left = open_places(region, curves, beads)
-        known.append(_Picture(beads, angle, region.rings(), curves, left))
+        curves, left = self._made(region, beads, angle, infill)
+        known.append(_Picture(beads, angle, infill, region.rings(), curves, left))
+        return curves, left
+
+    def _made(
+        self, region: Region | Strip, beads: Beads, angle: float, infill: Infill
+    ) -> tuple[tuple[PlaneCurve, ...], list[tuple[Array, float]]]:
+        """The beads of a region and what they leave open, of which nothing is told where room is left on purpose."""
+        strategy = self._strategy
+        links = strategy.longest_link * beads.spacing
+        curves = fill(region, beads, strategy.fill, angle, strategy.rounds, links, infill)
+        left = open_places(region, curves, beads) if infill.density == 1.0 else []
         return curves, left
 
 
@@ -156,6 +172,16 @@ def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> lis
         NOTE, "THIN_SINGLE", f"{len(single)} bead(s) alone in regions narrower than a bead of {2.0 * beads.inset:.3g} mm "
         f"stand out of them, by up to {out[worst]:.3g} mm at {beads.where(points[worst])}", one.layer,
     )]
+
+
+def _same(one: Infill, other: Infill) -> bool:
+    """Whether two layers are filled in part in the same way."""
+    if one.density == other.density == 1.0:
+        return True
+    if one.height != other.height or abs(one.angle - other.angle) > 1e-9 or (one.covered is None) != (other.covered is None):
+        return False
+    rings, others = (tuple(ring for part in infill.covered or () for ring in part.rings()) for infill in (one, other))
+    return _equal(rings, others)
 
 
 def _number(beads: Beads) -> float:

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Patterns of beads that leave room between them: so far apart that length times spacing is the density's share of the area.
+
+They are fixed in the plane, not to the region, so that layers stand on one another.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..geometry.plane_curve import Array, turned
+from ..geometry.region import Region, simplified
+
+FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}  # of parallel lines, evenly turned
+GYROID_LENGTH = 15.449443  # of all sections of a unit gyroid (2 pi wide) in the mean, within its square of 4 pi^2
+SHARPEST = 6.0  # chords of a period of the gyroid: the root of so many periods by the chord error, before needless ones go
+
+
+def families(region: Region, pattern: str, spacing: float, density: float, angle: float) -> Iterator[list[list[Array]]]:
+    """Family by family of the straight patterns, row by row the pieces (2, 2) of lines in a region, at an angle, rad."""
+    count = FAMILIES[pattern]
+    for number in range(count):
+        yield straight(region, count * spacing / density, angle + number * math.pi / count)
+
+
+def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
+    """Pieces (2, 2) of the lines at whole periods (mm) from the origin, at an angle, rad, in a region; row by row."""
+    rings = [turned(ring, -angle) for ring in region.rings()]
+    low, high = float(rings[0][:, 1].min()), float(rings[0][:, 1].max())
+    found = []
+    for k in range(math.ceil(low / period), math.floor(high / period) + 1):
+        x = crossings(rings, k * period)
+        ends = np.stack([x, np.full(len(x), k * period)], axis=1).reshape(-1, 2, 2)
+        found.append([turned(piece, angle) for piece in ends if piece[1, 0] > piece[0, 0]])
+    return found
+
+
+def crossings(rings: list[Array], level: float) -> Array:
+    """Where rings cross a height, ascending; an even number."""
+    found = []
+    for ring in rings:
+        following = np.roll(ring, -1, axis=0)
+        k = np.flatnonzero((ring[:, 1] <= level) != (following[:, 1] <= level))
+        a, b = ring[k], following[k]
+        found.append(a[:, 0] + (level - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))
+    return np.sort(np.concatenate(found))
+
+
+def honeycomb(region: Region, spacing: float, density: float, angle: float) -> list[Array]:
+    """Lines (n, 2) that bound hexagons: where two run along the same side they lie a spacing apart. About the region.
+
+    A side of a mm, flat ones and slanted ones in turn: 4 a of bead on 3 a of line, lines a sqrt(3) / 2 + spacing apart.
+    """
+    side = (4.0 / (3.0 * density) - 1.0) * spacing * 2.0 / math.sqrt(3.0)
+    slant = 0.5 * math.sqrt(3.0) * side
+    period, apart = 3.0 * side, slant + spacing
+    (left, low), (right, high) = _box(region, angle)
+    cells = np.arange(math.floor(left / period) - 1, math.ceil(right / period) + 1)
+    corners = np.array([[0.0, 0.0], [side, 0.0], [1.5 * side, slant], [2.5 * side, slant]])
+    line = (corners + period * np.stack([cells, 0.0 * cells], axis=1)[:, None]).reshape(-1, 2) - np.array([0.0, 0.5 * slant])
+    found = []
+    for k in range(math.floor(low / apart) - 1, math.ceil(high / apart) + 2):
+        mirrored = line * np.array([1.0, -1.0 if k % 2 else 1.0]) + np.array([0.0, k * apart])
+        found.append(turned(mirrored, angle))
+    return found
+
+
+def gyroid_period(spacing: float, density: float) -> float:
+    """mm after which a gyroid repeats itself whose sections have, in the mean of all heights, the density asked for."""
+    return GYROID_LENGTH * spacing / (2.0 * math.pi * density)
+
+
+def gyroid(region: Region, spacing: float, density: float, angle: float, height: float, chord_error: float) -> list[Array]:
+    """The section at a height (mm) of sin x cos y + sin y cos z + sin z cos x = 0 as lines (n, 2) about a region.
+
+    For a given z each line is a function of x, or of y, whichever its normal is nearer to: A cos y + B sin y = C is solved
+    for y, so that points lie on the surface exactly. Lines meet only where z is an odd multiple of pi / 4.
+    """
+    unit = gyroid_period(spacing, density) / (2.0 * math.pi)
+    z = height / unit
+    low, high = (edge / unit for edge in _box(region, angle))
+    of_x = math.cos(z) ** 2 >= 0.5
+    along, across = (0, 1) if of_x else (1, 0)
+    step = 2.0 * math.pi / (4 * math.ceil(0.25 * math.sqrt(SHARPEST * 2.0 * math.pi * unit / chord_error)))
+    t = step * np.arange(math.floor(low[along] / step) - 1, math.ceil(high[along] / step) + 2)
+    if of_x:
+        a, b, c = np.sin(t), np.full(len(t), math.cos(z)), -math.sin(z) * np.cos(t)
+    else:
+        a, b, c = np.full(len(t), math.sin(z)), np.cos(t), -math.cos(z) * np.sin(t)
+    middle = np.unwrap(np.arctan2(b, a))
+    half = np.arccos(np.clip(c / np.hypot(a, b), -1.0, 1.0))
+    found = []
+    first = math.floor((low[across] - float(middle.max())) / (2.0 * math.pi)) - 1
+    last = math.ceil((high[across] - float(middle.min())) / (2.0 * math.pi)) + 1
+    for turn in range(first, last + 1):
+        for branch in (middle - half, middle + half):
+            value = branch + 2.0 * math.pi * turn
+            flat = np.stack([t, value] if of_x else [value, t], axis=1) * unit
+            found.append(turned(simplified(flat, chord_error), angle))
+    return found
+
+
+def _box(region: Region, angle: float) -> tuple[Array, Array]:
+    """Lowest and highest coordinates (2,) of a region in axes turned by an angle, rad."""
+    border = turned(region.rings()[0], -angle)
+    return border.min(axis=0), border.max(axis=0)
