@@ -4,11 +4,6 @@
 <context>
     <name>App::Property</name>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>A contour is laid round lines and zigzags.</source>
-        <translation>Un contour est posé autour des lignes et des zigzags.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>A machine of the list, or the path of a machine file.</source>
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
@@ -67,6 +62,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Closed beads layer by layer, or one continuous spiral.</source>
         <translation>Cordons fermés couche par couche, ou une spirale continue.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Contours are laid round lines and the like.</source>
+        <translation>Des contours sont déposés autour des lignes et autres motifs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -287,6 +287,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How long to wait between layers. (s)</source>
         <translation>Temps d&apos;attente entre les couches. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How many contours lie round lines and the like; inf: contours alone.</source>
+        <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -525,8 +530,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag.</source>
-        <translation>Contours parallèles, lignes parallèles, ou les uns ou les autres liés : spirale, zigzag.</translation>
+        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -582,6 +587,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
         <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Share of the area inside of the walls that beads fill: their length times their spacing. (%)</source>
+        <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -647,6 +657,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Smallest condition of the Jacobian while depositing.</source>
         <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>So many layers under tops and over bottoms are filled at 100 %.</source>
+        <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1075,11 +1090,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>A URDF file</source>
         <translation>Un fichier URDF</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>A contour is laid round lines and zigzags.</source>
-        <translation>Un contour est posé autour des lignes et des zigzags.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -1637,6 +1647,11 @@
         <translation>Contour</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Contours are laid round lines and the like.</source>
+        <translation>Des contours sont déposés autour des lignes et autres motifs.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Cooling</source>
         <translation>Refroidissement</translation>
@@ -2017,6 +2032,11 @@
         <translation>Pas de l&apos;angle de remplissage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Fill density</source>
+        <translation>Densité de remplissage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Fill width</source>
         <translation>Largeur de remplissage</translation>
@@ -2285,6 +2305,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How long to wait between layers.</source>
         <translation>Temps d&apos;attente entre les couches.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How many contours lie round lines and the like; inf: contours alone.</source>
+        <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -3208,8 +3233,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag.</source>
-        <translation>Contours parallèles, lignes parallèles, ou les uns ou les autres liés : spirale, zigzag.</translation>
+        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -3683,6 +3708,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Share of the area inside of the walls that beads fill: their length times their spacing.</source>
+        <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Share of the layer height by which the local distance of smooth layers may differ; of iso-parameter layers, before there is a warning.</source>
         <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut différer ; pour les couches iso-parameter, avant un avertissement.</translation>
     </message>
@@ -3810,6 +3840,16 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Smooth</source>
         <translation>Lisser</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>So many layers under tops and over bottoms are filled at 100 %.</source>
+        <translation>Nombre de couches remplies à 100 % sous les faces supérieures et au-dessus des faces inférieures.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Solid layers</source>
+        <translation>Couches pleines</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
@@ -4720,6 +4760,11 @@
         <location filename="../../freecad_am/gui/wall_panel.py"/>
         <source>Wall on part</source>
         <translation>Paroi sur pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Walls</source>
+        <translation>Contours extérieurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -6087,6 +6132,16 @@
         <translation>gris</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>grid</source>
+        <translation>grille</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>gyroid</source>
+        <translation>gyroïde</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>has sliding axes</source>
         <translation>a des axes de translation</translation>
@@ -6100,6 +6155,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>highest</source>
         <translation>la plus haute</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>honeycomb</source>
+        <translation>nid d&apos;abeilles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/tilt.py"/>
@@ -8878,6 +8938,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>triangles</source>
+        <translation>triangles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>trim</source>
         <translation>coupée</translation>
     </message>
@@ -9240,6 +9305,11 @@
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>{0} face(s) ({1}), about {2} cm3 of the {3} cm3 of {4}, are not deposited</source>
         <translation>{0} face(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposées</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>{0} fills the whole, not {1} %; use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid</source>
+        <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/expressions.py"/>
