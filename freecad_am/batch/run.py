@@ -86,7 +86,9 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
                 result = _write(job, stages, cell, files, session, started, page)
             finally:
                 FreeCAD.closeDocument(document.Name)
-            session.issues(stages.issues)
+            from freecad_am.core.strategies.size import LARGE
+
+            session.issues(issue for issue in stages.issues if issue.code != LARGE)
             return result
     except InputError as found:
         error = in_words_of_job(found)
@@ -136,6 +138,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     """All stages of a job in a document; stops where the job cannot be carried out and says so in `issues`."""
     from freecad_am import api
     from freecad_am.core.process.predicted import HEIGHTS
+    from freecad_am.core.strategies.size import LARGE
 
     from .part import bring
 
@@ -152,6 +155,7 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
         feature = make_feature(document, job, part, substrate, fixtures)
     stages.feature = feature
     stages.issues += api.issues(feature)
+    session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
     with stages.timed("toolpath", session):
         stages.toolpath = api.make_toolpath(document, feature, cell, process=job.process)
     # a toolpath repeats the findings about its wall

@@ -64,12 +64,12 @@ class DevelopableFeature(Stage):
 
         def work() -> Outcome:
             solids = _solids(given, strategy)
-            size.refuse_absurd(size.of_solids(solids, strategy), strategy)
+            large = size.judged(size.of_solids(solids, strategy), strategy)
             substrate = () if given.substrate is None else (given.substrate.body(),)
             solids = dataclasses.replace(solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures)))
             bases = [group.base.name for group in solids.groups]
             count = sum(len(group.bodies) for group in solids.groups)
-            return Outcome(solids, solids.issues, (("Bases", bases), ("Solids", count)))
+            return Outcome(solids, (*solids.issues, *large), (("Bases", bases), ("Solids", count)))
 
         return work
 

@@ -50,11 +50,11 @@ class RevolutionFeature(Stage):
 
         def work() -> Outcome:
             wall = find_wall(shape, faces, strategy.wall, axis, label)
-            size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
+            large = size.judged(size.of_revolution(wall, strategy), strategy)
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
             depths = of_revolved(shape, wall, label)
             made = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)
-            return Outcome(made, wall.issues, figures)
+            return Outcome(made, (*wall.issues, *large), figures)
 
         return work
 

@@ -59,11 +59,11 @@ class SurfaceFeature(Stage):
             for substrate in substrates:
                 solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
             wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges)
-            size.refuse_absurd(size.of_wall(wall, strategy), strategy)
+            large = size.judged(size.of_wall(wall, strategy), strategy)
             depths = of_faces(shape, wall.faces, label, ground[0] if ground else None)
             wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)), depths=depths)
             kind = "patches" if isinstance(wall, PatchWall) else wall.kind
-            return Outcome(wall, wall.issues, (("WallFaces", list(wall.faces)), ("WallKind", kind)))
+            return Outcome(wall, (*wall.issues, *large), (("WallFaces", list(wall.faces)), ("WallKind", kind)))
 
         return work
 

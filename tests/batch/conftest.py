@@ -51,7 +51,9 @@ class Commands:
     def __init__(self) -> None:
         self.process: subprocess.Popen | None = None
 
-    def run(self, folder: Path, words: list[str], most_seconds: int = 0, most_bytes: int = 0) -> Ended:
+    def run(
+        self, folder: Path, words: list[str], most_seconds: int = 0, most_bytes: int = 0, patience: int = PATIENCE
+    ) -> Ended:
         """Limits of 0 are none. TimeoutError where the command does not end."""
         if self.process is None:
             self._start()
@@ -61,11 +63,11 @@ class Commands:
             asked = json.dumps([str(folder), environment, str(out), str(err), words, most_seconds, most_bytes])
             self.process.stdin.write(f"{asked}\n".encode())
             self.process.stdin.flush()
-            if not select.select([self.answer], [], [], PATIENCE)[0]:
+            if not select.select([self.answer], [], [], patience)[0]:
                 os.killpg(self.process.pid, signal.SIGKILL)
                 self.process.wait()
                 self.process = None
-                raise TimeoutError(f"{' '.join(words)} took more than {PATIENCE} s")
+                raise TimeoutError(f"{' '.join(words)} took more than {patience} s")
             status, seconds, memory = self.answer.readline().split()
             told = (stream.read_text(encoding="utf-8") for stream in (out, err))
             return Ended(int(status), *told, float(seconds), float(memory))

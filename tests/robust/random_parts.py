@@ -160,6 +160,7 @@ def bend(chance, size):
     """A piece of a torus on a block."""
     big, small = size * chance.uniform(0.3, 1.0), size * chance.uniform(0.05, 0.35)
     torus = Part.Toroid()
+    torus.MinorRadius = 1e-3  # at no time may it be more than the other
     torus.MajorRadius, torus.MinorRadius = max(big, 1.05 * small), small
     torus.Center, torus.Axis = FreeCAD.Vector(-torus.MajorRadius, 0, 0), FreeCAD.Vector(0, -1, 0)
     shape = torus.toShape(0.0, math.radians(chance.choice((30.0, 90.0, 120.0, 150.0, 170.0, chance.uniform(10.0, 175.0)))))

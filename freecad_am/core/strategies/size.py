@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How large a toolpath would be, told from wall and parameters before the work begins; absurd ones are refused.
+"""How large a toolpath would be, told from wall and parameters before the work begins: large ones are told, absurd refused.
 
 Counts are right within a third on what is round and even; where beads differ a lot they are rather too low.
 """
@@ -17,7 +17,7 @@ from ..geometry.on_hub import SolidsOnHub
 from ..geometry.profile import Array, RevolvedWall
 from ..geometry.surroundings import Body
 from ..geometry.told import at_least, count
-from ..issues import InputError
+from ..issues import NOTE, InputError, Issue
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (
     MOST_LAYERS,
@@ -34,9 +34,16 @@ if TYPE_CHECKING:
 # measured at a million, a point takes 0.3 kB with its toolpath, 0.6 kB with its joint path and what the document stores, 1.5
 # kB at the peak: these are more than 70 GB, and fifty times the largest jobs known
 MOST_POINTS = 50_000_000
+LARGE = "LARGE"
+LARGE_SECONDS, LARGE_GIGABYTES = 30.0, 1.0  # from which a job is told to be large; half of what anybody waits for untold
+GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
+
+
+# s of the processor that a point takes through all stages, measured; walls on parts march from layer to layer
+_SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 1.3e-4, SurfaceParameters: 2e-3, DevelopableParameters: 2.5e-4}
 
 
 @dataclass(frozen=True)
@@ -103,6 +110,19 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
             "TOO_MANY", cause.key, f"{cause.value:g} mm makes about {count(size.points)} points, and more than "
             f"{MOST_POINTS:,} cannot be worked with; give at least {enough:g} mm",
         )
+
+
+def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
+    """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
+    refuse_absurd(size, strategy)
+    seconds, gigabytes = size.points * _SECONDS_A_POINT[type(strategy)], size.points * GIGABYTES_A_POINT
+    if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
+        return ()
+    return (Issue(
+        NOTE, LARGE, f"about {count(size.points)} points in {count(size.layers)} layers are planned, which takes about "
+        f"{at_least(seconds / 60.0):g} min of the processor and {at_least(gigabytes):g} GB of memory; a larger "
+        "strategy.layer_height or strategy.chord_error makes them fewer",
+    ),)
 
 
 class _Cause(NamedTuple):

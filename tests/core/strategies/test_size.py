@@ -145,3 +145,20 @@ def test_large_jobs_are_not_refused():
         found = size.of_revolution(tank, strategy)
         size.refuse_absurd(found, strategy)
     assert 25e6 < found.points < size.MOST_POINTS
+
+
+@pytest.mark.parametrize(("family", "points", "told"), [
+    (RevolutionParameters, 200_000, None), (RevolutionParameters, 1_000_000, "2.2 min of the processor and 1.5 GB"),
+    (SurfaceParameters, 10_000, None), (SurfaceParameters, 60_000, "2 min of the processor and 0.09 GB"),
+    (DevelopableParameters, 100_000, None), (DevelopableParameters, 370_000, "1.6 min of the processor and 0.56 GB"),
+])
+def test_large_jobs_are_told(family, points, told):
+    found = size.judged(size.Size(180.0, points), family())
+    assert [(issue.level, issue.code) for issue in found] == ([] if told is None else [("note", "LARGE")])
+    if told:
+        assert found[0].message.startswith(f"about {points:,} points in 180 layers are planned, which takes about {told} of memory")
+
+
+def test_what_is_absurd_is_refused_and_not_told():
+    with pytest.raises(InputError, match="points"):
+        size.judged(size.Size(180.0, 2.0 * size.MOST_POINTS), RevolutionParameters())
