@@ -26,6 +26,7 @@ from tests.run_parts import ROOT, Part, run_parts, say, tell_times, watched
 GUI = ROOT / "tests" / "gui"
 WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
 HEADLESS_TIMEOUT = 2400  # s for a part without a window
+LONG_TIMEOUT = 8 * 3600  # with long tests, and where tests are named
 # the folders of parts of their own, longest first; one more part has all the rest
 FOLDERS = (("batch",), ("core/planning", "core/kinematics"), ("core/strategies", "core/filling"), ("brep", "objects"))
 # what depends on FreeCAD's version, and takes a bearable time twice: of the commands those that meet every one of its parts,
@@ -112,11 +113,12 @@ def run_headless(arguments: list[str]) -> tuple[int, str]:
     if os.environ.get("FREECAD_AM_VERSION"):
         arguments = [*arguments, f"--ignore={NOT_OF_VERSION}"]
     say("freecad-am: plain and headless tests")
-    stopped = ["timeout", "-k", "5", str(HEADLESS_TIMEOUT)] if shutil.which("timeout") else []
+    limit = LONG_TIMEOUT if any(word == "--long" or "::" in word for word in arguments) else HEADLESS_TIMEOUT
+    stopped = ["timeout", "-k", "5", str(limit)] if shutil.which("timeout") else []
     with tempfile.TemporaryDirectory() as folder:
         status, text = watched([*stopped, sys.executable, "-m", "pytest", *arguments], private_home(Path(folder)))
     if status == TOO_LONG:
-        say(f"freecad-am: the tests were stopped after {HEADLESS_TIMEOUT} s")
+        say(f"freecad-am: the tests were stopped after {limit} s")
     return status, text
 
 

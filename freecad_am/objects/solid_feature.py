@@ -57,11 +57,11 @@ class SolidFeature(Stage):
                 solid += found.bodies
                 issues += found.issues
             solids = stacked(solid, strategy, label, issues)
-            size.refuse_absurd(size.of_solids(solids, strategy), strategy)
+            large = size.judged(size.of_solids(solids, strategy), strategy)
             solids = dataclasses.replace(solids, surroundings=bodies((*ground, *fixtures)))
             base = solids.groups[0].base
             height = max(float(base.surface.distance(base.inside(body.vertices)).max()) for body in solid)
-            return Outcome(solids, solids.issues, (("Solids", len(solid)), ("Height", height)))
+            return Outcome(solids, (*solids.issues, *large), (("Solids", len(solid)), ("Height", height)))
 
         return work
 

@@ -17,7 +17,7 @@ EXAMPLES = ROOT / "resources" / "examples"
 LAYERS = {
     "hemisphere": 12, "hemisphere-on-table": 12, "intake-funnel": 14, "laval-nozzle": 14, "tube-on-pipe": 14,
     "tube-on-pipe-staubli": 14, "thruster": 30, "branched-tube-on-plate": 10, "elbow-on-block": 9, "flared-shell-on-dome": 9,
-    "half-shell-on-rod": 10, "skewed-bend": 12, "spatial-pipe-on-cone": 9, "tube-on-scanned-pipe": 14,
+    "half-shell-on-rod": 10, "skewed-bend": 12, "spatial-pipe-on-cone": 9, "bracket": 15, "tube-on-scanned-pipe": 14,
     "wide-tube-on-pipe": 14,
 }
 # fmt: on
@@ -31,6 +31,9 @@ FAMILIES = {
         "part": {"file": "boxes.brep"}, "substrate": {"file": "hub.step"},
         "strategy": {"kind": "developable", "layer_height": "4 mm", "bead_spacing": "6 mm"},
     },
+    "solid": {
+        "part": {"file": "bracket.step"}, "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "7 mm"},
+    },
 }
 
 
@@ -43,6 +46,8 @@ def write_parts(folder):
     tube = Part.makeCylinder(12.0, 40.0).Faces[0]
     tube.exportBrep(str(folder / "tube.brep"))
     Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(str(folder / "block.step"))
+    angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40))
+    angle.cut(Part.makeCylinder(8, 60, FreeCAD.Vector(32, 20, -5))).exportStep(str(folder / "bracket.step"))
     hub = Part.makeCylinder(25.0, 80.0)
     hub.exportStep(str(folder / "hub.step"))
     hub.exportStl(str(folder / "hub.stl"))

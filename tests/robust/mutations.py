@@ -14,13 +14,13 @@ from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.core.parameters.strategy import DevelopableParameters, RevolutionParameters, SurfaceParameters
+from freecad_am.core.strategies import families
 
 SECTIONS = {
     "build_direction": BuildDirectionParameters, "cell": CellParameters, "joints": JointParameters,
     "process": ProcessParameters, "program": ProgramParameters,
 }
-STRATEGIES = {"revolution": RevolutionParameters, "surface": SurfaceParameters, "developable": DevelopableParameters}
+STRATEGIES = {kind: family.parameters for kind, family in families.KINDS.items()}
 OTHER_KEYS = (
     "version", "name", "part.file", "part.object", "part.faces", "part.start_edges", "part.scale", "part.set", "fixtures",
     "substrate.file", "substrate.faces", "strategy.kind",

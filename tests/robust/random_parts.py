@@ -28,7 +28,7 @@ def write(chance, folder, machines):
     strategy = job["strategy"]
     strategy["layer_height"] = f"{size / chance.uniform(5.0, 14.0):.4g} mm"
     strategy["chord_error"] = f"{min(10.0, max(1e-5, size * 10 ** chance.uniform(-4.0, -2.0))):.4g} mm"
-    if strategy["kind"] == "developable":
+    if strategy["kind"] in FILLED:
         strategy["bead_spacing"] = f"{size / chance.uniform(5.0, 14.0):.4g} mm"
     if chance.random() < 0.5:
         sections = dict(chance.choice(machines))
@@ -252,23 +252,24 @@ def mixed(chance, size):
     for one in chosen[1:]:
         one.translate(FreeCAD.Vector(*(size * chance.choice((0.0, 0.5, 3.0)) for _ in range(3))))
     shape = chosen[0].multiFuse(chosen[1:]) if len(chosen) > 1 and chance.random() < 0.5 else Part.Compound(chosen)
-    kind = chance.choice(("revolution", "revolution", "surface", "developable"))
-    foot = None if kind == "revolution" else _foot(chance, size, 0.2 * size)
+    kind = chance.choice(("revolution", "surface", "developable", "solid", "solid", "solid"))
+    foot = None if kind in ("revolution", "solid") else _foot(chance, size, 0.2 * size)
     facets = _facets(shape)
 
     def margin(job):
-        if kind == "developable":
+        if kind in FILLED:
             return _beside_solids(job)
         return _on_wall(job) + DEFLECTION + (size if job["strategy"].get("wall") == "middle" else 0.0)
 
     def away(points):
         off = triangles.distance(points, facets)
-        return np.where(triangles.inside(points, facets), 0.0, off) if kind == "developable" else off
+        return np.where(triangles.inside(points, facets), 0.0, off) if kind in FILLED else off
 
     return {"strategy": {"kind": kind}}, shape, foot, away, margin
 
 
-KINDS = (turned, turned, tube, tube, bend, sheared, lofted, boxes_on_hub, boxes_on_hub, mixed)
+FILLED = ("developable", "solid")
+KINDS = (turned, turned, tube, tube, bend, sheared, lofted, boxes_on_hub, boxes_on_hub, mixed, mixed)
 
 
 def job_length(value):

@@ -50,7 +50,7 @@ def off(path, points):
     around = triangles_of(str(file.resolve()))
     away = triangles.distance(points, around)
     chord = length(strategy.get("chord_error", 0.01))
-    if strategy.get("kind") == "developable":
+    if strategy.get("kind") in ("developable", "solid"):
         away = np.where(triangles.inside(points, around), 0.0, away)
         widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))
         return away.max() - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)

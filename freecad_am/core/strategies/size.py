@@ -40,10 +40,8 @@ GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
-
-
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to layer
-_SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 1.3e-4, SurfaceParameters: 2e-3, DevelopableParameters: 2.5e-4}
+_SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 1.3e-4, SurfaceParameters: 2e-3, FilledParameters: 2.5e-4}
 
 
 @dataclass(frozen=True)
@@ -115,7 +113,8 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
 def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     """A note LARGE where planning takes more than LARGE_SECONDS or LARGE_GIGABYTES. Raises InputError as `refuse_absurd`."""
     refuse_absurd(size, strategy)
-    seconds, gigabytes = size.points * _SECONDS_A_POINT[type(strategy)], size.points * GIGABYTES_A_POINT
+    a_point = next(seconds for kind, seconds in _SECONDS_A_POINT.items() if isinstance(strategy, kind))
+    seconds, gigabytes = size.points * a_point, size.points * GIGABYTES_A_POINT
     if seconds < LARGE_SECONDS and gigabytes < LARGE_GIGABYTES:
         return ()
     return (Issue(

@@ -156,7 +156,7 @@ def test_large_jobs_are_told(family, points, told):
     found = size.judged(size.Size(180.0, points), family())
     assert [(issue.level, issue.code) for issue in found] == ([] if told is None else [("note", "LARGE")])
     if told:
-        assert found[0].message.startswith(f"about {points:,} points in 180 layers are planned, which takes about {told} of memory")
+        assert found[0].message.startswith(f"about {points:,} points in 180 layers are planned, which takes about {told} of")
 
 
 def test_what_is_absurd_is_refused_and_not_told():
