@@ -5267,6 +5267,11 @@
         <translation>environ {0} des {1} cm3 de cordons sont à côté de {2}, qui y a {3} mm d’épaisseur, et les cordons ont {4} mm de large ; donnez process.bead_width, ou enlevez-les par usinage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>about {0} points in {1} layers are planned, which takes about {2} min of the processor and {3} GB of memory; a larger strategy.layer_height or strategy.chord_error makes them fewer</source>
+        <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>acceleration</source>
         <translation>accélération</translation>
