@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files from outside, read in a copy of this process that may crash, with limits of time and memory.
+"""Files from outside, read in a process that may crash, with limits of time and memory.
 
-FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. The copy is made by fork, which
-takes milliseconds, and hands over what it has read in memory: shapes in the kernel's own binary form, where that gives them
-back to the last digit; else they are read once more, here. Where there is no fork, and beside a window, whose threads it
-would not copy, files are read here alone.
+FreeCAD and the geometry kernel crash on some damaged files, and on others read without end. Without a window the process is
+a copy of this one, made by fork in milliseconds. Beside a window, whose threads a fork would not copy, it is one of
+`kernel_process`, which is started once, and ended as soon as whoever waits for it is cancelled. What was read comes back as
+`answers` has it. Where there is neither, files are read here.
 """
 
 from __future__ import annotations
 
 import contextlib
-import io
 import os
-import pickle
-import resource
 import select
 import signal
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import FreeCAD
-import Mesh
-import Part
 
 from ..core.issues import InputError
+from . import answers, kernel_process
+
+if sys.platform != "win32":
+    import resource
 
 T = TypeVar("T")
 
@@ -33,29 +33,80 @@ SECONDS, SECONDS_A_MB = 4.0, 10.0  # of the processor, for any file and for each
 MEMORY, MEMORY_A_MB = 600.0, 100.0  # MB, likewise, beside what this process has
 LONGER = 10.0  # times as long on the clock: the processor may have others to serve, but a file that keeps us waiting ends
 MB = 1e6
+NO_MEMORY = 77  # exit status of a copy that has come to its limit
+CRASHED = 1  # or any other
+
+_is_apart = False  # whether this is such a process
 
 
 def apart(read: Callable[..., T], path: str | os.PathLike[str], *rest: Any, patience: float = 1.0) -> T:
-    """What `read(path, *rest)` returns or raises: a shape, a mesh, what pickles. patience: times the limit of time.
+    """What `read(path, *rest)` returns or raises: a shape, a mesh, what pickles. `read` is a function of a module. patience:
+    times the limit of time.
 
     Raises InputError BAD_FILE, naming the file, where reading crashes or takes more time or memory than a file of its size
     may.
     """
-    if FreeCAD.GuiUp or not sys.platform.startswith("linux"):
+    if _is_apart or not (FreeCAD.GuiUp or sys.platform.startswith("linux")):
         return read(path, *rest)
     size = _size(path) / MB
     seconds, memory = patience * (SECONDS + SECONDS_A_MB * size), patience**0.5 * (MEMORY + MEMORY_A_MB * size)
     where = os.path.basename(os.fspath(path)) or os.fspath(path)
+    with _beside_a_window() if FreeCAD.GuiUp else _in_memory() as (told, geometry):
+        if FreeCAD.GuiUp:
+            question = (told, geometry, read.__module__, read.__qualname__, path, rest, seconds, memory)
+            how = kernel_process.limited(answer, question, LONGER * seconds)
+            if how is None:  # there is no other process
+                return read(path, *rest)
+        else:
+            how = _forked(lambda: answers.tell(told, geometry, read, path, rest), seconds, memory)
+        ended, used = how
+        if ended == 0:
+            found = answers.hear(told, geometry)
+            return read(path, *rest) if isinstance(found, str) and found == answers.AGAIN else found
+        raise _refused(where, ended, used, seconds, memory)
+
+
+@contextlib.contextmanager
+def _in_memory() -> Iterator[tuple[str, str]]:
+    """The paths of two files that only this process and its copies have."""
     told, geometry = os.memfd_create("told"), os.memfd_create("geometry")
     try:
-        ended, used = _forked(lambda: _tell(told, geometry, read, path, rest), seconds, memory)
-        if ended == 0:
-            found = _heard(told, geometry)
-            return read(path, *rest) if isinstance(found, str) and found == _AGAIN else found
-        raise _refused(where, ended, used, seconds, memory)
+        yield f"/proc/self/fd/{told}", f"/proc/self/fd/{geometry}"
     finally:
         os.close(told)
         os.close(geometry)
+
+
+@contextlib.contextmanager
+def _beside_a_window() -> Iterator[tuple[str, str]]:
+    """The paths of two files in a folder of their own."""
+    with tempfile.TemporaryDirectory(prefix="reading_") as folder:
+        yield os.path.join(folder, "told"), os.path.join(folder, "geometry")
+
+
+def answer(
+    told: str, geometry: str, module: str, function: str, path: Any, rest: tuple[Any, ...], seconds: float, memory: float
+) -> None:
+    """In a process of `kernel_process`: read within limits, and tell."""
+    global _is_apart
+    import importlib
+
+    _is_apart = True
+    read = getattr(importlib.import_module(module), function)
+    if sys.platform == "win32":
+        answers.tell(told, geometry, read, path, rest)
+        return
+    _take_no_signals()
+    spent = resource.getrusage(resource.RUSAGE_SELF)
+    with contextlib.ExitStack() as before:
+        limits = [(resource.RLIMIT_CPU, round(spent.ru_utime + spent.ru_stime + seconds)), (resource.RLIMIT_CORE, 0)]
+        if sys.platform.startswith("linux"):
+            limits.append((resource.RLIMIT_AS, _pages(0) + round(memory * MB)))
+        for kind, value in limits:
+            soft, hard = resource.getrlimit(kind)
+            before.callback(resource.setrlimit, kind, (soft, hard))
+            resource.setrlimit(kind, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
+        answers.tell(told, geometry, read, path, rest)
 
 
 def _size(path: str | os.PathLike[str]) -> float:
@@ -93,10 +144,11 @@ def _forked(work: Callable[[], None], seconds: float, memory: float) -> tuple[in
 
 def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
     """In the copy: do the work and end."""
-    status = 1
+    global _is_apart
+    _is_apart = True
+    status = CRASHED
     try:
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
-            signal.signal(number, signal.SIG_DFL)
+        _take_no_signals()
         _end_with_parent()
         now = _pages(0)
         _limit(resource.RLIMIT_CORE, 0)
@@ -107,12 +159,15 @@ def _work(work: Callable[[], None], seconds: float, memory: float) -> None:
     except MemoryError:
         status = NO_MEMORY
     except BaseException:
-        status = 1
+        status = CRASHED
     finally:
         os._exit(status)
 
 
-NO_MEMORY = 77  # exit status of a copy that has come to its limit
+def _take_no_signals() -> None:
+    """A fault of memory ends the process: FreeCAD and the kernel would go on with what is broken."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGXCPU):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def _pages(column: int) -> int:
@@ -131,77 +186,6 @@ def _end_with_parent() -> None:
 
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
-
-
-class _Inexact(Exception):
-    """A shape is not quite the same in the binary form: IGES may give a zero the other sign."""
-
-
-class _Pickler(pickle.Pickler):
-    """Writes shapes and meshes to a file of their own."""
-
-    def __init__(self, stream: Any, geometry: int) -> None:
-        super().__init__(stream, protocol=pickle.HIGHEST_PROTOCOL)
-        self.geometry = geometry
-
-    def persistent_id(self, value: Any) -> str | None:
-        if isinstance(value, Part.Shape):
-            path = f"/proc/self/fd/{self.geometry}"
-            value.exportBinary(path)
-            again = Part.Shape()
-            again.importBinary(path)
-            if again.exportBrepToString() != value.exportBrepToString():
-                raise _Inexact
-            return "shape"
-        if isinstance(value, Mesh.Mesh):
-            value.write(f"/proc/self/fd/{self.geometry}", "BMS")
-            return "mesh"
-        return None
-
-
-class _Unpickler(pickle.Unpickler):
-    def __init__(self, stream: Any, geometry: int) -> None:
-        super().__init__(stream)
-        self.geometry = geometry
-
-    def persistent_load(self, kind: str) -> Any:
-        if kind == "shape":
-            shape = Part.Shape()
-            shape.importBinary(f"/proc/self/fd/{self.geometry}")
-            return shape
-        mesh = Mesh.Mesh()
-        with open(f"/proc/self/fd/{self.geometry}", "rb") as stream:
-            mesh.read(stream, "BMS")
-        return mesh
-
-
-_AGAIN = "it is sound: read it again, here"
-
-
-def _tell(told: int, geometry: int, read: Callable[..., Any], path: Any, rest: tuple[Any, ...]) -> None:
-    """In the copy: read and hand over."""
-    try:
-        answer: Any = (True, read(path, *rest))
-    except InputError as error:
-        answer = (False, (error.code, error.where, error.message))
-    text = io.BytesIO()
-    try:
-        _Pickler(text, geometry).dump(answer)
-    except _Inexact:
-        text = io.BytesIO(pickle.dumps((True, _AGAIN)))
-    data = text.getbuffer()
-    while data:
-        data = data[os.write(told, data):]
-
-
-def _heard(told: int, geometry: int) -> Any:
-    """What the copy has told; raises its InputError."""
-    os.lseek(told, 0, os.SEEK_SET)
-    with open(told, "rb", closefd=False) as stream:
-        sound, answer = _Unpickler(stream, geometry).load()
-    if sound:
-        return answer
-    raise InputError(*answer)
 
 
 def _refused(where: str, ended: int, used: float, seconds: float, memory: float) -> InputError:

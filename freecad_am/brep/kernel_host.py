@@ -29,9 +29,11 @@ def serve(asked: BinaryIO, told: BinaryIO) -> None:
     while True:
         module, function, path, rest = _heard(asked)
         try:
-            shape = Part.Shape()
-            shape.importBinary(path)
-            answer = True, getattr(importlib.import_module(module), function)(shape, *rest)
+            given = ()
+            if path:
+                given = (Part.Shape(),)
+                given[0].importBinary(path)
+            answer = True, getattr(importlib.import_module(module), function)(*given, *rest)
         except Exception as error:
             answer = False, _portable(error)
         _tell(told, answer)

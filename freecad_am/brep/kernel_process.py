@@ -6,12 +6,13 @@ such a call. So the threads that work beside a window have it made elsewhere; th
 it itself. Both come to the same numbers, bit by bit: shapes travel in the kernel's own binary form.
 
 Protocol: pickles both ways. First the module search path is sent, and the version of FreeCAD comes back. Then
-(module, function, file of the shape, further arguments) gives (True, value) or (False, error).
+(module, function, file of the shape or '', further arguments) gives (True, value) or (False, error).
 """
 
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import pickle
 import queue
@@ -34,12 +35,15 @@ T = TypeVar("T")
 
 HOST = Path(__file__).with_name("kernel_host.py")
 LOOK_EVERY = 0.05  # s; how soon a thread that waits is ended
+FAILED = 1  # of one that ends of itself, but not as it should
+ENDED_BY_LIMIT = -24  # of SIGXCPU
 ENDED_BY_SYSTEM = -9  # what Popen tells of SIGKILL, which Linux gives where memory does not suffice
 START = 60.0  # s that a process may take to be there
 QUICK = ("Part::GeomPlane", "Part::GeomCylinder", "Part::GeomCone")
 FEW = 24  # faces, of such surfaces alone: sooner divided than sent
 
 _idle: list[_Process] = []
+_readers: list[_Process] = []  # those that have read files from outside
 _unable = False
 
 
@@ -52,7 +56,7 @@ def beside(function: Callable[..., T], shape: Any, *rest: Any) -> T:
         return function(shape, *rest)
     with _written(shape) as path:
         for _ in range(2):
-            process = _free() or _started()
+            process = _free(_idle) or _started()
             if process is None:
                 return function(shape, *rest)
             try:
@@ -75,10 +79,44 @@ def beside(function: Callable[..., T], shape: Any, *rest: Any) -> T:
     return function(shape, *rest)
 
 
-def _free() -> _Process | None:
+def limited(function: Callable[..., None], arguments: tuple[Any, ...], longest: float) -> tuple[int, float] | None:
+    """How the process ended in which `function(*arguments)`, which limits itself, was called, as Popen tells it: 0 where it
+    came back; and the memory, MB, that it took for it. None where there can be no process.
+
+    longest: s on the clock, after which it is ended, as for its time on the processor.
+    """
+    while True:
+        used = _free(_readers)
+        process = used or _started()
+        if process is None:
+            return None
+        try:
+            process.ask((function.__module__, function.__qualname__, "", arguments))
+            sound, answer = process.answer(longest)
+        except _Left:
+            process.end()
+            if used is None:
+                return FAILED, process.most
+            continue  # it had nothing to do for long
+        except queue.Empty:
+            process.end()
+            return ENDED_BY_LIMIT, process.most
+        except (_Crashed, MemoryError):
+            return process.popen.wait(), process.most
+        except BaseException:  # who asked is cancelled
+            process.end()
+            raise
+        if isinstance(answer, MemoryError):
+            process.end()
+            return ENDED_BY_SYSTEM, math.inf
+        _readers.append(process)
+        return 0 if sound else FAILED, process.most
+
+
+def _free(idle: list[_Process]) -> _Process | None:
     """A process that has nothing to do, None where there is none."""
     try:
-        return _idle.pop()
+        return idle.pop()
     except IndexError:  # asked beforehand, another thread might take the last one in between
         return None
 
@@ -101,6 +139,10 @@ def _written(shape: Any) -> Iterator[str]:
             os.remove(path)
 
 
+class _Crashed(RuntimeError):
+    """The process is not there any more, and was at work."""
+
+
 class _Left(Exception):
     """The process is not there any more, and was not at work."""
 
@@ -118,6 +160,7 @@ class _Process:
         )
         self.kill = weakref.finalize(self, _kill, self.popen)
         self.told: queue.Queue[Any] = queue.Queue()
+        self.most = 0.0  # MB that the last question took, as far as it was seen
         threading.Thread(target=_listen, args=(self.popen.stdout, self.told), name="Kernel process", daemon=True).start()
 
     def ask(self, question: Any) -> None:
@@ -133,12 +176,13 @@ class _Process:
     def answer(self, longest: float = float("inf")) -> Any:
         """Wait for its answer. Raises _Left where it went before it was asked, RuntimeError where it crashed, MemoryError
         where the system ended it; queue.Empty after `longest` s."""
-        waited = 0.0
+        waited, before, self.most = 0.0, _memory_of(self.popen.pid), 0.0
         while waited < longest:
             try:
                 told = self.told.get(timeout=LOOK_EVERY)
             except queue.Empty:
                 waited += LOOK_EVERY
+                self.most = max(self.most, _memory_of(self.popen.pid) - before)
                 continue
             if told is not None:
                 return told[0]
@@ -147,7 +191,7 @@ class _Process:
                 raise _Left
             if code == ENDED_BY_SYSTEM:
                 raise MemoryError
-            raise RuntimeError("it crashed")
+            raise _Crashed("it crashed")
         raise queue.Empty
 
     def end(self) -> None:
@@ -176,6 +220,15 @@ def _without_signal() -> Iterator[None]:
             if signal.SIGPIPE in signal.sigpending():
                 signal.sigwait({signal.SIGPIPE})
             signal.pthread_sigmask(signal.SIG_SETMASK, held)
+
+
+def _memory_of(pid: int) -> float:
+    """MB of a process, 0 where that is not told."""
+    try:
+        with open(f"/proc/{pid}/statm", encoding="ascii") as stream:
+            return int(stream.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+    except (OSError, ValueError, IndexError):
+        return 0.0
 
 
 def _kill(popen: Any) -> None:

@@ -79,7 +79,7 @@ class Tool:
 
 # In the order of the work; between groups stands a separator. A tool that is in none comes last.
 GROUPS = (
-    ("NewJob",),
+    ("OpenPart", "NewJob"),
     ("Cell", "Feature", "WallOnPart", "SolidsOnHub"),
     ("Toolpath", "JointPath", "SpinMap"),
     ("Path", "Simulate"),
@@ -91,6 +91,11 @@ GROUPS = (
 def register() -> list[str]:
     """Add all commands to FreeCAD; their names in the order of the toolbar, with separators."""
     tools = {
+        "OpenPart": Tool(
+            "open_part", marked("Open Part…"),
+            marked("Opens a part or mesh from a file, which may be damaged: it is read in a process of its own"), _open_part,
+            needs.nothing,
+        ),
         "NewJob": Tool(
             "new_job", marked("New Job…"), marked("Makes all stages for the selected shape, from cell to program"), _new_job,
             needs.part,
@@ -166,6 +171,12 @@ def _in_order(names: list[str]) -> list[str]:
         there = [_PREFIX + name for name in group if name in names]
         found += ["Separator"] * bool(found and there) + there
     return found
+
+
+def _open_part() -> None:
+    from . import open_part
+
+    open_part.ask()
 
 
 def _new_job() -> None:

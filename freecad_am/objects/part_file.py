@@ -12,7 +12,7 @@ from ..brep.apart import apart
 from ..brep.read import MESHES, read_mesh, read_shape
 from ..core.geometry.file_unit import refuse_scale
 from ..core.issues import InputError
-from . import document_file
+from . import document_file, hooks
 from .feature import global_shape
 
 
@@ -25,15 +25,15 @@ def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[An
     stem, extension = os.path.splitext(os.path.basename(path))
     refuse_scale(scale, path, "scale")
     if extension.lower() in MESHES:
-        return read_mesh(path, scale), stem
+        return hooks.carry_out(lambda: read_mesh(path, scale), stem), stem
     if extension.lower() != ".fcstd":
-        return read_shape(path), stem
+        return hooks.carry_out(lambda: read_shape(path), stem), stem
     if not os.path.isfile(path):
         raise InputError("NO_FILE", path, "there is no such file; check the path")
     for document in App.listDocuments().values():
         if document.FileName and os.path.realpath(document.FileName) == os.path.realpath(path):
             return _shape_in(document, path, object_name)  # open already: it is the user's, and stays open
-    return apart(_shape_of_file, path, object_name)
+    return hooks.carry_out(lambda: apart(_shape_of_file, path, object_name), stem)
 
 
 def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Parts from files: damaged ones that crash the kernel are refused, and FreeCAD's window goes on."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import FreeCAD as App
+import pytest
+
+from freecad_am import api
+from freecad_am.brep import apart, kernel_process
+from freecad_am.brep.read import read_shape
+from freecad_am.core.issues import InputError
+from freecad_am.objects.progress import Cancelled
+from tests.robust import damage
+
+pytestmark = pytest.mark.gui
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "resources" / "examples"
+
+
+# what the other process is asked for; it imports this file
+
+def waiting(path, *_):
+    Path(path).with_suffix(".pid").write_text(str(os.getpid()), encoding="utf-8")
+    time.sleep(3600)
+
+
+def crashing(path):
+    os.abort()
+
+
+def ending(path):
+    os._exit(0)
+
+
+def endless(path):
+    while True:
+        pass
+
+
+def growing(path):
+    held = []
+    while True:
+        held.append(bytearray(10_000_000))
+
+
+@pytest.fixture(autouse=True)
+def processes():
+    yield
+    while kernel_process._readers:
+        kernel_process._readers.pop().end()
+
+
+@pytest.fixture
+def chosen(person, monkeypatch):
+    """Chooses a file in the dialog of the tool."""
+
+    def choose(path):
+        monkeypatch.setattr(person.widgets.QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+        person.click("RoboticAM_OpenPart")
+
+    return choose
+
+
+@pytest.fixture
+def crash(tmp_path):
+    """A STEP file that is known to crash what reads it: it does so to a FreeCAD of its own."""
+    whole = (EXAMPLES / "hemisphere.step").read_bytes()
+    path = tmp_path / "damaged.step"
+    text = f"import sys; sys.path[:] = {sys.path!r}; import FreeCAD, Part; Part.Shape().read({str(path)!r}); print('whole')"
+    for seed in range(20):
+        path.write_bytes(damage.damaged(whole, "references", seed))
+        python = kernel_process._pythons()[0]
+        ended = subprocess.run([python, "-c", text], capture_output=True, timeout=60, check=False)
+        if ended.returncode and b"whole" not in ended.stdout and b"Traceback" not in ended.stderr:
+            return path
+    pytest.skip("this kernel crashes on none of them")
+
+
+def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(person, chosen, crash, monkeypatch):
+    told = []
+    monkeypatch.setattr(person.widgets.QMessageBox, "warning", lambda *given: told.append(given[-1]))
+    chosen(crash)
+    assert len(told) == 1 and told[0].startswith("damaged.step: it is damaged: FreeCAD crashes on it"), told
+    assert not App.listDocuments()  # the one that was made for it is gone
+    chosen(EXAMPLES / "hemisphere.step")  # and FreeCAD is there
+    part = App.ActiveDocument.Objects[0]
+    assert len(told) == 1 and part.Label == "hemisphere" and part.Shape.isValid()
+    assert [obj.Name for obj in person.gui.Selection.getSelection()] == [part.Name]
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    person.until(lambda: person.field(panel, "Source").text() == "hemisphere", "the part to be taken", 10)
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path):
+    import MeshPart
+    import Part
+
+    here = Part.Shape()
+    here.read(str(EXAMPLES / "hemisphere.step"))
+    document = App.newDocument("Files")
+    assert read_shape(EXAMPLES / "hemisphere.step").exportBrepToString() == here.exportBrepToString()  # to the last digit
+    assert api.open_part(document, str(EXAMPLES / "hemisphere.step")).Shape.Volume == here.Volume
+    MeshPart.meshFromShape(here, 1.0).write(str(tmp_path / "bowl.stl"))
+    assert api.open_part(document, str(tmp_path / "bowl.stl"), scale=2.0).Mesh.CountFacets > 10
+    document.saveAs(str(tmp_path / "both.FCStd"))
+    App.closeDocument(document.Name)
+    document = App.newDocument("Files")
+    again = api.open_part(document, str(tmp_path / "both.FCStd"), "hemisphere")
+    assert again.Shape.Volume == pytest.approx(here.Volume, rel=1e-12) and len(App.listDocuments()) == 1
+
+
+@pytest.mark.parametrize(("read", "says"), [
+    (crashing, "crashes"), (ending, "crashes"), (endless, "more than 1 s of the processor"),
+    (growing, "more than 100 MB of memory"), (waiting, "more than 1 s of the processor"),
+])  # fmt: skip
+def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, says):
+    monkeypatch.setattr(apart, "SECONDS", 1.0)
+    monkeypatch.setattr(apart, "MEMORY", 100.0)
+    monkeypatch.setattr(apart, "LONGER", 2.0 if read is waiting else 100.0)
+    with pytest.raises(InputError) as told:
+        apart.apart(read, tmp_path / "part.step")
+    assert (told.value.code, told.value.where) == ("BAD_FILE", "part.step") and says in told.value.message
+
+
+def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(person, monkeypatch, tmp_path):
+    from freecad_am.brep import read
+
+    monkeypatch.setattr(read, "_shape", waiting)
+    part = tmp_path / "long.step"
+    part.write_text("x", encoding="utf-8")
+    document = App.newDocument("Files")
+
+    def cancel():
+        box = person.window.findChild(person.widgets.QProgressDialog, "RoboticAM_Progress")
+        if box is not None and part.with_suffix(".pid").exists():
+            box.findChild(person.widgets.QPushButton, "cancel").click()
+            timer.stop()
+
+    timer = person.core.QTimer()
+    timer.timeout.connect(cancel)
+    timer.start(50)
+    person.watch.awaited = (person.widgets.QProgressDialog,)
+    with pytest.raises(Cancelled):
+        api.open_part(document, str(part))
+    person.watch.awaited = ()
+    pid = int(part.with_suffix(".pid").read_text())
+    person.until(lambda: not Path(f"/proc/{pid}").exists(), "the process to end", 10)
+    assert not document.Objects
