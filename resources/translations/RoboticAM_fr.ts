@@ -3187,6 +3187,21 @@
         <translation>Une pose est celle des zéros en série, où la commande montre {}.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Open Part…</source>
+        <translation>Ouvrir une pièce…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/open_part.py"/>
+        <source>Open part</source>
+        <translation>Ouvrir une pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Opens a part or mesh from a file, which may be damaged: it is read in a process of its own</source>
+        <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/whats_this.py"/>
         <source>Opens the pages of the tools</source>
         <translation>Ouvre les pages des outils</translation>
@@ -3240,6 +3255,11 @@
         <location filename="../../freecad_am/gui/job_panel.py"/>
         <source>Part of revolution</source>
         <translation>Pièce de révolution</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/open_part.py"/>
+        <source>Parts and meshes ({})</source>
+        <translation>Pièces et maillages ({})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -10661,6 +10681,19 @@
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>New Machine…</source>
         <translation>Nouvelle machine…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_OpenPart</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Open Part…</source>
+        <translation>Ouvrir une pièce…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Opens a part or mesh from a file, which may be damaged: it is read in a process of its own</source>
+        <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
     </message>
 </context>
 <context>
