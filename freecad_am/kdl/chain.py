@@ -57,16 +57,18 @@ class KdlArm:
 
     def forward(self, q: ArrayLike) -> Array:
         """Flange poses (n, 4, 4) of joint angles `q` (n, axes)."""
-        seen = np.empty((len(np.asarray(q)), 7))
+        seen: list[float] = []
         frame, angles, solve = self.kdl.Frame(), self.kdl.JntArray(self.axes), self._forward.JntToCart
         # a quaternion is one call where a matrix is nine: these calls are most of the time of a read-back
-        for row, values in enumerate(np.asarray(q, float).tolist()):
+        for values in np.asarray(q, float).tolist():
             for axis, value in enumerate(values):
                 angles[axis] = value
             solve(angles, frame)
             origin = frame.p
-            seen[row] = (origin.x(), origin.y(), origin.z(), *frame.M.GetQuaternion())
-        return frames.pose(_rotations(seen[:, 3:]), seen[:, :3])
+            seen += origin.x(), origin.y(), origin.z()
+            seen += frame.M.GetQuaternion()
+        found = np.array(seen).reshape(-1, 7)
+        return frames.pose(_rotations(found[:, 3:]), found[:, :3])
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Geometric Jacobians (n, 6, axes) at the flange's origin in base_link: rows velocity, angular velocity."""

@@ -11,7 +11,8 @@ import dataclasses
 import re
 from array import array
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, groupby
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +24,15 @@ Array = NDArray[np.float64]
 
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
 _TITLE = 1000  # bytes that hold the first line
-_SECONDS = {"sec": 1.0, "msec": 0.001}
+# what a unit of a move says: duration s, speed mm/s, share
+_TOLD = {
+    "sec": (1.0, np.nan, np.nan), "msec": (0.001, np.nan, np.nan), "mm/sec": (np.nan, 1.0, np.nan),
+    "%": (np.nan, np.nan, 0.01),
+}
+_MOST_CNT = 100.0
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
-    r"([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+))$"
+    r" *\d*: *([JL]) P\[(\d+)(?::[^\]]*)?\] ?(\d*\.?\d+)(%|msec|sec|mm/sec) ?(?:(FINE)|CNT ?(\d+)) *; *$"
 )
 _OUTPUT = re.compile(r"DO\[(\d+)(?::[^\]]*)?\]=(ON|OFF)$")
 _CALL = re.compile(r"CALL (\w+)$")
@@ -53,12 +59,24 @@ _CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s
 _POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
 
 
+_Move = tuple[str | Any, ...]  # letter, position, number, unit, FINE, CNT
+
+
+class _Instruction(NamedTuple):
+    """An instruction and the number of its line; or moves that follow each other, and those of theirs."""
+
+    number: int
+    text: str
+    moves: list[_Move]
+    numbers: list[int]
+
+
 @dataclass
 class _Listing:
-    """One file: its instructions with their line numbers, and its positions."""
+    """One file: its instructions and its positions."""
 
     file: str
-    instructions: list[tuple[int, str]]
+    instructions: list[_Instruction]
     index: dict[int, int]
     values: Array
     configuration: list[tuple[str, ...]]
@@ -185,14 +203,22 @@ def _listing(file: str, content: bytes) -> _Listing:
     if -1 in marks or marks != sorted(marks):
         raise _unreadable(file, _NO_LISTING)
     start, positions, end = marks
-    instructions = []
+    instructions: list[_Instruction] = []
+    moves: list[_Move] = []
     for number, line in enumerate(lines[start + 1 : positions], start + 2):
+        if move := _MOTION.match(line):
+            if not moves:
+                instructions.append(_Instruction(number, "", moves, []))
+            instructions[-1].numbers.append(number)
+            moves.append(move.groups())
+            continue
         if not line.strip():
             continue
+        moves = []
         statement = _LINE.match(line)
         if statement is None:
             raise _unreadable(f"{file} line {number}", f"{line.strip()!r} is no instruction")
-        instructions.append((number, statement[1].strip()))
+        instructions.append(_Instruction(number, statement[1].strip(), [], []))
     records = "\n".join(lines[positions + 1 : end])
     starts = _RECORD_START.findall(records)
     found = _JOINTS.findall(records)
@@ -206,10 +232,10 @@ def _listing(file: str, content: bytes) -> _Listing:
     index = {int(record[0]): row for row, record in enumerate(found)}
     if len(index) < len(found):
         raise _unreadable(file, "a position is recorded twice")
-    texts = [record[-6:] for record in found]
-    decimals = min(map(len, _DECIMALS.findall(" ".join(chain.from_iterable(texts)))), default=0)
+    texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
+    decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
     return _Listing(
-        file, instructions, index, np.array(texts, dtype=np.float64).reshape(-1, 6),
+        file, instructions, index, np.fromstring(texts, sep=" ").reshape(-1, 6),
         [record[3:-6] for record in found], cartesian, [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals,
     )
 
@@ -219,9 +245,9 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
     if name in callers:
         raise _unreadable(files[name][0], "it calls itself")
     listing = _listing(*files[name])
-    for position, (number, statement) in enumerate(listing.instructions):
-        if motion := _MOTION.match(statement):
-            _move(listing, motion, run, number)
+    for position, (number, statement, moves, numbers) in enumerate(listing.instructions):
+        if numbers:
+            _move(listing, numbers, moves, run)
         elif output := _OUTPUT.match(statement):
             if run.output not in ("", output[1]):
                 raise _unreadable(f"{listing.file} line {number}", "a second output is switched")
@@ -252,29 +278,48 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
     run.take(listing)
 
 
-def _move(listing: _Listing, motion: re.Match[str], run: _Run, number: int) -> None:
-    letter, point, value, unit, fine, corner = motion.groups()
-    row, straight = listing.index.get(int(point)), letter == "L"
-    if row is None:
+def _move(listing: _Listing, numbers: list[int], moves: list[_Move], run: _Run) -> None:
+    """Carry out moves that follow each other, on the lines of these numbers, all of them column by column."""
+    letters, points, values, units, fine, corners = zip(*moves)
+    rows = [listing.index.get(int(point), -1) for point in points]
+    sound = {("J", unit) for unit in _TOLD if unit != "mm/sec"} | {("L", unit) for unit in _TOLD if unit != "%"}
+    if (
+        -1 in rows or not {*zip(letters, units)} <= sound or ("L" in letters and not listing.cartesian)
+        or (run.cartesian != listing.cartesian and run.duration)
+        or any(float(corner) > _MOST_CNT for corner in {*corners} - {None})
+    ):
+        for number, move in zip(numbers, moves):
+            _refuse(listing, move, run, number)
+    run.cartesian = listing.cartesian
+    done = 0
+    for frames, same in groupby([listing.frames[row] for row in rows]):
+        count = sum(1 for _ in same)
+        if frames != run.recorded:
+            _select(listing, rows[done], run, numbers[done])
+        run.user_frame.extend([run.numbers[0]] * count)
+        run.tool_frame.extend([run.numbers[1]] * count)
+        done += count
+    run.pending += rows
+    told = np.array([float(value) for value in values])[:, None] * np.array([_TOLD[unit] for unit in units])
+    for column, numbered in zip((run.duration, run.speed, run.share), told.T):
+        column.frombytes(numbered.tobytes())
+    run.deposit += bytes([run.on]) * len(moves)
+    run.linear += bytes([letter == "L" for letter in letters])
+    run.blend.extend([np.nan if stops else float(corner) for stops, corner in zip(fine, corners)])
+
+
+def _refuse(listing: _Listing, move: _Move, run: _Run, number: int) -> None:
+    """InputError for what cannot be understood of a move."""
+    letter, point, _, unit, _, corner = move
+    straight = letter == "L"
+    if int(point) not in listing.index:
         raise _unreadable(_at(listing, number), f"P[{point}] is not recorded")
     if run.cartesian != listing.cartesian and run.duration:
         raise _unreadable(_at(listing, number), "joint and Cartesian positions are mixed")
     if straight and not listing.cartesian:
         raise _unreadable(_at(listing, number), "a position is moved to in another way than it is recorded")
-    if (unit == ("%" if straight else "mm/sec")) or (corner and float(corner) > 100.0):
+    if (unit == ("%" if straight else "mm/sec")) or (corner and float(corner) > _MOST_CNT):
         raise _unreadable(_at(listing, number), f"{unit} or CNT{corner} is not understood here")
-    if listing.frames[row] != run.recorded:
-        _select(listing, row, run, number)
-    run.cartesian, told = listing.cartesian, float(value)
-    run.pending.append(row)
-    run.duration.append(told * _SECONDS.get(unit, np.nan))
-    run.speed.append(told if unit == "mm/sec" else np.nan)
-    run.share.append(0.01 * told if unit == "%" else np.nan)
-    run.deposit.append(run.on)
-    run.linear.append(straight)
-    run.blend.append(np.nan if fine else float(corner))
-    run.user_frame.append(run.numbers[0])
-    run.tool_frame.append(run.numbers[1])
 
 
 def _select(listing: _Listing, row: int, run: _Run, number: int) -> None:

@@ -47,21 +47,24 @@ class Obstacles:
         self.beside = None if beside is None else beside[order]
         self._sample = np.ascontiguousarray(self.corners[:, 0])
         self._sizes = tree.sizes(len(corners))
-        self._levels = [self._volumes(size) for size in self._sizes]
+        each = [self.corners[:, k] for k in range(corners.shape[1])]
+        low, high = (np.array(bound.reduce(each)) for bound in (np.minimum, np.maximum))
+        self._levels = [self._volumes(size, low, high) for size in self._sizes]
         if corners.shape[1] == 3:
             normal = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
             size = np.linalg.norm(normal, axis=1)
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
-    def _volumes(self, size: int) -> _Level:
-        """What bounds so many obstacles each."""
+    def _volumes(self, size: int, low: Array, high: Array) -> _Level:
+        """What bounds so many obstacles each, of which low and high (m, 3) are the boxes."""
         starts = np.arange(0, len(self.corners), size)
         if not len(starts):
             return _Level(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))
-        low = np.minimum.reduceat(self.corners.min(axis=1), starts)
-        high = np.maximum.reduceat(self.corners.max(axis=1), starts)
+        low, high = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
         centre = 0.5 * (low + high)
-        away = np.linalg.norm(self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None], axis=2).max(axis=1)
+        apart = self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None]
+        squared = np.einsum("ijk,ijk->ij", apart, apart)
+        away = np.sqrt(np.maximum.reduce([squared[:, k] for k in range(squared.shape[1])]))
         round_ = np.zeros(len(starts))
         if self.radius is not None:
             away = away + self.radius

@@ -28,7 +28,8 @@ def packed(points: Array) -> Index:
         mine = order[low:high]
         some = points[mine]
         cut = -(-(high - low) // ball) // 2 * ball
-        order[low:high] = mine[np.argpartition(some[:, np.argmax(np.ptp(some, axis=0))], cut)]
+        longest = (np.maximum.reduce(some) - np.minimum.reduce(some)).argmax()  # np.ptp takes twice as long for a few
+        order[low:high] = mine[some[:, longest].argpartition(cut)]
         waiting += [(low, low + cut, ball), (low + cut, high, ball)]
     return order
 
