@@ -3,7 +3,9 @@
 
 import csv
 import json
+import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import FreeCAD  # noqa: F401  Part crashes without it
@@ -15,9 +17,9 @@ from freecad_am.batch.job import read_job
 from tests.batch import row_limits
 
 EXAMPLES = Path(__file__).parents[2] / "resources" / "examples"
+WITH_A_CELL = [path for path in sorted(EXAMPLES.glob("**/*.yaml")) if "cell:" in path.read_text(encoding="utf-8")]
 ON_SUBSTRATES = [
-    path for path in sorted(EXAMPLES.glob("**/*.yaml")) if "cell:" in (text := path.read_text(encoding="utf-8"))
-    and "substrate:" in text and "kind: surface" in text
+    path for path in WITH_A_CELL if "substrate:" in (text := path.read_text(encoding="utf-8")) and "kind: surface" in text
 ]
 
 
@@ -33,7 +35,7 @@ def example(request, workshop, root):
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     cell = read_job(str(workshop.folder / f"{name}.yaml")).cell
-    assert row_limits.beyond(workshop.folder / "out" / "waypoints.csv", cell.machine, cell.limits) <= 0.0
+    assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
     return name, layers, report, rows
 
 
@@ -59,6 +61,19 @@ def test_shows_what_the_paper_shows(example):
         assert abs(report["spacing_mm"]["min"] - chord) < 1e-3 and abs(report["spacing_mm"]["max"] - chord) < 1e-3
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("path", WITH_A_CELL, ids=lambda path: path.stem)
+def test_no_row_of_a_shipped_example_is_beyond_a_limit(path, root, tmp_path):
+    """As it is shipped, in waypoints and in the text; those planned coarser elsewhere are looked at there."""
+    done = subprocess.run(
+        [str(root / "freecad-am"), "plan", str(path), "-o", str(tmp_path / "out"), "--no-page"], cwd=tmp_path,
+        capture_output=True, env={**os.environ, "FREECAD_USER_HOME": str(tmp_path)}, text=True, check=False, timeout=900,
+    )
+    assert done.returncode == 0, done.stderr
+    cell = read_job(str(path)).cell
+    assert row_limits.over_all(tmp_path / "out", cell.machine, cell.limits) <= 0.0
+
+
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0
 
 
@@ -74,7 +89,7 @@ def bend_job(workshop, root, change=lambda text: text):
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     if "cell:" in text:
         cell = read_job(str(workshop.folder / "bend.yaml")).cell
-        assert row_limits.beyond(workshop.folder / "out" / "waypoints.csv", cell.machine, cell.limits) <= 0.0
+        assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     return report, rows

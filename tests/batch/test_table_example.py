@@ -11,8 +11,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from freecad_am.batch.job import read_job
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.kdl.chain import KdlArm
+from tests.batch import row_limits
 
 RADIUS, PLATFORM, SPEED = 45.0, 60.0, 5.0
 Y_OFFSET, Z_OFFSET = 20.0, 10.0
@@ -34,6 +36,8 @@ def planned(workshop, root):
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream))
         texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
+        cell = read_job(str(workshop.folder / "dome.yaml")).cell
+        assert row_limits.over_all(out, cell.machine, cell.limits) <= 0.0
         return json.loads((out / "report.json").read_text(encoding="utf-8")), rows, texts, out
 
     return run

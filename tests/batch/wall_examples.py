@@ -112,5 +112,5 @@ class Plans:
         )
         assert done.returncode == 0, done.stderr
         cell = read_job(str(path)).cell
-        assert cell is None or row_limits.beyond(out / "waypoints.csv", cell.machine, cell.limits) <= 0.0
+        assert cell is None or row_limits.over_all(out, cell.machine, cell.limits) <= 0.0
         return wall_checks.read(out)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Kinds of damage to a program's text, one at a random place each; none of them leaves the meaning as it was.
 
-A kind is a pattern and what becomes of one of its matches, or a function of all files. Digits that change are never the last
-one of a number, which is within what rounding explains.
+A kind is a pattern and what becomes of one of its matches, or a function of all files. Digits that change in these are never
+the last one of a number: how little of a change is refused is told by SMALLEST.
 """
 
 from __future__ import annotations
@@ -342,3 +342,39 @@ STAUBLI: dict[str, tuple[str, Change]] = {
 }
 
 KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC}
+
+# the least change of a number, in steps of its last digit, that is always refused (docs/decisions/0005-read-back.md). What
+# is written is off by half a step itself, and as much is allowed: of one number a step is refused, of three coordinates of
+# which each may be off it takes more, and more again where tool and frames are told with as many digits.
+_TOLD = r"(?=[^\n]*(?:fStation|tCarried\[))"
+_WAIT_NC, _FEED = r"^{}([.\d]+)\n(?!N\d+ ENDWHILE)", r"G1 [^\n]* F(\d+\.\d+)$"
+SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
+    "fanuc": {
+        "joint": (r"J[1-6]=( *-?\d*\.\d{3})", 1), "position": (r"[XYZ] =( *-?\d*\.\d{3})", 2),
+        "angle": (r"[WPR] =( *-?\d*\.\d{3})", 4), "milliseconds": (r"(\d+)msec", 3),
+        "wait": (r"WAIT +([.\d]+)\(sec\)", 1),
+    },
+    "staubli": {
+        "joint": (r" j[1-6]=\"(-?\d+\.\d+)\"", 1), "position": (rf" [xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 4),
+        "angle": (rf" r[xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 8),
+        "frame": (r" (?:x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\"(?=[^\n]*world)", 6),
+        "speed": (r"tmax=\"((?!99999)[.\d]+)\"", 1), "share": (r"vel=\"(\d+\.\d+)\"", 50),
+        "blend": (r"leave=\"((?!0\.000)[.\d]+)\"", 1), "wait": (r"delay\(([.\d]+)\)", 1),
+    },
+    "siemens": {
+        "rotary axis": (r" [ABC]=?(?:DC\()?(-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2),
+        "direction": (r" [ABC]3=(-?\d+\.\d+)", 2), "feed": (_FEED, 1), "wait": (_WAIT_NC.format(r"N\d+ G4 F"), 1),
+    },
+    "linuxcnc": {
+        "rotary axis": (r" [ABC](-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2), "feed": (_FEED, 1),
+        "wait": (_WAIT_NC.format("G4 P"), 1), "blend": (r"^G64 P([.\d]+) Q", 1),
+    },
+}
+
+def stepped(steps: int) -> Change:
+    """The number of the first group off by so many steps of its last digit."""
+
+    def change(match: re.Match, rng: np.random.Generator) -> str:
+        return moved(steps * 10.0 ** -len(match[1].partition(".")[2]))(match, rng)  # type: ignore[operator]
+
+    return change

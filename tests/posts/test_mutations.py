@@ -12,7 +12,7 @@ import pytest
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.posts.mutations import KINDS, mutated
+from tests.posts.mutations import KINDS, SMALLEST, mutated, stepped
 from tests.posts.planned_jobs import CHORD_ERROR, WAYS, written
 
 DRAWS = 2
@@ -61,6 +61,18 @@ def test_what_is_damaged_is_refused(way):
                     passed += [(kind, draw, name, old, new) for old, new in lines if old != new][:1]
     assert not passed
     assert len(tried) >= 20
+
+
+@pytest.mark.parametrize("way", WAYS, ids=" ".join)
+def test_the_least_change_of_a_number_that_is_more_than_its_digits_explain_is_refused(way):
+    passed, tried = [], 0
+    for kind, (pattern, steps) in SMALLEST[way[0]].items():
+        rng = np.random.default_rng(zlib.crc32(repr((way, kind)).encode()))
+        for _ in range(DRAWS):
+            files = mutated(written(way)[3], pattern, stepped(steps), rng)
+            tried += files is not None
+            passed += [kind] if files is not None and not found(way, files, 2000) else []
+    assert not passed and tried >= 3 * DRAWS
 
 
 def test_every_kind_of_damage_was_done():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random cells with retract distances from nothing to 200 mm: every row of what is not refused can be gone, rapids included.
+"""Random cells with retract distances from nothing to 200 mm: every row of what is not refused can be gone, rapids included,
+in the motion and, where the robot has a post, in the text.
 
 Limits are those of the machine file, read here; the arm is PyKDL's.
 """
@@ -13,14 +14,19 @@ import pytest
 from freecad_am.core.issues import ERROR, has_errors
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
+from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
+from freecad_am.core.planning.program import build
 from freecad_am.kdl import chain as kdl
+from freecad_am.posts import catalogue
+from tests.batch import row_limits
 
 MACHINES = {
     "fanuc-arcmate120ic": (1100.0, 600.0), "kuka-kr16-2": (1100.0, 800.0), "staubli-tx60l": (550.0, 300.0),
 }
 FILES = Path(__file__).parents[3] / "freecad_am" / "machines"
+POSTS = {"fanuc-arcmate120ic": "fanuc", "staubli-tx60l": "staubli"}
 FLOOR, LENGTH = 0.02, 1000.0
 
 
@@ -84,6 +90,11 @@ def driven(seed, sliced, cell_of):
         return "refused", issues
     assert np.isfinite(motion.joints).all()
     assert within(parameters["machine"], motion.joints).all(), (seed, lift)
+    if parameters["machine"] in POSTS:
+        settings = ProgramParameters(post=POSTS[parameters["machine"]], motion="joint")
+        files = catalogue.load(settings.post).write(build(motion, cell, process, settings, "job"))
+        told = row_limits.told_joints({name: text.decode() for name, text in files.items()}, parameters["machine"])
+        assert len(told) >= motion.moves.sum() and within(parameters["machine"], np.radians(told)).all(), (seed, lift)
     arm = kdl.KdlArm(cell.machine)
     flange = arm.forward(motion.joints)
     in_part = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
