@@ -20,7 +20,8 @@ from ..core.issues import NOTE, InputError, Issue
 from .sheet import MOST, sheet
 from .start_edges import curves_of
 from .substrate import Substrate
-from .wall_checks import refuse_creases, refuse_crossing, refuse_folded, refuse_gaps, refuse_tight, smallest_radii
+from .wall_checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
+from .wall_cuts import refuse_crossing, refuse_folded
 
 EQUAL = 0.433  # area of a triangle with equal sides of 1
 COARSE, SHARE = 4.0, 0.04  # edges of a first mesh, which tells the radii: of the layer height, of the size of the wall

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from ..core.geometry.mesh import Index
+from ..core.geometry.mesh import Index, Mask
 from ..core.geometry.patch import SPLINE, Array, Patch
 from ..core.geometry.surface import dot
 
@@ -51,14 +51,14 @@ class Places:
         for k, uv in self.uv.items():
             found = np.full((len(points), 2), np.nan)
             mine = np.flatnonzero((beside == k).any(axis=1))
-            found[mine] = self._near(k, placed[mine], ends[mine])
+            found[mine] = self._near(k, placed[mine], ends[mine], inner[mine])
             on_face = mine[inner[mine]]
             placed[on_face] = self.patches[k].at(found[on_face])[0]
             self.uv[k] = np.vstack([uv, found])
         return placed
 
-    def _near(self, k: int, points: Array, ends: Index) -> Array:
-        """Parameters of the points on patch k, next to those of the ends of their edges."""
+    def _near(self, k: int, points: Array, ends: Index, inner: Mask) -> Array:
+        """Parameters of the points on patch k, next to those of the ends of their edges; inner: which are to be moved."""
         patch, (one, other) = self.patches[k], (self.uv[k][ends[:, side]] for side in (0, 1))
         for axis, period in enumerate(patch.periods):
             if period > 0.0:
@@ -71,6 +71,14 @@ class Places:
         lost = ~known
         lost[known] = ~(np.linalg.norm(patch.at(found[known])[0] - points[known], axis=1) < ASTRAY * half[known])
         found[lost] = patch.inverse(points[lost])
+        # an edge across a narrow tube: the nearest place to its middle may be an end, and no halving would end
+        tips = [patch.at(side[lost])[0] for side in (one, other)]
+        farther = [
+            np.max([np.linalg.norm(patch.at(place)[0] - tip, axis=1) for tip in tips], axis=0)
+            for place in (found[lost], start[lost])
+        ]
+        halfway = (inner & known)[lost] & (farther[1] < farther[0])
+        found[np.flatnonzero(lost)[halfway]] = start[lost][halfway]
         return found
 
     def parameters(self, k: int, vertices: Array, used: Index) -> Array:

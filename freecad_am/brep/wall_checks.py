@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a wall of several faces must not be: apart, creased, bent too tightly, or cut by itself."""
+"""What a wall of several faces must not be: apart, creased, or bent too tightly."""
 
 from __future__ import annotations
 
@@ -12,22 +12,18 @@ import Part
 from scipy.spatial import cKDTree
 
 from ..core.geometry.mesh import Index, Mask
-from ..core.geometry.patch import SPLINE, Array
+from ..core.geometry.patch import Array
 from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.refined import Edges, boundary
 from ..core.geometry.surface import dot, normals
 from ..core.geometry.surface_wall import SurfaceWall
 from ..core.geometry.told import place
-from ..core.geometry.triangles import closest
 from ..core.geometry.wall_rims import parts
 from ..core.issues import InputError
 from .sheet import SEWN
 
 CREASE = np.radians(1.0)  # of the normals of two faces along their common edge
 SLIT = 0.2  # mm; boundaries of two faces nearer than this are a gap between them, not a design
-BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, and of a small part of it
-ASKED, CLOSING = 12, 20  # cuts of triangles that are followed up, and steps to the place where the faces meet
-CROSSING = 0.05  # rad; faces that touch at less run into each other, or are the same one
 STEP = 1e-5  # of the size of a parameter's step, for curvatures
 PLACES = 96  # up and around a tube at which its radii are taken
 
@@ -196,82 +192,3 @@ def principal_radii(slopes: Sequence[Array], turns: Sequence[Array]) -> Array:
     bend = np.abs(mean) + np.sqrt(np.maximum(mean * mean - gauss, 0.0))
     radius: Array = np.where(plain, 1.0 / np.maximum(bend, 1e-12), np.inf)
     return radius
-
-
-def refuse_folded(wall: PatchWall, label: str) -> None:
-    """InputError SELF_INTERSECTION where the surface of a face folds back: its normal turns over at once."""
-    for k, patch in enumerate(wall.patches):
-        uv = wall.uv[wall.patch == k]
-        if patch.kind != SPLINE or not len(uv):
-            continue
-        normal = patch.at(uv.reshape(-1, 2))[1].reshape(-1, 3, 3)
-        start, end = uv, np.roll(uv, -1, axis=1)
-        bent = dot(normal, np.roll(normal, -1, axis=1)) < BENT
-        if not bent.any():
-            continue
-        t = np.linspace(0.0, 1.0, 33)[None, :, None]
-        line = start[bent][:, None] + t * (end - start)[bent][:, None]
-        normal = patch.at(line.reshape(-1, 2))[1].reshape(line.shape[:2] + (3,))
-        plain = (patch.area(line.reshape(-1, 2)) > 1e-6).reshape(line.shape[:2])
-        turn = np.where(plain[:, 1:] & plain[:, :-1], dot(normal[:, 1:], normal[:, :-1]), 1.0)
-        if turn.min() < FOLDED:
-            row, at = np.unravel_index(int(np.argmin(turn)), turn.shape)
-            raise InputError(
-                "SELF_INTERSECTION", f"{label} {wall.faces[k]}", f"the face folds back and cuts itself at "
-                f"{place(patch.at(line[row, at : at + 1])[0][0])}; a bend must have a larger radius than the tube",
-            )
-
-
-def refuse_crossing(wall: PatchWall, label: str) -> None:
-    """InputError SELF_INTERSECTION where triangles of the wall that are no neighbours cut each other, and the exact faces
-    do so too."""
-    corner = wall.vertices[wall.triangles]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    middle = corner.mean(axis=1)
-    pairs = cKDTree(middle).query_pairs(1.2 * wall.mesh.longest_edge, output_type="ndarray")
-    chord = middle[pairs[:, 1]] - middle[pairs[:, 0]]
-    length = np.maximum(np.linalg.norm(chord, axis=1), 1e-300)
-    # neighbours on a smooth wall are about level with each other
-    odd = (np.abs(dot(chord, normal[pairs[:, 0]])) > 0.3 * length) | (dot(normal[pairs[:, 0]], normal[pairs[:, 1]]) < 0.7)
-    pairs = pairs[odd]
-    shared = (wall.triangles[pairs[:, 0]][:, :, None] == wall.triangles[pairs[:, 1]][:, None, :]).any(axis=(1, 2))
-    pairs = pairs[~shared]
-    for one, other in (pairs.T, pairs.T[::-1]):
-        for k in range(3):
-            start, end = corner[one, k], corner[one, (k + 1) % 3]
-            a, b, c = (corner[other, j] for j in range(3))
-            low, high = dot(start - a, normal[other]), dot(end - a, normal[other])
-            across = np.flatnonzero(low * high < 0.0)
-            t = (low[across] / (low[across] - high[across]))[:, None]
-            point = start[across] + t * (end[across] - start[across])
-            cut = closest(a[across], b[across], c[across], point)[0] < 1e-9 + 1e-9 * wall.mesh.longest_edge
-            for at in np.flatnonzero(cut)[:: max(1, int(cut.sum()) // ASKED)]:
-                faces = one[across[at]], other[across[at]]
-                found = _crossing(wall, faces, point[at])
-                if found is None:
-                    continue
-                names = sorted({wall.faces[wall.patch[face]] for face in faces})
-                raise InputError(
-                    "SELF_INTERSECTION", label, f"the wall cuts itself at {place(found)} ({' and '.join(names)}); a bend "
-                    "must have a larger radius than the tube, and faces must not cross",
-                )
-
-
-def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Array | None:
-    """Where the exact faces cut each other near two triangles that do so at a point; None where they do not."""
-    near = point[None]
-    patches = [wall.patches[wall.patch[k]] for k in triangles]
-    uv = [wall.uv[k].mean(axis=0)[None] for k in triangles]
-    for _ in range(CLOSING):
-        uv = [patch.inverse(near, start) for patch, start in zip(patches, uv)]
-        (one, one_up), (other, other_up) = (patch.at(at) for patch, at in zip(patches, uv))
-        apart = float(np.linalg.norm(one - other))
-        if apart < 1e-6 or np.linalg.norm(one[0] - point) > 2.0 * wall.mesh.longest_edge:
-            break
-        # where the two tangent planes meet, nearest to the middle between the feet
-        planes = np.stack([one_up[0], other_up[0]])
-        gap = np.array([one_up[0] @ (one[0] - near[0]), other_up[0] @ (other[0] - near[0])])
-        near = near + (np.linalg.pinv(planes, rcond=1e-3) @ gap)[None]
-    steep = float(np.linalg.norm(np.cross(one_up[0], other_up[0]))) > CROSSING
-    return one[0] if apart < 1e-6 and steep else None

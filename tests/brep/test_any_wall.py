@@ -7,6 +7,8 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
+from freecad_am.brep.sheet import sheet
+from freecad_am.brep.wall_cuts import refuse_crossing
 from freecad_am.brep.wall_on import wall_on
 from freecad_am.core.geometry.patch_wall import PatchWall
 from freecad_am.core.geometry.refined import boundary
@@ -221,6 +223,30 @@ def tight_pipe():
     return Part.Wire(spine.toShape()).makePipeShell([Part.Wire(Part.makeCircle(10))], False, True)
 
 
+def test_a_sheared_tube_has_a_mesh_of_its_own_size():
+    # edges across the tube were halved without end: 341,616 triangles, and pairs of them in more than 9 GB
+    rings = [Part.Wire(Part.makeCircle(5, Vector(*at))) for at in ((0, 0, 20), (25, 0, 88))]
+    made = Part.makeLoft(rings, False, False)
+    wall = sheet([("Face1", made.Faces[0])], 2.0, "Wall")
+    corner = wall.vertices[wall.triangles]
+    edges = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
+    assert edges.max() <= 2.0 + 1e-9 and edges.min() > 1e-3 and len(wall.triangles) < 20_000
+    # each triangle lies along the tube: a circle of radius 5 in every horizontal plane
+    middle = corner.mean(axis=1)
+    radius = np.hypot(middle[:, 0] - (middle[:, 2] - 20.0) * 25.0 / 68.0, middle[:, 1])
+    assert radius.min() > 5.0 - 0.3 and radius.max() < 5.0 + 1e-6
+    refuse_crossing(wall, "Wall")
+
+
+def blade():
+    around = np.linspace(0.0, TURN, 41)
+    skin = Part.BSplineSurface()
+    skin.interpolate([
+        [Vector(11 * np.cos(a), np.sin(a), z) for a in around + np.radians(0.5 * z)] for z in (0.0, 15.0, 30.0)
+    ])
+    return skin.toShape()
+
+
 @pytest.mark.parametrize(("make", "substrate", "height", "code", "words"), [
     (lambda: bend(start=0, width=180), lambda: Part.makeBox(9, 9, 9, Vector(200, 0, 0)), 5.0, "NO_CONTACT", ["mm away"]),
     (lambda: bend(start=0, width=180), lambda: Part.makeSphere(300.0), 5.0, "INSIDE", ["deep"]),
@@ -233,6 +259,8 @@ def tight_pipe():
      ["18.4 deg"]),
     (lambda: shell(tube(2.0, 30.0), moved(tube(2.0, 30.0), 0, 0, 30)), slab, 4.0, "LAYER_HEIGHT", ["2 mm"]),
     (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["cuts itself"]),
+    # noses of a blade turn over sharply and do not fold
+    (blade, slab, 2.0, "LAYER_HEIGHT", ["smallest radius of curvature, 0.0"]),
 ])
 def test_refusals_by_real_shapes(make, substrate, height, code, words):
     error = refused(make(), (), substrate(), height)

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 ROUNDS = 60
 NEEDLE = 0.5  # of the shortest to the longest side
+LEVEL = 0.3  # cosine between the normals of two triangles, down to which an edge may be turned in any case
 FLIPS, FEW, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
 
 # vertices (k, 3), owners of the triangles beside each new one (k, 2) -1 for none, ends of the edge it halves (k, 2)
@@ -153,9 +154,13 @@ def flipped(vertices: Array, triangles: Index, owner: Index) -> Index:
         c, d = triangles[one, (at + 2) % 3], triangles[other, (back + 2) % 3]
         sound = (triangles[other, back] == b) & (c != d)
         excess = _angle(vertices, c, a, b) + _angle(vertices, d, a, b) - np.pi
-        # never fold: the new triangles look the same way as the old ones
-        normal = _normal(vertices, a, b, c) + _normal(vertices, b, a, d)
-        sound &= (dot(_normal(vertices, a, d, c), normal) > 0.0) & (dot(_normal(vertices, d, b, c), normal) > 0.0)
+        # never fold: the new triangles look the same way as the old ones, and hardly less alike: no edge across a tube
+        old = _normal(vertices, a, b, c), _normal(vertices, b, a, d)
+        new = _normal(vertices, a, d, c), _normal(vertices, d, b, c)
+        normal = old[0] + old[1]
+        sound &= (dot(new[0], normal) > 0.0) & (dot(new[1], normal) > 0.0)
+        level = _cosine(*new)
+        sound &= (level > LEVEL) | (level >= _cosine(*old))
         wish = np.flatnonzero(sound & (excess > 1e-6))
         if not len(wish):
             break
@@ -178,6 +183,12 @@ def _angle(vertices: Array, tip: Index, a: Index, b: Index) -> Array:
 def _normal(vertices: Array, a: Index, b: Index, c: Index) -> Array:
     normal: Array = np.cross(vertices[b] - vertices[a], vertices[c] - vertices[a])
     return normal
+
+
+def _cosine(one: Array, other: Array) -> Array:
+    size = np.linalg.norm(one, axis=1) * np.linalg.norm(other, axis=1)
+    cosine: Array = dot(one, other) / np.maximum(size, 1e-300)
+    return cosine
 
 
 def boundary(triangles: Index) -> tuple[Index, Mask]:
