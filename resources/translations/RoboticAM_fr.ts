@@ -8077,7 +8077,7 @@
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/wall_cuts.py"/>
         <source>the face folds back and cuts itself at {0}; a bend must have a larger radius than the tube</source>
         <translation>la face se replie et se coupe elle-même en {0} ; un coude doit avoir un plus grand rayon que le tube</translation>
     </message>
@@ -8617,7 +8617,7 @@
         <translation>la paroi se courbe trop fort : {0} mm d&apos;écart entre {1} x {2} échantillons ; lissez-la, ou coupez-la là où elle a une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/wall_checks.py"/>
+        <location filename="../../freecad_am/brep/wall_cuts.py"/>
         <source>the wall cuts itself at {0} ({1}); a bend must have a larger radius than the tube, and faces must not cross</source>
         <translation>la paroi se coupe elle-même en {0} ({1}) ; un coude doit avoir un plus grand rayon que le tube, et les faces ne doivent pas se croiser</translation>
     </message>
