@@ -80,7 +80,7 @@ class Tool:
 # In the order of the work; between groups stands a separator. A tool that is in none comes last.
 GROUPS = (
     ("OpenPart", "NewJob"),
-    ("Cell", "Feature", "WallOnPart", "SolidsOnHub"),
+    ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub"),
     ("Toolpath", "JointPath", "SpinMap"),
     ("Path", "Simulate"),
     ("Program", "Plots", "Inspect", "ExportPath"),
@@ -109,6 +109,10 @@ def register() -> list[str]:
             "wall_on_part", marked("Wall on Part…"),
             marked("Takes the selected faces as a wall to be deposited on the other object that is selected"), _wall,
             needs.faces,
+        ),
+        "Solid": Tool(
+            "solid", marked("Solid…"), marked("Takes the selected solids to be deposited in plane layers"), _solid,
+            needs.part,
         ),
         "SolidsOnHub": Tool(
             "solids_on_hub", marked("Solids on Hub…"),
@@ -207,6 +211,12 @@ def _wall() -> None:
     from . import stage_panel, wall_panel
 
     stage_panel.show(wall_panel.WallPanel())
+
+
+def _solid() -> None:
+    from . import solid_panel, stage_panel
+
+    stage_panel.show(solid_panel.SolidPanel())
 
 
 def _hub() -> None:

@@ -23,7 +23,7 @@ from . import picking
 from .picking import Pick
 from .texts import tr, translated
 
-REVOLUTION, SURFACE, DEVELOPABLE = "revolution", "surface", "developable"  # as macros and job files call them
+REVOLUTION, SURFACE, DEVELOPABLE, SOLID = "revolution", "surface", "developable", "solid"  # as in job files
 COARSE = 0.3  # mm; of triangles that a look at solids is content with
 _TOUCHING = 0.05  # mm from the surface of a hub
 _LEAST = 3  # corners of a solid that lie on what it stands on
@@ -74,13 +74,13 @@ def of_one(pick: Pick) -> Guess | Callable[[], Guess]:
     """What a single pick means; or the work that finds it out, which touches no document."""
     label = pick.obj.Label
     if picking.is_mesh(pick.obj):
-        return Guess(DEVELOPABLE, tr("{} is a mesh, which may be deposited on a hub").format(label), (pick,), None,
-                     tr("Select also, with Ctrl, the hub it grows on; or the faces of a wall that grows on it."))
+        return Guess(SOLID, tr("{} is a mesh, which is filled in plane layers").format(label), (pick,))
     clicked, pick = pick, picking.whole(pick)
     shape, faces = global_shape(pick.obj).copy(False), _faces(pick)
     if len(shape.Solids) > 1 and not faces:
         reason = tr("{} holds {} solids").format(label, len(shape.Solids))
-        return Guess(DEVELOPABLE, reason, (pick,), None)
+        look = taken(pick.obj)
+        return lambda: Guess(DEVELOPABLE if _own_hub(look) else SOLID, reason, (pick,), None)
 
     def work() -> Guess:
         try:
@@ -108,9 +108,18 @@ def _not_turned(pick: Pick, label: str, shape: Any, faces: Sequence[str], error:
     part = Pick(pick.obj) if len(chosen) == 1 and len(shape.Faces) > 1 else picking.with_faces(pick)
     missing = tr("Select also, with Ctrl, the part that it grows on.")
     if shape.Solids and not part.names and not _has_wall(shape, label):
-        missing = tr("A solid on a flat base cannot be built up yet. Select, with Ctrl, faces of it that are one wall, and "
-                     "the part that they grow on.")
+        return Guess(SOLID, tr("{} is not of revolution and has no wall, so it is filled in plane layers").format(label),
+                     (Pick(pick.obj),))
     return Guess(SURFACE, tr("{} is not of revolution, so it is a wall").format(label), (part,), None, missing)
+
+
+def _own_hub(part: Taken) -> bool:
+    """Whether most solids of a part stand on a cylinder or cone of another of them."""
+    try:
+        found_in([part], (), None, None, DevelopableParameters(chord_error=COARSE))
+    except (InputError, *kernel.FAULTS):
+        return False
+    return True
 
 
 def _has_wall(shape: Any, label: str) -> bool:
@@ -134,6 +143,8 @@ def as_kind(kind: str, picks: Sequence[Pick], reason: str) -> Guess:
         if wall is None:
             missing = unclear or tr("Select also, with Ctrl, the faces to deposit on {}.").format(picks[0].obj.Label)
         return Guess(kind, reason, () if wall is None else (picking.whole(wall),), ground, missing)
+    if kind == SOLID:
+        return Guess(kind, reason, tuple(Pick(pick.obj) for pick in picks))
     faced = [pick for pick in picks if _faces(pick)]
     if len(picks) == 1:
         mesh = picking.is_mesh(picks[0].obj)
@@ -171,6 +182,8 @@ def _balance(
         faces = chosen if under is None else ()
         solids = found_in(parts, faces, under, base, DevelopableParameters(chord_error=COARSE))
         return deposit_balance.of_feature(solids, width)
+    if guess.kind == SOLID:
+        return None
     shape = first.shape.copy(False)
     if guess.kind == REVOLUTION:
         depths = part_depths.of_revolved(shape, find_wall(shape, names, label=first.label), first.label)

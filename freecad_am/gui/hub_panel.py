@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.plane import Plane
 from ..core.issues import AmError, Issue
 from ..core.parameters.strategy import DevelopableParameters
 from ..core.strategies import size
@@ -175,11 +174,7 @@ def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings
     lines = []
     for group, solids in zip(made.value.groups, contours, strict=True):
         surface, count = group.base.surface, len(group.bodies)
-        if isinstance(surface, Plane):
-            shape = tr("plane, {:.4g} mm high").format(
-                max(float(surface.distance(group.base.inside(body.vertices)).max()) for body in group.bodies)
-            )
-        elif surface.is_cylinder:
+        if surface.is_cylinder:
             shape = tr("cylinder, R {:.4g} mm").format(surface.radius)
         else:
             shape = tr("cone, R {:.4g} mm, half angle {:.4g}°").format(surface.radius, np.degrees(surface.taper))

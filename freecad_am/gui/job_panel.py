@@ -42,6 +42,7 @@ class JobPanel:
         self.document = App.ActiveDocument
         self.kinds = {
             guess.REVOLUTION: tr("Part of revolution"), guess.SURFACE: tr("Wall on a part"),
+            guess.SOLID: tr("Solids in plane layers"),
             guess.DEVELOPABLE: tr("Solids on a hub"),
         }
         self.picks: list[Pick] = []
@@ -190,7 +191,7 @@ class JobPanel:
             widget.setText(text)
             widget.setCursorPosition(0)
             widget.setToolTip(text or widget.whatsThis())
-        self.fold.enable(self.ground, found.kind != guess.REVOLUTION)
+        self.fold.enable(self.ground, found.kind not in (guess.REVOLUTION, guess.SOLID))
         missing = found.missing if self.picks else tr(
             "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
         )
@@ -260,7 +261,7 @@ class JobPanel:
         told = {"source": recorded.reference(first.obj)}
         if found.kind != guess.REVOLUTION:
             told["kind"] = repr(found.kind)
-        if found.kind == guess.DEVELOPABLE:
+        if found.kind in (guess.DEVELOPABLE, guess.SOLID):
             told.update(_of_hub(found))
         else:
             told["faces"] = repr(list(first.names))

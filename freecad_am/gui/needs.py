@@ -42,7 +42,7 @@ def faces(doc: Any) -> str:
 def feature(doc: Any) -> str:
     """What is to be deposited."""
     return document(doc) or (
-        "" if _some(doc, "feature") else tr("First make a feature: Feature…, Wall on Part… and Solids on Hub… do so.")
+        "" if _some(doc, "feature") else tr("First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.")
     )
 
 

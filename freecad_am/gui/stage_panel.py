@@ -371,11 +371,20 @@ def edit(obj: Any) -> None:
 
 def _panel_of(proxy: type[Stage]) -> Any:
     """The panel of a kind of stage."""
-    from . import cell_panel, feature_panel, hub_panel, joint_path_panel, program_panel, toolpath_panel, wall_panel
+    from . import (
+        cell_panel,
+        feature_panel,
+        hub_panel,
+        joint_path_panel,
+        program_panel,
+        solid_panel,
+        toolpath_panel,
+        wall_panel,
+    )
     from .inspection.panel import InspectionPanel
 
     panels = (
         cell_panel.CellPanel, feature_panel.FeaturePanel, wall_panel.WallPanel, hub_panel.HubPanel,
-        toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
+        solid_panel.SolidPanel, toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
     )
     return next(panel for panel in panels if panel.stage is proxy)

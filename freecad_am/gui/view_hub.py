@@ -9,6 +9,19 @@ from .hub_nodes import HubNodes
 from .view_base import StageView
 
 
+class SolidView(StageView):
+    """Draws the plane that solids stand on, and where they do."""
+
+    icon = "solid"
+
+    def scene(self, root: Any) -> None:
+        self.wall = HubNodes(pickable=True)
+        root.addChild(self.wall.switch)
+
+    def draw(self, obj: Any, value: Any) -> None:
+        self.wall.set_solids(value)
+
+
 class HubView(StageView):
     """Draws what solids stand on, and where."""
 

@@ -19,7 +19,7 @@ from .inspection.view import InspectionView
 from .view_base import MODE, StageView
 from .view_cell import CellView
 from .view_feature import FeatureView
-from .view_hub import HubView
+from .view_hub import HubView, SolidView
 from .view_joint_path import JointPathView
 from .view_program import ProgramView
 from .view_toolpath import ToolpathView
@@ -30,6 +30,7 @@ VIEWS: dict[str, type[StageView]] = {
     "cell": CellView, "feature": FeatureView, "toolpath": ToolpathView, "joint path": JointPathView,
     "program": ProgramView, "inspection": InspectionView,
 }
+OF_SOLIDS: dict[type[Stage], type[StageView]] = {DevelopableFeature: HubView, SolidFeature: SolidView}
 
 _to_be_seen: set[str] = set()
 
@@ -48,7 +49,7 @@ preference_watch.listen(_preferences_changed)
 
 def view_of(stage: Stage) -> type[StageView]:
     """The view provider of a stage."""
-    return HubView if isinstance(stage, (DevelopableFeature, SolidFeature)) else VIEWS[stage.kind]
+    return OF_SOLIDS.get(type(stage), VIEWS[stage.kind])
 
 
 def attach(obj: Any) -> None:

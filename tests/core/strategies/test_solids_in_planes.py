@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids in plane layers: beads where the part is and nowhere else, by its equations and by counting pixels."""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy import ndimage
+from scipy.spatial import ConvexHull, cKDTree
+
+from freecad_am.core.geometry.solid_mesh import SolidMesh
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import InputError
+from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import SolidParameters
+from freecad_am.core.strategies.solids.plan import plan
+
+ERROR = 0.05
+GRID = 0.1  # mm of a pixel
+
+
+def box(low, high, name="box"):
+    return hull(np.array(list(product(*zip(low, high))), dtype=float), name)
+
+
+def hull(points, name="hull"):
+    made = ConvexHull(points)
+    faces = made.simplices.copy()
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * made.equations[:, :3]).sum(axis=1) < 0.0
+    faces[inward] = faces[inward][:, ::-1]
+    return Body(name, points, faces.astype(np.int64))
+
+
+def tube(profile, sides=240, name="tube"):
+    """A part of revolution about Z from a closed profile (r, z), counter-clockwise."""
+    angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
+    rows = [np.stack([r * np.cos(angle), r * np.sin(angle), np.full(sides, z)], axis=1) for r, z in profile]
+    faces = []
+    for k in range(len(rows)):
+        for j in range(sides):
+            a, b = k * sides + j, k * sides + (j + 1) % sides
+            c, d = (k + 1) % len(rows) * sides + j, (k + 1) % len(rows) * sides + (j + 1) % sides
+            faces += [(a, b, d), (a, d, c)]
+    return Body(name, np.vstack(rows), np.array(faces, dtype=np.int64))
+
+
+RING = [(12.0, 0.0), (40.0, 0.0), (40.0, 20.0), (12.0, 20.0)]
+CONE = [(10.0, 0.0), (40.0, 0.0), (25.0, 30.0), (10.0, 30.0)]
+
+
+def prism(outline, cap, low, high):
+    """A T: an outline (x, z), counter-clockwise, and triangles of it, from y = low to high."""
+    count = len(outline)
+    points = np.array([[x, y, z] for y in (high, low) for x, z in outline], dtype=float)
+    faces = [*cap, *((c + count, b + count, a + count) for a, b, c in cap)]
+    for k in range(count):
+        other = (k + 1) % count
+        faces += [(k, k + count, other + count), (k, other + count, other)]
+    body = Body("T", points, np.array(faces, dtype=np.int64)[:, ::-1])
+    SolidMesh(body.vertices, body.triangles).refuse_unsound("T")
+    return body
+
+
+def planned(*bodies, build=None, process=None, **values):
+    given = {"layer_height": 4.0, "chord_error": ERROR, "bead_spacing": 4.0, **values}
+    strategy = SolidParameters(**given)
+    solids = stacked(bodies, strategy, "part")
+    return plan(solids, strategy, build or BuildDirectionParameters(), process or ProcessParameters(), None)
+
+
+def dense(bead, step=0.02):
+    length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+    count = np.maximum(np.ceil(length / step).astype(int), 1)
+    row = np.repeat(np.arange(len(count)), count)
+    share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
+    return bead.points[row] + share[:, None] * (bead.points[row + 1] - bead.points[row])
+
+
+def test_layers_lie_on_their_planes_and_count():
+    made = planned(tube(RING))
+    assert len(made.layers) == 5
+    for number, layer in enumerate(made.layers):
+        points = np.vstack([bead.points for bead in layer.beads])
+        np.testing.assert_allclose(points[:, 2], 4.0 * number, atol=1e-12)
+        for bead in layer.beads:
+            np.testing.assert_array_equal(bead.tool, np.tile([0.0, 0.0, 1.0], (len(bead), 1)))
+
+
+@pytest.mark.parametrize("cut_at, share", [("bottom", 0.0), ("middle", 0.5), ("top", 1.0)])
+def test_outlines_are_those_where_it_is_cut(cut_at, share):
+    """On a cone the outermost bead lies half a spacing inside of the section, within the chord error."""
+    made = planned(tube(CONE), cut_at=cut_at, fill="contours")
+    for number, layer in enumerate(made.layers):
+        radius = 40.0 - 0.5 * min(4.0 * (number + share), 30.0)
+        reach = max(np.hypot(*bead.points[:, :2].T).max() for bead in layer.beads)
+        least = min(np.hypot(*bead.points[:, :2].T).min() for bead in layer.beads)
+        assert radius - 2.0 - 3.0 * ERROR < reach < radius - 2.0 + ERROR
+        assert 12.0 - ERROR < least < 12.0 + 3.0 * ERROR
+
+
+@pytest.mark.parametrize("fill", ["contours", "lines", "zigzag", "spiral"])
+def test_covers_what_beads_can_reach_and_nothing_else(fill):
+    """Counted in pixels: what lies within half a spacing of a bead, against the section opened by a bead's half width."""
+    bar = box((30, -15, 0), (75, 15, 8), "bar")
+    made = planned(tube([(12.0, 0.0), (40.0, 0.0), (40.0, 8.0), (12.0, 8.0)]), bar, fill=fill)
+    axis = np.arange(-45.0, 80.0, GRID)
+    x, y = np.meshgrid(axis, axis, indexing="ij")
+    rho = np.hypot(x, y)
+    section = ((rho <= 40.0) & (rho >= 12.0)) | ((x >= 30.0) & (x <= 75.0) & (np.abs(y) <= 15.0))
+    middles = ndimage.distance_transform_edt(section) * GRID >= 2.0
+    reachable = ndimage.distance_transform_edt(~middles) * GRID <= 2.0
+    for layer in made.layers:
+        tree = cKDTree(np.vstack([dense(bead)[:, :2] for bead in layer.beads]))
+        covered = tree.query(np.stack([x, y], axis=-1).reshape(-1, 2), distance_upper_bound=2.0)[0].reshape(x.shape) < 2.0
+        assert (covered & reachable).sum() >= 0.99 * reachable.sum()
+        assert (covered & ~section).sum() <= 0.01 * section.sum()
+
+
+def test_deposits_the_volume_of_the_part():
+    made = planned(tube(RING), fill="contours")
+    volume = made.length * 4.0 * 4.0
+    assert volume == pytest.approx(math.pi * (40.0**2 - 12.0**2) * 20.0, rel=0.03)
+
+
+def test_touching_and_overlapping_solids_are_one():
+    """Two halves of a block, and one with a third that overlaps both: the beads of the block."""
+    whole = planned(box((0, 0, 0), (60, 30, 8)))
+    halves = planned(box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)))
+    over = planned(box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)), box((20, 10, 0), (40, 20, 8)))
+    apart = planned(box((0, 0, 0), (30, 30, 8)), box((30, 0, 0), (60, 30, 8)), fuse="none")
+    for other in (halves, over):
+        assert other.bead_count == whole.bead_count
+        assert other.length == pytest.approx(whole.length, rel=1e-6)
+    assert apart.bead_count == 2 * planned(box((0, 0, 0), (30, 30, 8))).bead_count
+    assert apart.length < whole.length * 1.1 and apart.bead_count != whole.bead_count
+
+
+def test_islands_are_finished_one_after_the_other():
+    rods = [box((40 * k, 0, 0), (40 * k + 25, 25, 8), f"rod {k}") for k in range(3)]
+    made = planned(*rods, fill="contours")
+    for layer in made.layers:
+        island = [round(float(bead.points[:, 0].mean() - 12.5) / 40.0) for bead in layer.beads]
+        assert len(layer.beads) > 3 and sum(a != b for a, b in zip(island, island[1:])) == 2
+        rings = [bead.ring for bead, at in zip(layer.beads, island) if at == island[0]]
+        assert rings == sorted(rings, reverse=True)
+
+
+@pytest.mark.parametrize("way", [(0, 0, 1), (1, 0, 0), (0, -1, 0), (1, 2, -3)])
+def test_any_direction(way):
+    """The same part turned is deposited alike: as many layers, as long beads, the tool along the direction."""
+    unit = np.array(way) / np.linalg.norm(way)
+    made = planned(tube(CONE), direction=" ".join(map(str, way)))
+    heights = np.array([[float((bead.points @ unit).min()), float((bead.points @ unit).max())] for _, _, bead in made])
+    lowest = float((tube(CONE).vertices @ unit).min())
+    np.testing.assert_allclose(heights[:, 0], heights[:, 1], atol=1e-9)
+    steps = (heights[:, 0] - lowest) / 4.0
+    np.testing.assert_allclose(steps, np.round(steps), atol=1e-9)
+    for _, _, bead in made:
+        np.testing.assert_allclose(bead.tool, np.tile(unit, (len(bead), 1)), atol=1e-12)
+    np.testing.assert_allclose(made.frame[:3, 2], unit, atol=1e-12)
+
+
+def test_the_best_direction_is_the_one_that_needs_no_support():
+    """A T that lies down leaves nothing over nothing, as upside down, and is lower."""
+    outline = [(-5, 0), (5, 0), (5, 30), (40, 30), (40, 40), (-40, 40), (-40, 30), (-5, 30)]
+    cap = [(0, 1, 2), (0, 2, 7), (6, 7, 5), (7, 2, 5), (2, 3, 4), (2, 4, 5)]
+    solids = stacked([prism(outline, cap, -10.0, 10.0)], SolidParameters(direction="auto", layer_height=2.0), "T")
+    np.testing.assert_allclose(solids.groups[0].base.frame[:3, 2], [0.0, 1.0, 0.0], atol=1e-12)
+    (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
+    assert "20 mm high" in issue.message and "1400 mm^2" in issue.message
+
+
+def test_a_wall_thinner_than_a_bead_gets_one_bead_and_says_so():
+    made = planned(box((0, 0, 0), (60, 2, 8)))
+    assert all(len(layer.beads) == 1 for layer in made.layers)
+    assert {issue.code for issue in made.issues} >= {"THIN_SINGLE"}
+
+
+@pytest.mark.parametrize("height, cut_at, layers", [
+    (10.0, "middle", 5), (9.0, "middle", 4), (9.1, "middle", 5), (1.1, "middle", 1), (10.0, "bottom", 5), (10.0, "top", 5),
+    (9.9, "top", 4), (8.1, "bottom", 5),
+])
+def test_number_of_layers(height, cut_at, layers):
+    made = planned(box((0, 0, 0), (30, 30, height)), layer_height=2.0, cut_at=cut_at)
+    assert len(made.layers) == layers
+
+
+def test_a_part_lower_than_any_cut_is_refused():
+    with pytest.raises(InputError) as caught:
+        planned(box((0, 0, 5), (30, 30, 5.9)), layer_height=2.0)
+    assert caught.value.code == "TOO_LOW" and "0.9 mm high" in caught.value.message
+    assert "give at most 1.8 mm" in caught.value.message
+    assert len(planned(box((0, 0, 5), (30, 30, 5.9)), layer_height=1.79).layers) == 1
+
+
+@pytest.mark.parametrize("text", ["0 0 0", "up", "1 2", "nan 0 1", "0 0 inf"])
+def test_a_direction_along_no_axis_is_refused(text):
+    with pytest.raises(InputError) as caught:
+        SolidParameters(direction=text)
+    assert caught.value.code == "BAD_VALUE" and caught.value.where == "strategy.direction"
+
+
+def test_a_margin_stands_out_beside_and_above():
+    made = planned(box((0, 0, 0), (40, 30, 8)), margin=5.0, fill="contours")
+    low, high = (f([f(bead.points, axis=0) for _, _, bead in made], axis=0) for f in (np.min, np.max))
+    np.testing.assert_allclose(low, [-3.0, -3.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(high[:2], [43.0, 33.0], atol=1e-6)
+    assert high[2] == pytest.approx(8.0)  # 5 mm above: one layer more
+
+
+def test_random_hulls_are_filled():
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        body = hull(rng.normal(size=(20, 3)) * (25.0, 20.0, 15.0))
+        made = planned(body, layer_height=3.0, fill=("contours", "zigzag")[seed % 2])
+        equations = ConvexHull(body.vertices).equations
+        for _, _, bead in made:
+            at = bead.points + (0.0, 0.0, 1.5)  # where it was cut
+            out = (at @ equations[:, :3].T + equations[:, 3]).max()
+            assert out < 2.0 + ERROR  # single beads of narrow tips stand out by up to half a bead
+        volume = ConvexHull(body.vertices).volume
+        assert 0.9 * volume < made.length * 12.0 < 1.2 * volume  # beads that close gaps overlap others

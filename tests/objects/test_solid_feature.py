@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids in plane layers in documents: sections against OpenCASCADE's own, beads inside the shape, meshes, what is refused."""
+
+from pathlib import Path
+
+import FreeCAD as App
+import Mesh
+import MeshPart
+import numpy as np
+import Part
+import pytest
+
+from freecad_am import api
+from freecad_am.core.issues import InputError
+from freecad_am.core.layers import planes
+from freecad_am.core.parameters.strategy import SolidParameters
+
+UP = App.Vector(0, 0, 1)
+FAST = {"layer_height": 5, "chord_error": 0.1, "bead_spacing": 5}
+EXAMPLE = Path(__file__).parents[2] / "resources" / "examples" / "bracket.step"
+
+
+def flange():
+    """A plate with a collar, a bore through both, six holes and a ball's half sunk into it."""
+    shape = Part.makeCylinder(50, 20).fuse(Part.makeCylinder(28, 45)).cut(Part.makeCylinder(15, 45))
+    for k in range(6):
+        hole = Part.makeCylinder(5, 20, App.Vector(39, 0, 0))
+        hole.rotate(App.Vector(), UP, 60 * k)
+        shape = shape.cut(hole)
+    return shape.cut(Part.makeSphere(12, App.Vector(28, 0, 45)))
+
+
+def leaning():
+    """A torus that leans, with a bar through it."""
+    shape = Part.makeTorus(35, 9).fuse(Part.makeBox(90, 8, 8, App.Vector(-45, -4, -4)))
+    shape.rotate(App.Vector(), App.Vector(1, 2, 0), 35)
+    return shape
+
+
+def read_example():
+    shape = Part.Shape()
+    shape.read(str(EXAMPLE))
+    return shape
+
+
+SHAPES = {"flange": flange, "leaning": leaning, "bracket": read_example}
+
+
+@pytest.fixture
+def doc():
+    document = App.newDocument("Solids")
+    yield document
+    App.closeDocument(document.Name)
+
+
+def part(doc, shape, name="Part"):
+    obj = doc.addObject("Part::Feature", name)
+    obj.Shape = shape
+    return obj
+
+
+def mesh(doc, shape, deflection=0.05):
+    obj = doc.addObject("Mesh::Feature", "Scan")
+    obj.Mesh = MeshPart.meshFromShape(Shape=shape, LinearDeflection=deflection, AngularDeflection=0.2)
+    return obj
+
+
+def slices(solids, **values):
+    strategy = SolidParameters(**{"layer_height": 5.0, "chord_error": 0.05, **values})
+    group = solids.groups[0]
+    return list(planes.slices(group.base, group.bodies, strategy))
+
+
+def section(shape, height):
+    """Area that OpenCASCADE finds of a shape in the plane at a height."""
+    box = shape.BoundBox
+    sheet = Part.makePlane(4 * box.DiagonalLength, 4 * box.DiagonalLength,
+                           App.Vector(box.Center.x - 2 * box.DiagonalLength, box.Center.y - 2 * box.DiagonalLength, height))
+    return shape.common(sheet).Area
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_sections_are_those_of_the_kernel(doc, name):
+    shape = SHAPES[name]()
+    feature = api.make_solid_feature(doc, part(doc, shape), **{**FAST, "chord_error": 0.05})
+    found = slices(api.result(feature))
+    low = shape.BoundBox.ZMin if name != "leaning" else float(api.result(feature).groups[0].base.frame[2, 3])
+    assert len(found) >= 7
+    for one in found:
+        area = sum(region.area for region in one.regions)
+        border = sum(region.shape.length for region in one.regions)
+        assert area == pytest.approx(section(shape, low + 5.0 * one.layer + 2.5), abs=0.05 * border)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_beads_lie_in_the_shape(doc, name):
+    """Where the part was cut, half a layer above: inside, as the kernel says, or on a bead that is alone in a neck."""
+    shape = SHAPES[name]()
+    toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, shape), **FAST))
+    made = api.result(toolpath)
+    beads = [bead for _, _, bead in made]
+    points = np.vstack([bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.kind != "centre"])
+    lifted = points + (0.0, 0.0, 2.5)
+    rows = np.random.default_rng(1).permutation(len(lifted))[:150]
+    off = [shape.distToShape(Part.Vertex(*lifted[k]))[0] for k in rows if not shape.isInside(App.Vector(*lifted[k]), 1e-6, True)]
+    assert not off or max(off) < 0.1
+    assert made.on_part[0] == min(20_000, sum(map(len, beads))) and made.on_part[1] <= made.on_part[2]
+    assert not [issue for issue in api.issues(toolpath) if issue.level == "error"]
+
+
+def test_a_mesh_and_the_shape_it_is_of_are_filled_alike(doc):
+    exact = api.result(api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, flange()), **FAST)))
+    scanned = api.result(api.make_toolpath(doc, api.make_solid_feature(doc, mesh(doc, flange()), **FAST)))
+    assert len(exact.layers) == len(scanned.layers)
+    assert exact.length == pytest.approx(scanned.length, rel=0.005)
+
+
+def test_several_objects_and_solids_that_touch(doc):
+    """A plate in two halves and a rod on it from another object: one part; with a second rod beside: two islands below."""
+    halves = Part.makeCompound([Part.makeBox(30, 40, 10), Part.makeBox(30, 40, 10, App.Vector(30, 0, 0))])
+    rod = part(doc, Part.makeCylinder(10, 20, App.Vector(30, 20, 10)), "Rod")
+    beside = part(doc, Part.makeCylinder(10, 30, App.Vector(90, 20, 0)), "Beside")
+    feature = api.make_solid_feature(doc, part(doc, halves), further=[rod, beside], **FAST)
+    assert feature.Solids == 4 and feature.Height.Value == pytest.approx(30.0)
+    assert [len(one.regions) for one in slices(api.result(feature))] == [2, 2, 2, 2, 2, 2]
+    assert [round(sum(region.area for region in one.regions)) for one in slices(api.result(feature))][0] == pytest.approx(
+        60 * 40 + np.pi * 100, rel=0.002)
+
+
+def test_what_stands_on_a_substrate_is_kept_clear_of_it(doc):
+    wall = part(doc, Part.makeBox(10, 60, 60, App.Vector(-10, -10, 0)), "Wall")
+    feature = api.make_solid_feature(doc, part(doc, Part.makeBox(40, 40, 20)), wall, **FAST)
+    made = api.result(api.make_toolpath(doc, feature))
+    assert made.surroundings[0].name == "Wall"
+    leaning_axes = [bead for _, _, bead in made if (bead.tool[:, 2] < 1.0 - 1e-6).any()]
+    assert leaning_axes and all((bead.build[:, 2] > 1.0 - 1e-9).all() for _, _, bead in made)
+
+
+def test_the_object_is_kept_with_the_document(doc, tmp_path):
+    feature = api.make_solid_feature(doc, part(doc, Part.makeBox(30, 30, 20)), direction="auto", cut_at="bottom", **FAST)
+    toolpath = api.make_toolpath(doc, feature)
+    before = api.result(toolpath)
+    path = str(tmp_path / "kept.FCStd")
+    doc.saveCopy(path)
+    again = App.openDocument(path)
+    try:
+        other = again.getObject(toolpath.Name)
+        assert other.Status == "up to date" and again.getObject(feature.Name).Direction == "auto"
+        for (_, _, one), (_, _, two) in zip(before, api.result(other), strict=True):
+            np.testing.assert_array_equal(one.points, two.points)
+        assert api.result(other).family == "solid"
+    finally:
+        App.closeDocument(again.Name)
+
+
+@pytest.mark.parametrize("size", [0.1, 10_000.0])
+def test_tiny_and_huge_parts(doc, size):
+    """With the defaults told why not; with layers and beads that fit planned as any."""
+    obj = part(doc, Part.makeBox(size, size, size))
+    values = {"layer_height": 0.2 * size, "bead_spacing": 0.2 * size, "shortest": 0.1 * size, "chord_error": 0.01 * size}
+    if size > 1.0:
+        values["chord_error"] = 10.0
+    feature = api.make_solid_feature(doc, obj, **values)
+    made = api.result(api.make_toolpath(doc, feature))
+    assert len(made.layers) == 5
+    assert made.length * (0.2 * size) ** 2 == pytest.approx(size**3, rel=0.05)
+    if size < 1.0:
+        with pytest.raises(InputError) as caught:
+            api.make_toolpath(doc, api.make_solid_feature(doc, obj, layer_height=1))
+        assert caught.value.code == "TOO_LOW" and "0.1 mm high" in caught.value.message
+    else:
+        with pytest.raises(InputError) as caught:
+            api.make_solid_feature(doc, obj, layer_height=0.2)
+        assert caught.value.code == "TOO_MANY" and caught.value.where == "strategy.layer_height"
+
+
+def test_what_has_no_inside_is_refused(doc):
+    def refused(obj, code):
+        with pytest.raises(InputError) as caught:
+            api.make_solid_feature(doc, obj, **FAST)
+        assert caught.value.code == code, caught.value
+        return caught.value.message
+
+    assert "choose solids" in refused(part(doc, Part.makePlane(10, 10)), "NO_SOLID")
+    scan = mesh(doc, Part.makeBox(10, 10, 10), 1.0)
+    points, triangles = scan.Mesh.Topology
+    open_one = doc.addObject("Mesh::Feature", "Open")
+    open_one.Mesh = Mesh.Mesh([[points[k] for k in row] for row in triangles[:-2]])
+    assert "the mesh has a hole" in refused(open_one, "OPEN_MESH")
+    crossing = doc.addObject("Mesh::Feature", "Crossing")
+    moved = [[points[k] + App.Vector(5, 5, 5) for k in row] for row in triangles]
+    crossing.Mesh = Mesh.Mesh([[points[k] for k in row] for row in triangles] + moved)
+    feature = None
+    try:
+        feature = api.make_solid_feature(doc, crossing, **FAST)
+    except InputError as error:
+        assert error.code == "SELF_CROSSING"
+    if feature is not None:  # two solids that overlap are one
+        assert feature.Solids == 2
