@@ -228,7 +228,7 @@ def _write(
     with stages.timed("preflight", session):
         content["preflight"] = [one.as_dict() for one in _preflight(stages, distances)]
     content["deposit"] = deposit_balance.as_dict(
-        deposit_balance.of_feature(api.result(stages.feature), job.process.bead_width)
+        deposit_balance.of_toolpath(api.result(stages.feature), toolpath, job.process.bead_width)
     )
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}

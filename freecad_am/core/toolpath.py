@@ -255,7 +255,8 @@ class Toolpath:
     bead model knows of beads at other speeds than theirs, None without one. bead_width: mm that beads count
     as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
     wire_feed: mm/s, None where it is not known. on_part: at how many places it was looked whether they lie on the part, the
-    largest distance of one from it and what is allowed, mm; None where nobody looked.
+    largest distance of one from it and what is allowed, mm; None where nobody looked. volumes: mm3 of a part that is filled,
+    of what beads leave of it, and of beads beside it; None where it is not known.
     """
 
     layers: tuple[Layer, ...]
@@ -271,6 +272,7 @@ class Toolpath:
     unsupported: float | None = None
     wire_feed: float | None = None
     on_part: tuple[float, float, float] | None = None
+    volumes: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

@@ -29,4 +29,4 @@ def for_selection() -> list[str]:
     picks = picking.selected(document)
     if not picks:
         return []
-    return ["RoboticAM_NewJob", "RoboticAM_Solid", *["RoboticAM_WallOnPart", "RoboticAM_SolidsOnHub"] * (len(picks) > 1)]
+    return ["RoboticAM_NewJob", *[f"RoboticAM_{name}" for name in ("WallOnPart", "Solid", "SolidsOnHub")] * (len(picks) > 1)]

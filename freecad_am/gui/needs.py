@@ -41,9 +41,9 @@ def faces(doc: Any) -> str:
 
 def feature(doc: Any) -> str:
     """What is to be deposited."""
-    return document(doc) or (
-        "" if _some(doc, "feature") else tr("First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.")
-    )
+    if document(doc) or _some(doc, "feature"):
+        return document(doc)
+    return tr("First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.")
 
 
 def toolpath_and_cell(doc: Any) -> str:

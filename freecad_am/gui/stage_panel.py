@@ -384,7 +384,7 @@ def _panel_of(proxy: type[Stage]) -> Any:
     from .inspection.panel import InspectionPanel
 
     panels = (
-        cell_panel.CellPanel, feature_panel.FeaturePanel, wall_panel.WallPanel, hub_panel.HubPanel,
-        solid_panel.SolidPanel, toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
+        cell_panel.CellPanel, feature_panel.FeaturePanel, wall_panel.WallPanel, hub_panel.HubPanel, solid_panel.SolidPanel,
+        toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
     )
     return next(panel for panel in panels if panel.stage is proxy)

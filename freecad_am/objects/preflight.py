@@ -74,7 +74,7 @@ def prepared(
         made = planned()
         return Evidence(
             made, process, issues, distances=distances,
-            balance=deposit_balance.of_feature(shape(), process.bead_width),
+            balance=deposit_balance.of_toolpath(shape(), made, process.bead_width),
             looked=None if build.clearance == "none" else clearance_look.looked_at(made, nozzle, NOZZLE_PLACES),
         )
 

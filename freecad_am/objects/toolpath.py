@@ -65,7 +65,7 @@ class Toolpath(Stage):
 
         def work() -> Outcome:
             toolpath = _looked_at(planned(wall, strategy, build, process, carried), wall, sources, strategy)
-            told = deposit_balance.issues(deposit_balance.of_feature(wall, process.bead_width))
+            told = deposit_balance.issues(deposit_balance.of_toolpath(wall, toolpath, process.bead_width))
             toolpath = dataclasses.replace(toolpath, issues=(*told, *toolpath.issues))
             figures = (
                 ("Layers", len(toolpath.layers)), ("Beads", toolpath.bead_count), ("Points", toolpath.point_count),

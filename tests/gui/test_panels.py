@@ -83,7 +83,7 @@ def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, he
 
 
 @pytest.mark.parametrize(
-    "command", ["Cell", "Feature", "WallOnPart", "SolidsOnHub", "Toolpath", "JointPath", "Program", "Inspect"]
+    "command", ["Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Toolpath", "JointPath", "Program", "Inspect"]
 )
 def test_every_field_has_help(person, hemisphere, command):
     if command in ("Toolpath", "JointPath", "Program"):  # tools that act on earlier stages

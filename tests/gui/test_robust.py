@@ -17,7 +17,7 @@ from freecad_am.gui import guess
 from freecad_am.gui.picking import Pick
 from freecad_am.objects.job_group import is_group
 
-TOOLS = ("NewJob", "Cell", "Feature", "WallOnPart", "SolidsOnHub", "Toolpath", "JointPath", "Program")
+TOOLS = ("NewJob", "Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Toolpath", "JointPath", "Program")
 EARLIER = Path(__file__).parent / "data" / "earlier.FCStd"
 
 

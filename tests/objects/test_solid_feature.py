@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in plane layers in documents: sections against OpenCASCADE's own, beads inside the shape, meshes, what is refused."""
+"""Solids in plane layers in documents: sections against OpenCASCADE's own, beads inside the shape, meshes, refusals."""
 
 from pathlib import Path
 
@@ -102,7 +102,8 @@ def test_beads_lie_in_the_shape(doc, name):
     points = np.vstack([bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.kind != "centre"])
     lifted = points + (0.0, 0.0, 2.5)
     rows = np.random.default_rng(1).permutation(len(lifted))[:150]
-    off = [shape.distToShape(Part.Vertex(*lifted[k]))[0] for k in rows if not shape.isInside(App.Vector(*lifted[k]), 1e-6, True)]
+    places = [App.Vector(*lifted[k]) for k in rows]
+    off = [shape.distToShape(Part.Vertex(place))[0] for place in places if not shape.isInside(place, 1e-6, True)]
     assert not off or max(off) < 0.1
     assert made.on_part[0] == min(20_000, sum(map(len, beads))) and made.on_part[1] <= made.on_part[2]
     assert not [issue for issue in api.issues(toolpath) if issue.level == "error"]
@@ -122,9 +123,9 @@ def test_several_objects_and_solids_that_touch(doc):
     beside = part(doc, Part.makeCylinder(10, 30, App.Vector(90, 20, 0)), "Beside")
     feature = api.make_solid_feature(doc, part(doc, halves), further=[rod, beside], **FAST)
     assert feature.Solids == 4 and feature.Height.Value == pytest.approx(30.0)
-    assert [len(one.regions) for one in slices(api.result(feature))] == [2, 2, 2, 2, 2, 2]
-    assert [round(sum(region.area for region in one.regions)) for one in slices(api.result(feature))][0] == pytest.approx(
-        60 * 40 + np.pi * 100, rel=0.002)
+    found = slices(api.result(feature))
+    assert [len(one.regions) for one in found] == [2, 2, 2, 2, 2, 2]
+    assert sum(region.area for region in found[0].regions) == pytest.approx(60 * 40 + np.pi * 100, rel=0.002)
 
 
 def test_what_stands_on_a_substrate_is_kept_clear_of_it(doc):

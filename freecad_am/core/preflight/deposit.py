@@ -48,6 +48,8 @@ def whole(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
         return Promise(what, "not checked: the part encloses no volume", None)
     found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.LEFT_OUT,), WARNING)
     how = "volume of the part deeper than half of a bead's width below the wall, or of its solids aside"
+    if balance.filled:
+        how = "volume of the part less what beads cover of each layer, as wide as they count, times the layer height"
     worst = None if balance.left_out is None else balance.left_out / MM3
     return Promise(what, how, not found, worst, "cm3")
 

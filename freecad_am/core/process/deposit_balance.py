@@ -10,10 +10,12 @@ from typing import Any
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.part_depths import PartDepths
 from ..issues import WARNING, Issue
+from ..toolpath import Toolpath
 
 LEFT_OUT, BESIDE = "NOT_DEPOSITED", "DEPOSITED_BESIDE"
 CODES = (LEFT_OUT, BESIDE)
 ROOM = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
+UNFILLED = 0.03  # of a part that is filled
 LITTLE = 0.02  # of a part
 SMALL = 0.01  # of the area of the faces that beads do not run on
 MOST = 8  # faces and solids named in a message
@@ -23,7 +25,8 @@ MM3 = 1000.0  # in a cm3
 @dataclass(frozen=True)
 class Balance:
     """Volumes in mm3, estimates but for solids; None where the part has none. faces: those left out; solids: those left out,
-    with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there."""
+    with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there.
+    filled: beads fill the part."""
 
     label: str
     part: float | None
@@ -34,6 +37,7 @@ class Balance:
     solids: tuple[tuple[str, float], ...] = ()
     width: float = 0.0
     thick: float = 0.0
+    filled: bool = False
 
 
 def of_feature(value: Any, width: float) -> Balance | None:
@@ -41,6 +45,14 @@ def of_feature(value: Any, width: float) -> Balance | None:
     if isinstance(value, SolidsOnHub):
         return _of_solids(value)
     return None if value.depths is None else of_wall(value.depths, width)
+
+
+def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
+    """The same once there are beads, which know better what they cover where they fill a part."""
+    if toolpath.volumes is None:
+        return of_feature(value, width)
+    part, left, beside = toolpath.volumes
+    return Balance(value.label, part, left, part - left + beside, beside, width=toolpath.bead_width or 0.0, filled=True)
 
 
 def of_wall(depths: PartDepths, width: float) -> Balance:
@@ -74,6 +86,8 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
     """What is to be told, at most one finding of each kind."""
     if balance is None:
         return ()
+    if balance.filled:
+        return _of_filling(balance)
     found = []
     left = balance.left_out or 0.0
     share = left > LITTLE * (balance.part or 0.0) and left > 0.0
@@ -88,6 +102,21 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
             WARNING, BESIDE, f"about {balance.beside / MM3:.3g} of {balance.beads / MM3:.3g} cm3 of beads lie beside "
             f"{balance.label}, which is {balance.thick:.2g} mm thick there, and beads are {balance.width:.4g} mm wide; give "
             "process.bead_width, or machine it off",
+        ))
+    return tuple(found)
+
+
+def _of_filling(of: Balance) -> tuple[Issue, ...]:
+    found, part = [], of.part or 0.0
+    if (of.left_out or 0.0) > UNFILLED * part:
+        found.append(Issue(
+            WARNING, LEFT_OUT, f"{_left_out(of, True)}: beads of {of.width:.4g} mm do not reach into what is "
+            "narrower, and layers not above the last cut; use narrower beads, or lower layers",
+        ))
+    if (of.beside or 0.0) > UNFILLED * part:
+        found.append(Issue(
+            WARNING, BESIDE, f"about {(of.beside or 0.0) / MM3:.3g} cm3 of beads lie beside the {part / MM3:.3g} cm3 of "
+            f"{of.label}: beads of {of.width:.4g} mm stand out where it is narrower; use narrower beads, or machine it off",
         ))
     return tuple(found)
 
@@ -110,6 +139,8 @@ def as_dict(balance: Balance | None) -> dict[str, Any] | None:
 def _left_out(of: Balance, share: bool) -> str:
     """What is not deposited, as the beginning of a sentence."""
     left, part = (of.left_out or 0.0) / MM3, (of.part or 0.0) / MM3
+    if of.filled:
+        return f"about {left:.3g} of the {part:.3g} cm3 of {of.label} are not deposited"
     if not of.width and not of.solids:
         return f"about {left:.3g} of the {part:.3g} cm3 of {of.label}, all that lies within its hub, are not deposited"
     if not of.width:

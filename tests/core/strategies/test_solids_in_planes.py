@@ -126,6 +126,16 @@ def test_deposits_the_volume_of_the_part():
     assert volume == pytest.approx(math.pi * (40.0**2 - 12.0**2) * 20.0, rel=0.03)
 
 
+def test_what_beads_leave_and_what_lies_beside_is_known():
+    """A plate filled, and a fin thinner than a bead: by how much one bead is wider, and the millimetre above the last cut."""
+    part, left, beside = planned(box((0, 0, 0), (60, 30, 9)), fill="contours", layer_height=2.0).volumes
+    assert part == pytest.approx(60 * 30 * 9) and beside < 1.0
+    assert left == pytest.approx(60 * 30 * 1, rel=0.02)  # and what rounded corners leave
+    part, left, beside = planned(box((0, 0, 0), (60, 2, 8))).volumes
+    assert part == pytest.approx(960.0) and left < 1.0
+    assert beside == pytest.approx(960.0 + 2 * 8 * math.pi * 2.0, rel=0.2)  # twice as wide, and round ends
+
+
 def test_touching_and_overlapping_solids_are_one():
     """Two halves of a block, and one with a third that overlaps both: the beads of the block."""
     whole = planned(box((0, 0, 0), (60, 30, 8)))

@@ -16,7 +16,7 @@ from ...filling.sparse import Infill
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base
 from ...geometry.plane_curve import nearest
-from ...geometry.region import Region
+from ...geometry.region import Region, along
 from ...geometry.strip import Strip
 from ...geometry.told import place
 from ...issues import NOTE, WARNING, InputError, Issue
@@ -33,12 +33,22 @@ INSTEAD = {  # round a hub
 }
 
 
+class Cover(NamedTuple):
+    """Areas, mm^2: of regions, what beads as wide as they count leave of them, and what of beads lies beside them."""
+
+    whole: float = 0.0
+    left: float = 0.0
+    beside: float = 0.0
+
+
 class Filled(NamedTuple):
-    """The beads of a layer on the plane, what to know about them, and the number of the region that each fills."""
+    """The beads of a layer on the plane, what to know about them, the number of the region that each fills, and how well
+    all of them are covered."""
 
     curves: list[PlaneCurve]
     issues: tuple[Issue, ...]
     islands: list[int]
+    cover: Cover
 
 
 class _Picture(NamedTuple):
@@ -50,6 +60,7 @@ class _Picture(NamedTuple):
     rings: tuple[Array, ...]
     curves: tuple[PlaneCurve, ...]
     left: list[tuple[Array, float]]
+    cover: Cover
 
 
 class Pictures:
@@ -86,8 +97,10 @@ class Pictures:
         issues: list[Issue] = []
         gaps: list[tuple[Array, float]] = []
         islands: list[int] = []
+        covers: list[Cover] = []
         for number, region in enumerate(one.regions):
-            found, left = self._picture(one, region, beads, angle, infill)
+            found, left, cover = self._picture(one, region, beads, angle, infill)
+            covers.append(cover)
             curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
             islands += [number] * len(found)
             gaps += left
@@ -106,23 +119,24 @@ class Pictures:
                 NOTE, "PATTERN_ROUND_HUB", f"a layer all the way round the hub is filled with {INSTEAD[strategy.fill]}; "
                 f"strategy.fill = {strategy.fill} is for regions with an end", one.layer,
             ))
-        return Filled(curves, tuple(issues), islands)
+        return Filled(curves, tuple(issues), islands, Cover(*map(math.fsum, zip(*covers))) if covers else Cover())
 
     def _picture(
         self, one: Slice, region: Region | Strip, beads: Beads, angle: float, infill: Infill
-    ) -> tuple[Sequence[PlaneCurve], list[tuple[Array, float]]]:
+    ) -> tuple[Sequence[PlaneCurve], list[tuple[Array, float]], Cover]:
         if isinstance(region, Strip):
             if one.covered == ():
                 infill = Infill()
-            return self._made(region, beads, angle, infill)
+            return *self._made(region, beads, angle, infill), Cover()
         known = self._known.setdefault(one.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
             if alike and _equal(other.rings, region.rings()) and _same(other.infill, infill):
-                return other.curves, other.left
+                return other.curves, other.left, other.cover
         curves, left = self._made(region, beads, angle, infill)
-        known.append(_Picture(beads, angle, infill, region.rings(), curves, left))
-        return curves, left
+        cover = Cover() if one.surface.period is not None else _covered(region, curves, beads, infill)
+        known.append(_Picture(beads, angle, infill, region.rings(), curves, left, cover))
+        return curves, left, cover
 
     def _made(
         self, region: Region | Strip, beads: Beads, angle: float, infill: Infill
@@ -156,6 +170,14 @@ def bead_width(strategy: FilledParameters, process: ProcessParameters, model: Be
             f"leave stripes of {spacing - width:.3g} mm open between them; use {width:g} mm or less, or wider beads",
         )
     return width
+
+
+def _covered(region: Region, curves: Sequence[PlaneCurve], beads: Beads, infill: Infill) -> Cover:
+    """How well beads cover a region; what they leave open on purpose does not count."""
+    laid = along([(curve.points, curve.closed) for curve in curves], beads.inset, beads.chord_error) if curves else ()
+    inside = math.fsum(part.area for part in region.common(laid)) if laid else 0.0
+    left = region.area - inside if infill.density == 1.0 else 0.0
+    return Cover(region.area, left, math.fsum(part.area for part in laid) - inside)
 
 
 def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy as np
 from ...filling.curve import PlaneCurve
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
+from ...geometry.solid_mesh import SolidMesh
 from ...issues import InfeasibleError, InputError, Issue
 from ...layers.field import Piece, pieces, upwards
 from ...layers.surface import Slice
@@ -22,7 +25,7 @@ from ...toolpath import Toolpath
 from .. import size
 from ..progress import Progress, silent
 from .beads import Rolled, reversed_curve, rolled
-from .filling import Filled, Pictures, bead_width, spaced
+from .filling import Cover, Filled, Pictures, bead_width, spaced
 from .islands import island_by_island
 from .lean_notes import lean_notes
 from .notes import notes
@@ -51,6 +54,7 @@ def plan(
     laid: list[Laid] = []
     made: list[Rolled] = []
     mended: list[Issue] = []
+    covers: list[Cover] = []
     found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
              for number, piece in enumerate(pieces(one, strategy))]
     planes, at = on_planes(solids), None
@@ -60,6 +64,7 @@ def plan(
             progress(done / len(found), f"{piece.name} layer {layer.layer}")
             beads = _filled(layer, piece, base, pictures)
             mended += beads.issues
+            covers.append(beads.cover)
             here = [_bead(curve, layer, base, strategy, build, process, model) for curve in beads.curves]
             made += here
             ranks = [curve.ring for curve in beads.curves]
@@ -78,9 +83,19 @@ def plan(
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
-        "solid" if on_planes(solids) else "developable",
+        "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
+        volumes=_volumes(solids, strategy, covers) if planes else None,
     )
+
+
+def _volumes(solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
+    """mm3 of the part, of what beads leave of it, and of what of them lies beside it. Of a single solid the part is all of
+    that, so that what is above the last cut counts; solids may overlap, and are as large as their sections are."""
+    whole, left, beside = (strategy.layer_height * math.fsum(column) for column in zip(*covers))
+    bodies = [body for group in solids.groups for body in group.bodies]
+    part = whole if len(bodies) > 1 or strategy.margin else SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
+    return part, max(part - whole + left, 0.0), beside
 
 
 def _bead(
