@@ -1122,11 +1122,6 @@
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>A solid on a flat base cannot be built up yet. Select, with Ctrl, faces of it that are one wall, and the part that they grow on.</source>
-        <translation>Un solide sur une base plane ne peut pas encore être construit. Sélectionnez, avec Ctrl, de ses faces qui forment une paroi, et la pièce sur laquelle elles poussent.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
         <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
@@ -2068,8 +2063,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>
-        <source>First make a feature: Feature…, Wall on Part… and Solids on Hub… do so.</source>
-        <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce… et Solides sur moyeu… le font.</translation>
+        <source>First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.</source>
+        <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce…, Solide… et Solides sur moyeu… le font.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/needs.py"/>
@@ -3698,11 +3693,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>
-        <source>Select also, with Ctrl, the hub it grows on; or the faces of a wall that grows on it.</source>
-        <translation>Sélectionnez aussi, avec Ctrl, le moyeu sur lequel il croît ; ou les faces d&apos;une paroi qui croît sur lui.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
         <source>Select also, with Ctrl, the hub: a cylinder or cone.</source>
         <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
     </message>
@@ -3877,6 +3867,11 @@
         <translation>Solides</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Solids in plane layers</source>
+        <translation>Solides en couches planes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Solids on Hub…</source>
         <translation>Solides sur moyeu…</translation>
@@ -3895,6 +3890,11 @@
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>Solid{0} ({1} to {2})</source>
         <translation>Solid{0} ({1} à {2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Solid…</source>
+        <translation>Solide…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -3987,6 +3987,11 @@
         <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>Stands on</source>
+        <translation>Repose sur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
         <source>Start again from what was planned</source>
         <translation>Repartir de ce qui était planifié</translation>
@@ -4060,6 +4065,11 @@
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Takes the selected shape of revolution to be deposited</source>
         <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected solids to be deposited in plane layers</source>
+        <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -4345,6 +4355,11 @@
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>The part that they stand on; none is needed on a platform.</source>
+        <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -5273,8 +5288,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} cm3 of beads lie beside the {1} cm3 of {2}: beads of {3} mm stand out where it is narrower; use narrower beads, or machine it off</source>
+        <translation>environ {0} cm3 de cordons sont à côté des {1} cm3 de {2} : des cordons de {3} mm en débordent là où c&apos;est plus étroit ; prenez des cordons plus étroits, ou usinez l&apos;excédent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>about {0} cm3 of the {1} cm3 of {2} are not deposited</source>
         <translation>environ {0} cm3 des {1} cm3 de {2} ne sont pas déposés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} of the {1} cm3 of {2} are not deposited</source>
+        <translation>environ {0} des {1} cm3 de {2} ne sont pas déposés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
@@ -7602,11 +7627,6 @@
         <translation>plan de symétrie</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
-        <source>plane, {:.4g} mm high</source>
-        <translation>plan, haut de {:.4g} mm</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>planned joints of the deposit driven through the joint-frame chain, which planning does not use</source>
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
@@ -9067,6 +9087,11 @@
         <translation>volume de la pièce plus profond qu’une demi-largeur de cordon sous la paroi, ou de ses solides à côté</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>volume of the part less what beads cover of each layer, as wide as they count, times the layer height</source>
+        <translation>volume de la pièce moins ce que les cordons couvrent de chaque couche, à la largeur comptée, fois la hauteur de couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
@@ -10122,6 +10147,11 @@
         <translation>{0} : une paroi d’un seul cordon, de {1} mm de large, est prévue</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>{0}: beads of {1} mm do not reach into what is narrower, and layers not above the last cut; use narrower beads, or lower layers</source>
+        <translation>{0} : des cordons de {1} mm n&apos;entrent pas dans ce qui est plus étroit, et il n&apos;y a pas de couche au-dessus de la dernière coupe ; prenez des cordons plus étroits ou des couches plus basses</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
         <source>{0}: controller.matrix</source>
         <translation>{0} : controller.matrix</translation>
@@ -10327,6 +10357,11 @@
         <translation>{} ne peut pas être exécuté : {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>{} cannot be taken for this.</source>
+        <translation>{} ne convient pas ici.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>{} cannot be written: {}</source>
         <translation>{} ne peut pas être écrit : {}</translation>
@@ -10373,8 +10408,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} is a mesh, which may be deposited on a hub</source>
-        <translation>{} est un maillage, qui peut être déposé sur un moyeu</translation>
+        <source>{} is a mesh, which is filled in plane layers</source>
+        <translation>{} est un maillage, rempli en couches planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/wall_panel.py"/>
@@ -10430,6 +10465,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>{} is not below {}</source>
         <translation>{} n&apos;est pas inférieur à {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/guess.py"/>
+        <source>{} is not of revolution and has no wall, so it is filled in plane layers</source>
+        <translation>{} n&apos;est pas de révolution et n&apos;a pas de paroi : il est rempli en couches planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>
@@ -10495,6 +10535,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>{} shows {} at zero</source>
         <translation>{} montre {} à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>{} solids, {:.4g} mm high; first layer: {} contours</source>
+        <translation>{} solides, hauteur {:.4g} mm ; première couche : {} contours</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>
@@ -10746,6 +10791,19 @@
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Simulate…</source>
         <translation>Simuler…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Solid</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Solid…</source>
+        <translation>Solide…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected solids to be deposited in plane layers</source>
+        <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
 </context>
 <context>
