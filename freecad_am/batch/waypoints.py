@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from freecad_am.core.motion import Motion
 from freecad_am.core.toolpath import Array
@@ -14,6 +15,9 @@ HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,widt
 WIRE = "wire_feed_mm_s"
 _LENGTHS, _DIRECTIONS, _ANGLES = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 20_000
+_KINDS = np.frombuffer(b"rapid\0\0deposit", dtype=np.uint8).reshape(2, -1)
+
+Bytes = NDArray[np.uint8]
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
@@ -33,24 +37,40 @@ def told_of_wire(motion: Motion) -> bool:
 
 
 def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
-    counts = [column[rows].tolist() for column in (motion.layer, motion.bead, motion.point)]
-    kinds = ["deposit" if deposit else "rapid" for deposit in motion.deposit[rows].tolist()]
-    lengths = _columns(motion.position[rows], _LENGTHS)
-    directions = _columns(motion.build[rows], _DIRECTIONS) + _columns(motion.tool[rows], _DIRECTIONS)
-    process = _columns(np.column_stack((motion.speed[rows], motion.width[rows])), _LENGTHS)
+    """Rows as text, digit by digit for all at once: three times as fast as a formatting per row of Python's floats."""
     slides = np.array([unit == "mm" for unit in units])
-    angles = _columns(np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows])), _ANGLES)
-    decimals = [_LENGTHS] * 3 + [_DIRECTIONS] * 6 + [_LENGTHS] * 2 + [_ANGLES] * len(angles)
-    wire: list[list[float]] = []
+    angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
+    told = [
+        *((column[rows], 0) for column in (motion.layer, motion.bead, motion.point)), None,
+        *((column, _LENGTHS) for column in motion.position[rows].T),
+        *((column, _DIRECTIONS) for vectors in (motion.build, motion.tool) for column in vectors[rows].T),
+        *((column[rows], _LENGTHS) for column in (motion.speed, motion.width)), *((column, _ANGLES) for column in angles.T),
+    ]
     if told_of_wire(motion):
-        wire, decimals = _columns(motion.wire[rows, None], _LENGTHS), [*decimals, _LENGTHS]
-    row = "%d,%d,%d,%s," + ",".join(f"%.{digits}f" for digits in decimals) + "\n"
-    # one formatting per row of Python floats is three times as fast as numpy's own writer
-    lines = [row % values for values in zip(*counts, kinds, *lengths, *directions, *process, *angles, *wire)]
-    return "".join(lines).replace("nan", "")
+        told.append((motion.wire[rows], _LENGTHS))
+    texts = [_KINDS[motion.deposit[rows].astype(np.intp)].T if entry is None else _digits(*entry) for entry in told]
+    count = len(motion.deposit[rows])
+    parts = [part for text in texts for part in (text, np.full((1, count), ord(","), dtype=np.uint8))]
+    parts[-1][:] = ord("\n")
+    everything = np.concatenate(parts).T.ravel()
+    return everything[everything > 0].tobytes().decode("ascii")
 
 
-def _columns(values: Array, decimals: int) -> list[list[float]]:
-    """Columns as lists; rounded first, so that no -0.000000 is written."""
-    rounded: list[list[float]] = (np.round(values, decimals) + 0.0).T.tolist()
-    return rounded
+def _digits(values: Array, decimals: int) -> Bytes:
+    """(w, n) characters of numbers (n,) with so many decimals, 0 where there is none: all of a NaN. No -0.000000."""
+    known = np.isfinite(values)
+    whole = np.rint(np.where(known, values, 0.0) * 10.0**decimals).astype(np.int64)
+    left = np.abs(whole)
+    size = max(len(str(int(left.max(initial=0)))), decimals + 1)
+    text = np.zeros((size + 2, len(left)), dtype=np.uint8)
+    text[0] = np.where(whole < 0, ord("-"), 0)
+    for place in range(size):
+        rest = left // 10
+        shown = left - 10 * rest + ord("0")
+        # to the left of the decimals and one digit more, only what is not 0
+        text[size + (place < decimals) - place] = shown if place <= decimals else np.where(left > 0, shown, 0)
+        left = rest
+    if decimals:
+        text[size + 1 - decimals] = ord(".")
+    text[:, ~known] = 0
+    return text
