@@ -17,10 +17,11 @@ LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
 class PlaneCurve:
     """The middle of a bead: points (n, 2) mm; a closed one does not repeat its first point.
 
-    kind: 'contour', 'line', 'spiral', 'zigzag', 'centre' or 'closing'. ring: counts from the outermost contour, 0, inwards.
+    kind: 'contour', 'connected', 'line', 'spiral', 'zigzag', 'centre' or 'closing'. ring: counts from the outermost contour,
+    0, inwards.
     turns: how often a closed one goes round the hub, so that behind its last point follows the first, moved on by the period
     as often. sheet: u (`strip.Period`), mm, about which it lies: on a wide cone it may be more than half a turn of the
-    plane from 0.
+    plane from 0. share: (n,) of its usual width that the bead has at each point; None: all of it.
     """
 
     points: Array
@@ -29,6 +30,7 @@ class PlaneCurve:
     ring: int
     turns: int = 0
     sheet: float = 0.0
+    share: Array | None = None
 
 
 def on_plane(point: Array) -> str:

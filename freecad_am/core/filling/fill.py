@@ -11,6 +11,7 @@ from ..geometry.region import Region, joined
 from ..geometry.strip import Strip
 from ..issues import InputError
 from .centre import left_open
+from .connected import connected
 from .contours import contours
 from .curve import Beads, PlaneCurve
 from .lines import lines
@@ -21,8 +22,8 @@ from .strip_lines import lines_along, lines_round
 from .strips import strip_contours
 from .zigzag import zigzag
 
-PATTERNS = ("contours", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
-CURVED = ("contours", "spiral")  # without walls: the border's parallel curves are all they have
+PATTERNS = ("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid")
+CURVED = ("contours", "connected", "spiral")  # without walls: the border's parallel curves are all they have
 WHOLE = Infill()
 
 
@@ -50,7 +51,7 @@ def fill(
     if infill.density < 1.0:
         return tuple(sparse(region, beads, pattern, angle, 0 if math.isinf(walls) else int(walls), longest_link, infill))
     if pattern in CURVED:
-        return tuple((contours if pattern == "contours" else spiral)(region, beads))
+        return tuple({"contours": contours, "connected": connected, "spiral": spiral}[pattern](region, beads))
     if pattern == "zigzag":
         return tuple(zigzag(region, beads, angle, int(walls), longest_link))
     return tuple(lines(region, beads, angle, int(walls)))

@@ -143,9 +143,9 @@ class FilledParameters(LayerParameters):
         low=0.0, high=0.9, optional=True,
     )
     fill: str = f.parameter(
-        "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: spiral, zigzag; below 100 % also grid, "
-        "triangles, honeycomb, gyroid.",
-        choices=("contours", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid"),
+        "contours", f.CHOICE, "Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % "
+        "also grid, triangles, honeycomb, gyroid.",
+        choices=("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid"),
     )
     fill_density: float = f.parameter(
         1.0, f.RATIO, "Share of the area inside of the walls that beads fill: their length times their spacing.", low=0.01,
@@ -200,7 +200,7 @@ class FilledParameters(LayerParameters):
         if self.walls == math.inf:
             object.__setattr__(self, "walls", "inf")
         f.check(self, "strategy")
-        if self.fill == "spiral" and self.fill_density < 1.0:
+        if self.fill in ("connected", "spiral") and self.fill_density < 1.0:
             raise InputError(
                 "BAD_VALUE", "strategy.fill_density", f"{self.fill} fills the whole, not {100.0 * self.fill_density:g} %; "
                 "use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid",

@@ -199,7 +199,7 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
 
 
 def _advice(bead: Bead, point: int, able: float) -> str:
-    if bead.width is None:
+    if bead.height is None:
         return f"lower the travel speed to {able:.2f} mm/s"
     return (
         f"it could at {able:.2f} mm/s, but the bead model asks for {bead.speed[point]:.3g} mm/s and too much would pile up: "

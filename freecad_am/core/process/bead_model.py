@@ -87,8 +87,8 @@ class BeadModel:
         section: Array = self.heights(speed, straight) * self.widths(speed, straight)
         return section / widths
 
-    def speed_for(self, width: float, radius: Array) -> Asked:
-        """The travel speed that keeps `width` mm at radii of curvature (n,) mm, kept within the speeds of the table."""
+    def speed_for(self, width: float | Array, radius: Array) -> Asked:
+        """The travel speed that keeps `width` mm, one or (n,), at radii of curvature (n,) mm; within those of the table."""
         tight = radius < self.radii[0] * (1.0 - 1e-9)
         rest = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
         with np.errstate(divide="ignore", over="ignore"):

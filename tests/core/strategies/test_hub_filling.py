@@ -224,3 +224,27 @@ def test_tops_of_a_step_are_filled():
     assert part[0] == pytest.approx(whole[0], rel=0.02) and part[1] < 0.5 * whole[1]
     beside, under = one(top - 2), one(top - 2, fill_density=0.2, solid_layers=1)
     assert under[0] < 0.5 * beside[0] and under[1] < 0.5 * beside[1]
+
+
+@pytest.mark.parametrize("hub", HUBS)
+def test_connected_contours_start_once_and_narrow_places_run_faster(hub):
+    """One closed bead for each solid and layer; the wire that a millimetre of it gets follows its width."""
+    path = planned(hub, (0.3, 2.4), 31.0, fill="connected", bead_spacing=5.0, order="around-axis", layer_height=6.0)
+    usual = planned(hub, (0.3, 2.4), 31.0, fill="contours", bead_spacing=5.0, order="around-axis", layer_height=6.0)
+    assert [len(layer.beads) for layer in path.layers[:4]] == [2] * min(4, len(path.layers))
+    assert all(bead.closed and bead.kind == "connected" for layer in path.layers[:4] for bead in layer.beads)
+    assert path.bead_count < 0.4 * usual.bead_count
+    narrow = 0
+    for _, _, bead in path:
+        if bead.width is None:
+            assert np.unique(bead.speed) == pytest.approx([6.0])
+            continue
+        assert bead.width.max() == pytest.approx(5.0) and bead.width.min() > 1.4
+        middle = 0.5 * (bead.width[1:] + bead.width[:-1])
+        even = np.abs(np.diff(bead.width)) < 1e-9
+        assert bead.speed[1:][even] * middle[even] == pytest.approx(6.0 * 5.0)
+        way = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        at = 6.0 * 5.0 / bead.width  # at the points; the acceleration is 20 mm/s2
+        assert (np.abs(np.diff(at**2)) <= 2.0 * 20.0 * way * 1.01 + 1e-9).all()
+        narrow += int((bead.width < 4.0).sum())
+    assert narrow > 0

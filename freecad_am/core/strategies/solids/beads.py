@@ -21,6 +21,7 @@ from ...process.bead_model import BeadModel
 from ...process.bead_speed import followed, radii
 from ...process.wire import with_model
 from ...toolpath import Bead
+from .filling import bead_width
 from .lean import Course, Lean, Turned, held
 
 Mask = NDArray[np.bool_]
@@ -64,9 +65,29 @@ def rolled(
         points, base.turned(normal), base.turned(tool), TURN * way / way[-1], np.full(len(way), process.travel_speed),
         curve.closed, kind=curve.kind, ring=curve.ring,
     )
-    if model is None:
+    closed = curve.closed and not curve.turns
+    share = None if curve.share is None else _share(curve, ended, flat)
+    if model is not None:
+        return _at_speed(bead, flat, closed, process, model, 1.0 if share is None else share)._replace(turned=turned)
+    if share is None:
         return Rolled(bead, turned=turned)
-    return _at_speed(bead, flat, curve.closed and not curve.turns, process, model)._replace(turned=turned)
+    speed = followed(flat, process.travel_speed / share, closed, process.acceleration)
+    width = bead_width(strategy, process, model) * process.travel_speed / speed
+    return Rolled(replace(bead, speed=_of_segments(speed), width=width), turned=turned)
+
+
+def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:
+    """The share (n,) of its usual width that a bead has at the points (n, 2) of it as laid, those of the curve (m, 2) and
+    more."""
+    assert curve.share is not None
+    share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
+    given, laid = (np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))] for line in (ended, flat))
+    return np.asarray(np.interp(laid / laid[-1], given / given[-1], share))
+
+
+def _of_segments(speed: Array) -> Array:
+    """Speeds (n,) of the segments that end at points, from those at points (n,)."""
+    return np.r_[speed[0], 0.5 * (speed[:-1] + speed[1:])]
 
 
 def _needed(flat: Array, tolerance: float) -> Array:
@@ -101,12 +122,14 @@ def dense(flat: Array, surface: LayerSurface, chord_error: float) -> Array:
     return np.asarray(np.vstack([points, flat[-1:]]))
 
 
-def _at_speed(bead: Bead, flat: Array, closed: bool, process: ProcessParameters, model: BeadModel) -> Rolled:
-    """The bead, laid flat (n, 2) where it may be closed or not, at the speeds that keep its width."""
+def _at_speed(
+    bead: Bead, flat: Array, closed: bool, process: ProcessParameters, model: BeadModel, part: Array | float
+) -> Rolled:
+    """The bead, laid flat (n, 2) where it may be closed or not, at the speeds that keep its width, or a part of it."""
     radius = radii(flat, closed, process.bead_width)
-    asked = model.speed_for(process.bead_width, radius)
+    asked = model.speed_for(process.bead_width * part, radius)
     speed = followed(flat, asked.speed, closed, process.acceleration)
-    segment = np.r_[speed[0], 0.5 * (speed[:-1] + speed[1:])]
+    segment = _of_segments(speed)
     widths, heights, share = model.widths(speed, radius), model.heights(speed, radius), None
     if process.wire.feed_mode == "proportional":
         heights = model.heights_of_section(widths, process.bead_width)
@@ -117,5 +140,7 @@ def _at_speed(bead: Bead, flat: Array, closed: bool, process: ProcessParameters,
 
 def reversed_curve(curve: PlaneCurve) -> PlaneCurve:
     """The curve run the other way, a closed one from the same start."""
-    points = curve.points[::-1]
-    return replace(curve, points=np.roll(points, 1, axis=0) if curve.closed else points)
+    points, share = curve.points[::-1], None if curve.share is None else curve.share[::-1]
+    if not curve.closed:
+        return replace(curve, points=points, share=share)
+    return replace(curve, points=np.roll(points, 1, axis=0), share=None if share is None else np.roll(share, 1))

@@ -29,7 +29,8 @@ from ...process.bead_model import BeadModel
 SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
 INSTEAD = {  # round a hub
-    "spiral": "contours", "zigzag": "lines", "grid": "lines", "triangles": "lines", "honeycomb": "lines", "gyroid": "lines",
+    "spiral": "contours", "connected": "contours",
+    "zigzag": "lines", "grid": "lines", "triangles": "lines", "honeycomb": "lines", "gyroid": "lines",
 }
 
 
