@@ -530,8 +530,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
-        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+        <source>Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -3243,8 +3243,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Parallel contours, parallel lines, or either linked: spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
-        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+        <source>Parallel contours, parallel lines, or either linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -5860,6 +5860,11 @@
         <location filename="../../freecad_am/gui/hub_panel.py"/>
         <source>cone, R {:.4g} mm, half angle {:.4g}°</source>
         <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>connected</source>
+        <translation>contours reliés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
