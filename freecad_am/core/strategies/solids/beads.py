@@ -87,7 +87,7 @@ def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:
 
 def _of_segments(speed: Array) -> Array:
     """Speeds (n,) of the segments that end at points, from those at points (n,)."""
-    return np.r_[speed[0], 0.5 * (speed[:-1] + speed[1:])]
+    return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
 
 
 def _needed(flat: Array, tolerance: float) -> Array:
