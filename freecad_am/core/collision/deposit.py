@@ -18,13 +18,14 @@ CORNER = np.cos(np.radians(10.0))  # of the turn from one segment to the next, b
 
 def of_beads(
     points: Array, build: Array, width: Array | float, height: Array | float, starts: Mask | Index,
-    moments: Index | None = None, grain: float = 0.0,
+    moments: Index | None = None, grain: float = 0.0, beside: float = 0.0,
 ) -> Obstacles:
     """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
 
     width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
-    this. A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
+    this. beside: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
+    A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
     """
     n = len(points)
     first = np.zeros(n, dtype=bool)
@@ -73,7 +74,7 @@ def of_beads(
     return Obstacles(
         np.concatenate([hull, wedge]), np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
-        np.concatenate([line, line[turned + 1]]), np.concatenate([wide, wide[turned]]),
+        np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), beside),
     )
 
 

@@ -10,6 +10,8 @@ import numpy as np
 from .frustum import Array, Frustum, Index, beside_tip
 from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
 
+LEAST_UPRIGHT = 0.25  # mm that the lower side of a nozzle at least rises with a mm along its axis, where it leans
+
 
 @dataclass(frozen=True)
 class Nozzle:
@@ -23,34 +25,45 @@ class Nozzle:
         """Largest distance of a point of it from the tip, mm."""
         return max(self.bodies.reach, self.deposit.reach)
 
+    @property
+    def foot(self) -> float:
+        """Diameter of the lower end that is looked at against deposit, mm: about it is the bead being laid."""
+        return float(np.max(2.0 * (self.deposit.radius + self.deposit.slope * self.deposit.low)))
+
     def rows(self, index: Index) -> Nozzle:
         """The nozzles of some of the rows, where they differ."""
         return Nozzle(self.bodies.rows(index), self.deposit.rows(index))
 
     def halfway(self) -> Nozzle:
         """The nozzle as it is looked at halfway between points at which it is clear."""
+        return self.larger(-HALFWAY)
+
+    def larger(self, by: float) -> Nozzle:
+        """The nozzle with its side and its upper end `by` mm farther out."""
         return Nozzle(*(
-            replace(solid, radius=solid.radius - HALFWAY * np.hypot(1.0, solid.slope), high=solid.high - HALFWAY)
+            replace(solid, radius=solid.radius + by * np.hypot(1.0, solid.slope), high=solid.high + by)
             for solid in (self.bodies, self.deposit)
         ))
 
 
-def exempt_height(radius: float, slope: float, bead_height: float) -> float:
-    """Height (mm) over the tip plane below which deposit is not looked at.
+def exempt_height(radius: float, slope: float, bead_height: float, lean: float = 0.0) -> float:
+    """Height (mm) over the tip plane below which deposit is not looked at. lean: rad between tool axis and build direction.
 
     The tip stands on the deposit in the bead that is being laid, and beads beside it overlap it by intention: up to the
-    height of the bead they are about the nozzle rightly. At the least it is the height at which the nozzle's side is one of
-    its diameters from the tip.
+    height of the bead they are about the nozzle rightly, also below the lower side of one that leans. At the least it is the
+    height at which the nozzle's side is one of its diameters from the tip.
     """
-    return max(beside_tip(radius, slope), bead_height)
+    upright = max(float(np.cos(lean) - slope * np.sin(lean)), LEAST_UPRIGHT)
+    return max(beside_tip(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
 
 
-def depositing(radius: float, slope: float, length: float, bead_height: float) -> Nozzle:
-    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle, and the height mm of
-    the highest bead. Bodies are left out only as far as the nozzle touches what it stands on."""
+def depositing(radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0) -> Nozzle:
+    """The nozzle while it deposits: radius of its tip and length mm, slope: tangent of its half angle, the height mm of
+    the highest bead, and how far it leans by intention, rad. Bodies are left out only as far as the nozzle touches what it
+    stands on."""
     return Nozzle(
         Frustum(radius, slope, beside_tip(radius, slope) + ABOVE_FACES, length),
-        Frustum(radius, slope, exempt_height(radius, slope, bead_height), length),
+        Frustum(radius, slope, exempt_height(radius, slope, bead_height, lean), length),
     )
 
 

@@ -16,7 +16,7 @@ from ..geometry.columns import columns
 from ..geometry.profile import Array
 
 SCAN = 48  # tilts tried before the first good one is refined
-HALVINGS = 44  # from 90/48 deg to below 1e-12 rad
+AT_ONCE, PARTS = 8, 4  # of these tried together, and parts that the place of the first good one is narrowed to at once
 
 
 def local(tangents: Array) -> Array:
@@ -75,28 +75,51 @@ def tilted_back(build: Array, angle: Array) -> Array:
     return np.where((angle > 0.0)[:, None] & (level > 0.0)[:, None], turned, build)
 
 
-def least_tilt_back(build: Array, low: Array, good: Callable[[NDArray[np.intp], Array], NDArray[np.bool_]]) -> Array:
-    """Smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good; NaN where none is up to the axis.
+def least_tilt_back(
+    build: Array, low: Array, good: Callable[[NDArray[np.intp], Array], NDArray[np.bool_]], within: float = 1e-14,
+    about: Array | None = None,
+) -> Array:
+    """Smallest tilt-back (n,) rad, `low` (n,) or more, at which each row is good, to `within` rad; NaN where none is up to
+    the axis.
 
-    good(rows (k,), angles (k,)) -> (k,) bool tells whether the rows are good when tilted back by the angles.
+    good(rows (k,), angles (k,)) -> (k,) bool tells whether the rows are good when tilted back by the angles. about: (n, 2)
+    angles between which it is looked for first, NaN where nowhere.
     """
     angle = low.copy()
     rows = np.flatnonzero(~good(np.arange(len(build)), low))
     top = np.maximum(from_vertical(build[rows]), low[rows])
     bad, fine = low[rows].copy(), np.full(len(rows), np.nan)
-    for step in range(1, SCAN + 1):
+    if about is not None:
+        likely = np.flatnonzero(np.isfinite(about[rows, 0]))
+        tried = np.clip(about[rows[likely]], low[rows[likely], None], top[likely, None])
+        _narrow(rows, likely, tried, good, bad, fine)
+        bad[np.isnan(fine)] = low[rows[np.isnan(fine)]]
+    for first in range(0, SCAN, AT_ONCE):
         open_ = np.flatnonzero(np.isnan(fine))
         if len(open_) == 0:
             break
-        tried = low[rows[open_]] + (top[open_] - low[rows[open_]]) * (step / SCAN)
-        ok = good(rows[open_], tried)
-        fine[open_[ok]] = tried[ok]
-        bad[open_[~ok]] = tried[~ok]
-    known = np.flatnonzero(~np.isnan(fine))
-    for _ in range(HALVINGS if len(known) else 0):
-        middle = 0.5 * (bad[known] + fine[known])
-        ok = good(rows[known], middle)
-        fine[known] = np.where(ok, middle, fine[known])
-        bad[known] = np.where(ok, bad[known], middle)
+        step = np.arange(first + 1, first + AT_ONCE + 1) / SCAN
+        start = low[rows[open_], None]
+        _narrow(rows, open_, start + (top[open_, None] - start) * step, good, bad, fine)
+    share = np.arange(1, PARTS) / PARTS
+    while True:
+        wide = np.flatnonzero(fine - bad > within)
+        if not len(wide):
+            break
+        _narrow(rows, wide, bad[wide, None] + (fine[wide] - bad[wide])[:, None] * share, good, bad, fine)
     angle[rows] = fine
     return angle
+
+
+def _narrow(
+    rows: NDArray[np.intp], some: NDArray[np.intp], tried: Array,
+    good: Callable[[NDArray[np.intp], Array], NDArray[np.bool_]], bad: Array, fine: Array,
+) -> None:
+    """Bring the bounds of some rows, in place, to the first of the rising angles tried (k, s) that is good and to the last
+    one before it."""
+    ok = good(np.repeat(rows[some], tried.shape[1]), tried.ravel()).reshape(tried.shape)
+    found = ok.any(axis=1)
+    first = np.where(found, ok.argmax(axis=1), tried.shape[1])
+    fine[some[found]] = tried[found, first[found]]
+    later = np.flatnonzero(first > 0)
+    bad[some[later]] = tried[later, first[later] - 1]

@@ -1,171 +1,156 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Is the nozzle clear of what is deposited already, and of the platform? Exact for parts of revolution.
+"""Is the nozzle clear of what is deposited already, and of the platform? For parts of revolution.
 
-The paper tilts the build directions near a closing top back by the nozzle's angle (Chalvin 2020, section 6.1).
-Here the nozzle is a frustum: a flat tip of radius a at the deposit point, opening by the half angle over its
-length along the tool axis t. With x the height of a point Q over the tip plane along t and k = tan(half angle), Q
-is inside when 0 < x <= length and |Q - P|^2 < x^2 + (a + k x)^2. Points at or behind the tip plane are free, and so
-is the bead being laid: everything within one nozzle diameter of the deposit point P.
+The paper tilts the build directions near a closing top back by the nozzle's angle (Chalvin 2020, section 6.1). Here the
+nozzle is asked of `core/collision`, as it is on walls, against beads with their width and height. A bead stands along its
+build direction: to tilt one back changes what the nozzle meets in those after it.
+
+A full circle looks the same from each of its points, and an arc that is seen from all of them reaches as far to one side as
+to the other: one place of the tip stands for all of a bead.
 """
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision import deposit
+from ..collision.bodies import Bodies, of_bodies
+from ..collision.nozzle import Nozzle, depositing
+from ..collision.scene import Scene
+from ..geometry.columns import columns
+from ..geometry.polyline import turn_segments
 from ..geometry.profile import Array
+from ..geometry.surroundings import disc
 from ..parameters.cell import NozzleParameters
 from .platform import Platform
 
-ROUNDING = 1e-9  # mm^2 of depth that is rounding
-AZIMUTHS = 24  # samples of the general case before its minima are refined
-CHUNK = 1_000_000  # values worked on at once, so that large parts need no more memory than small ones
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+CHORD = 0.01  # mm; beads are looked at to this chord error, or their own where that is larger
+SETTLED = 0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
 
 
 @dataclass(frozen=True)
 class Deposit:
-    """Beads in the order of deposit as arcs about the axis: radius and height (m,) mm in the feature frame."""
+    """Points (k,) of all beads in the order of deposit, in the feature frame: radius, height mm, azimuth rad.
+
+    build: (k, 3) the build directions asked for, along radius, azimuth and axis. moment: (k,) at which each is there.
+    starts: (k,) where a bead begins. case: (k,) the number of the case by whose tilt-back each is tilted; between two of
+    them it runs evenly. size: width and height of the beads, mm.
+    """
 
     radius: Array
     height: Array
-    nozzle: NozzleParameters
-    platform: Platform
+    azimuth: Array
+    build: Array
+    moment: Index
+    starts: Mask
+    case: Array
+    size: tuple[float, float]
 
-    def clear(self, bead: NDArray[np.intp], tool: Array, reach: Array) -> NDArray[np.bool_]:
-        """Whether the nozzle is clear, (k,).
+    @property
+    def points(self) -> Array:
+        """(k, 3) mm in the feature frame."""
+        return _place(self.radius, self.azimuth, self.height)
 
-        The tip is on bead[i]; tool (k, 3) in components along radius, azimuth and axis there; reach (k, 2) rad are the
-        azimuths from the tip to the two ends of the beads.
-        """
-        symmetric = (np.abs(tool[:, 1]) < 1e-15) & (np.abs(reach.sum(axis=1)) < 1e-12)
-        result = self._over_platform(bead, tool)
-        for kind, depth, width in ((symmetric, self._depth_symmetric, 1), (~symmetric, self._depth_general, AZIMUTHS)):
-            rows = np.flatnonzero(kind & result)
-            step = max(1, CHUNK // (width * len(self.radius)))
-            for some in (rows[i : i + step] for i in range(0, len(rows), step)):
-                earlier = np.arange(bead[some].max() + 1)
-                free = depth(bead[some], tool[some], reach[some], len(earlier)) >= -ROUNDING
-                result[some] = (free | (earlier[None, :] > bead[some, None])).all(axis=1)
-        return result
 
-    def _depth_symmetric(self, bead: NDArray[np.intp], tool: Array, reach: Array, count: int) -> Array:
-        """Least value of |Q - P|^2 - x^2 - (a + k x)^2 over each of the first `count` arcs, (k, count); positive
-        where no point can touch.
+@dataclass(frozen=True)
+class Tips:
+    """Where the nozzle is looked at, case by case: radius, height mm and azimuth rad (c,); the moment before which there is
+    deposit, and the one from which it is of the layer being laid (c,)."""
 
-        It is a concave quadratic in the cosine of the azimuth, x being linear in it, so the least is at an end of the
-        cosines that matter: those of the arc, over the tip plane, below the nozzle's end, outside the bead being laid.
-        """
-        r0, z0 = self.radius[bead][:, None], self.height[bead][:, None]
-        across, rise = self.radius[None, :count], self.height[None, :count] - z0
-        slope = tool[:, :1] * across
-        level = tool[:, 2:] * rise - tool[:, :1] * r0
-        apart, swing = across**2 + r0**2 + rise**2, 2.0 * r0 * across
-        low = np.broadcast_to(np.cos(np.minimum(reach[:, 1:], np.pi)), slope.shape)
-        high = np.ones_like(slope)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            at_tip, at_end = -level / slope, (self.nozzle.length - level) / slope
-            outside = (apart - self.nozzle.diameter**2) / swing
-        up, down = slope > 1e-15, slope < -1e-15
-        low = np.where(up, np.maximum(low, at_tip), np.where(down, np.maximum(low, at_end), low))
-        high = np.where(up, np.minimum(high, at_end), np.where(down, np.minimum(high, at_tip), high))
-        high = np.where(swing > 1e-15, np.minimum(high, outside), high)
-        inert = ~up & ~down & ((level <= 0.0) | (level > self.nozzle.length))
-        inert |= (swing <= 1e-15) & (apart < self.nozzle.diameter**2)
+    radius: Array
+    height: Array
+    azimuth: Array
+    moment: Index
+    own: Index
 
-        def value(cosine: Array) -> Array:
-            x = slope * cosine + level
-            return self._depth(apart - swing * cosine, x)
+    def rows(self, index: Index) -> Tips:
+        """Some of them."""
+        return Tips(*(getattr(self, entry.name)[index] for entry in dataclasses.fields(self)))
 
-        least = np.minimum(value(low), value(high))
-        return np.where(inert | (low > high), np.inf, least)
 
-    def _depth(self, square: Array, x: Array) -> Array:
-        a, k = 0.5 * self.nozzle.diameter, np.tan(self.nozzle.half_angle)
-        return np.asarray(square - x * x - (a + k * x) ** 2)
+@dataclass(frozen=True)
+class Clearance:
+    """The nozzle as it is looked at, larger than it is by what the deposit may be off, at tips above bodies. foot: mm, how
+    far off it is about the bead being laid."""
 
-    def _depth_general(self, bead: NDArray[np.intp], tool: Array, reach: Array, count: int) -> Array:
-        """The same with a tool axis out of the plane of the axis, or an arc seen from within.
+    tips: Tips
+    deposit: Deposit
+    nozzle: Nozzle
+    foot: float
+    bodies: Bodies
+    between: Tips | None = None  # the points of the deposit, where the tips do not stand for all of it
 
-        A trigonometric polynomial of second order in the azimuth: it has at most two local minima, found among samples and
-        refined by Newton's method; the least is at one of them or at an end of the stretches that matter.
-        """
-        result = np.full((len(bead), count), np.inf)
-        rise = self.height[None, :count] - self.height[bead][:, None]
-        lateral = np.hypot(tool[:, :1], tool[:, 1:2]) * self.radius[None, :count]
-        highest = tool[:, 2:] * rise - tool[:, :1] * self.radius[bead][:, None] + lateral
-        # an arc wholly behind the tip plane cannot be touched, nor one not yet laid
-        case, ring = np.nonzero((highest > 0.0) & (np.arange(count)[None, :] <= bead[:, None]))
-        if len(case):
-            result[case, ring] = self._depth_pairs(bead[case], ring, tool[case], reach[case])
-        return result
+    def standing(self, build: Array) -> Scene:
+        """All that there is, with beads that stand along directions (k, 3), in components, at the points of the deposit."""
+        laid = self.deposit
+        width, tall = laid.size
+        directions = _in_space(build, laid.azimuth)
+        beads = deposit.of_beads(
+            laid.points, directions, width, tall, laid.starts, laid.moment, beside=self.foot
+        )
+        return Scene(self.bodies, beads)
 
-    def _depth_pairs(self, bead: NDArray[np.intp], ring: NDArray[np.intp], tool: Array, reach: Array) -> Array:
-        r0, across = self.radius[bead][:, None], self.radius[ring][:, None]
-        rise = (self.height[ring] - self.height[bead])[:, None]
-        slope_c, slope_s = tool[:, :1] * across, tool[:, 1:2] * across
-        level = tool[:, 2:] * rise - tool[:, :1] * r0
-        apart, swing = across**2 + r0**2 + rise**2, 2.0 * r0 * across
-        first, last = reach[:, :1], reach[:, 1:]
+    def clear(self, among: Scene, case: Index, tool: Array) -> Mask:
+        """Whether the nozzle is clear with tool axes (n, 3), in components, in the cases numbered (n,)."""
+        return self._clear(among, self.tips, case, tool)
 
-        def depth(azimuth: Array) -> tuple[Array, Array, Array]:
-            c, s = np.cos(azimuth), np.sin(azimuth)
-            x, square = slope_c * c + slope_s * s + level, apart - swing * c
-            return self._depth(square, x), x, square
+    def clear_between(self, among: Scene, tool: Array) -> Mask:
+        """The same at the points between, with tool axes (k, 3)."""
+        assert self.between is not None
+        return self._clear(among, self.between, np.arange(len(tool)), tool)
 
-        def newton(azimuth: Array) -> Array:
-            c, s = np.cos(azimuth), np.sin(azimuth)
-            a, k = 0.5 * self.nozzle.diameter, np.tan(self.nozzle.half_angle)
-            x, dx, ddx = slope_c * c + slope_s * s + level, slope_s * c - slope_c * s, -slope_c * c - slope_s * s
-            steep = 2.0 * ((1.0 + k * k) * x + a * k)
-            d = swing * s - steep * dx
-            dd = swing * c - steep * ddx - 2.0 * (1.0 + k * k) * dx * dx
-            return azimuth - np.where(dd > 1e-12, np.clip(d / np.where(dd > 1e-12, dd, 1.0), -0.2, 0.2), 0.0)
+    def _clear(self, among: Scene, tips: Tips, rows: Index, tool: Array) -> Mask:
+        azimuth = tips.azimuth[rows]
+        tip = _place(tips.radius[rows], azimuth, tips.height[rows])
+        return ~among.touched(self.nozzle, tip, _in_space(tool, azimuth), tips.moment[rows], tips.own[rows])
 
-        around = np.linspace(-np.pi, np.pi, AZIMUTHS, endpoint=False)
-        sampled = depth(around[None, :])[0]
-        lowest = (sampled <= np.roll(sampled, 1, axis=1)) & (sampled <= np.roll(sampled, -1, axis=1))
-        minima = around[np.argsort(np.where(lowest, sampled, np.inf), axis=1)[:, :2]]
-        for _ in range(6):
-            minima = newton(minima)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ball = np.arccos((apart - self.nozzle.diameter**2) / swing)
-            middle, over = np.arctan2(slope_s, slope_c), np.hypot(slope_c, slope_s)
-            end = np.arccos((self.nozzle.length - level) / over)
-        places = np.hstack([minima, ball, -ball, middle + end, middle - end])
-        places = np.hstack([places - 2.0 * np.pi, places, places + 2.0 * np.pi, first, last])
-        known = np.isfinite(places) & (places >= first - 1e-12) & (places <= last + 1e-12)
-        found, x, square = depth(np.where(known, places, 0.0))
-        # an end of a stretch meets its own condition up to rounding only
-        counts = known & (x > 0.0) & (x <= self.nozzle.length + 1e-10 * (1.0 + over))
-        counts &= square >= self.nozzle.diameter**2 - 1e-12 * apart
-        least: Array = np.where(counts, found, np.inf).min(axis=1)
-        return least
 
-    def _over_platform(self, bead: NDArray[np.intp], tool: Array) -> NDArray[np.bool_]:
-        """Whether the nozzle stays clear of the platform's disc, (k,).
+def of_nozzle(
+    nozzle: NozzleParameters, lean: float, platform: Platform, tips: Tips, laid: Deposit, chord_error: float,
+    between: Tips | None = None,
+) -> Clearance:
+    """The nozzle, leaning by `lean` rad off the build direction, over a platform and a deposit whose points leave their
+    curves by `chord_error` mm at most."""
+    looked = depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, laid.size[1], lean)
+    frame = np.eye(4)
+    frame[2, 3] = platform.height
+    plates = [disc(2.0 * platform.radius, frame)] if platform.radius > 0.0 else []
+    bodies = of_bodies(plates, laid.points, looked.reach)
+    return Clearance(tips, laid, looked.larger(chord_error + SETTLED), looked.foot, bodies, between)
 
-        In the plane of the disc the depth is least on the line under the tool axis, and concave along it: only the ends
-        of the stretches that matter need be looked at.
-        """
-        if self.platform.radius <= 0.0:
-            return np.ones(len(bead), dtype=bool)
-        r0, z0 = self.radius[bead], self.height[bead] - self.platform.height
-        level = np.hypot(tool[:, 0], tool[:, 1])
-        leaning = level > 1e-12
-        along = tool[:, :2] / np.where(leaning, level, 1.0)[:, None]
-        # p runs from the foot of the deposit point along the tool's lean; x = level p - tool_z z0
-        offset, side = r0 * along[:, 0], r0 * along[:, 1]
-        half = np.sqrt(np.maximum(self.platform.radius**2 - side**2, 0.0))
-        drop = tool[:, 2] * z0
-        safe = np.where(leaning, level, 1.0)
-        low = np.maximum(-offset - half, drop / safe)
-        high = np.minimum(-offset + half, (self.nozzle.length + drop) / safe)
-        ball = np.sqrt(np.maximum(self.nozzle.diameter**2 - z0**2, 0.0))
-        clear = leaning | (tool[:, 2] > 0.0)
-        for a, b in ((low, np.minimum(high, -ball)), (np.maximum(low, ball), high)):
-            for p in (a, b):
-                depth = self._depth(p * p + z0 * z0, level * p - drop)
-                clear &= ~leaning | (a > b) | (depth >= -ROUNDING)
-        return clear
+
+def around(
+    radius: Array, turn: float, chord_error: float, least: int, one_side: bool
+) -> tuple[Index, Array]:
+    """Bead and azimuth (k,) of the points of arcs of radii (m,) over `turn` rad, as they are seen from any of them at the
+    azimuth 0: to both sides, or to one alone; of full circles half of them.
+
+    They are the points that a bead of that chord error (mm) and fewest points of a full turn has, so that it is cut into the
+    same pieces.
+    """
+    full = turn >= 2.0 * np.pi
+    counts = np.array([turn_segments(float(each), chord_error, turn, least) for each in radius])
+    last = -(-counts // 2) if full and one_side else counts
+    first = np.zeros_like(last) if full or one_side else -last
+    sizes = last - first + 1
+    bead = np.repeat(np.arange(len(radius)), sizes)
+    place = np.arange(len(bead)) - np.repeat(np.cumsum(sizes) - sizes - first, sizes)
+    return bead, turn * place / counts[bead]
+
+
+def _place(radius: Array, azimuth: Array, height: Array) -> Array:
+    return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=1)
+
+
+def _in_space(direction: Array, azimuth: Array) -> Array:
+    """Directions (n, 3) in the feature frame from their components along radius, azimuth and axis."""
+    c, s = np.cos(azimuth), np.sin(azimuth)
+    along, across, up = columns(direction)
+    return np.stack([along * c - across * s, along * s + across * c, up], axis=1)

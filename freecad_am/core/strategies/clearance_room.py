@@ -18,6 +18,7 @@ from ..collision import deposit
 from ..collision.nozzle import Nozzle, depositing
 from ..collision.scene import Scene, scene
 from ..geometry.columns import columns
+from ..geometry.surface import dot
 from ..geometry.surroundings import Body
 from ..parameters.cell import NozzleParameters
 from ..toolpath import Bead, Toolpath
@@ -27,6 +28,7 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 CAP = 1e-9  # rad
+SEAM = 1e-6  # rad that a closed bead's end may be past a turn
 
 
 @dataclass(frozen=True)
@@ -50,9 +52,9 @@ class Room:
         return clear
 
 
-def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0) -> Nozzle:
-    """The nozzle as it is looked at while it deposits beads of up to that height, mm."""
-    return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height)
+def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 0.0) -> Nozzle:
+    """The nozzle as it is looked at while it deposits beads of up to that height, mm, leaning by intention, rad."""
+    return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean)
 
 
 def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float) -> Room:
@@ -63,11 +65,22 @@ def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters
     starts = np.cumsum(counts) - counts
     layer = np.repeat([i for i, _, _ in toolpath], counts)
     heights = toolpath.heights
-    laid = deposit.of_beads(points, build, toolpath.widths, heights, starts)
-    looked = nozzle_of(nozzle, float(heights.max()))
+    lean, own = 0.0, np.searchsorted(layer, layer)
+    if toolpath.family == "revolution":
+        # directions and tools are turned as one there; a spiral is of the layer being laid for its last turn
+        lean = float(np.arccos(np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0)).max())
+        own = np.concatenate([first + _turn_before(bead.parameter) for first, bead in zip(own[starts], beads, strict=True)])
+    looked = nozzle_of(nozzle, float(heights.max()), lean)
+    laid = deposit.of_beads(points, build, toolpath.widths, heights, starts, beside=looked.foot)
     # a bead that closes a gap overlaps those about the gap, of layers below too
-    own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, np.searchsorted(layer, layer))
+    own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own)
     return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)
+
+
+def _turn_before(angle: Array) -> Index:
+    """(n,) the first point of a bead that is a turn or less before each of its points, of angles rising or falling."""
+    turned = np.abs(angle - angle[0])
+    return np.searchsorted(turned, turned - 2.0 * np.pi - SEAM)
 
 
 def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:

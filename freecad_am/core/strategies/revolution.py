@@ -55,7 +55,7 @@ def plan(
     size.refuse_absurd(size.of_revolution(wall, strategy), strategy)
     progress(0.0, "cutting layers")
     under = platform.under(wall, platform_diameter, platform_frame)
-    tilting = Tilting(wall, build, nozzle, under)
+    tilting = Tilting(wall, strategy, build, nozzle, under, process.bead_width)
     issues: list[Issue] = []
     if strategy.path == "spiral":
         layers, found = spiral.layers(wall, strategy, process, tilting)

@@ -7,6 +7,7 @@ import math
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..geometry.polyline import largest_step
 from ..geometry.profile import Array, Meridian, RevolvedWall
@@ -16,9 +17,11 @@ from ..parameters.strategy import RevolutionParameters
 from ..process import seam
 from ..slicing import arc_length
 from ..toolpath import Bead, Layer
+from .clearance import Deposit, Tips
+from .clearance_room import SEAM
 from .tilt import Tilting
 
-PER_TURN = 8  # circles per turn at which the build direction is settled; it is linear in the angle between them
+PER_TURN = 8  # places to a turn at which the tilt-back is settled
 
 
 def layers(
@@ -40,7 +43,7 @@ def layers(
     radius, height, _ = wall.meridian.at(s)
     rising = seam.rising(process, 0, True)
     parameter = process.seam.angle + (turns if rising else -turns)
-    build, tool, issues = _directions(wall.meridian, s, end, pitch, rising, tilting)
+    build, tool, issues = _directions(wall.meridian, turns, s, rising, tilting)
     bead = Bead(
         wall.points(radius, height, parameter), wall.directions(build, parameter), wall.directions(tool, parameter),
         parameter, np.full(len(s), process.travel_speed), False,
@@ -91,16 +94,27 @@ def _segments(meridian: Meridian, a: float, b: float, pitch: float, end: float, 
 
 
 def _directions(
-    meridian: Meridian, s: Array, end: float, pitch: float, rising: bool, tilting: Tilting
+    meridian: Meridian, turns: Array, s: Array, rising: bool, tilting: Tilting
 ) -> tuple[Array, Array, list[Issue]]:
-    """Build directions and tool axes (n, 3). The tilt-back is settled on circles, PER_TURN to a turn, each judged
-    against all circles below it and itself, which lie at or above the spiral; between them it is interpolated from the
-    larger of neighbours, so that it is never too small.
-    """
-    count = max(2, math.ceil(end / pitch * PER_TURN) + 1)
-    knots = np.linspace(0.0, end, count)
-    radius, height, tangent = meridian.at(knots)
-    back, issues = tilting.tilt_back(radius, height, tangent, rising, np.zeros(count, dtype=np.intp))
-    back = np.maximum(back, np.maximum(np.r_[back[1:], 0.0], np.r_[0.0, back[:-1]]))
-    build, tool = tilting.axes(meridian.at(s)[2], np.interp(s, knots, back), rising)
+    """Build directions and tool axes (n, 3) at angles turned and arc lengths (n,). The tilt-back is settled at PER_TURN
+    places to a turn; between them it is interpolated from the larger of neighbours, so that it is never too small."""
+    knots = np.linspace(0.0, turns[-1], max(2, math.ceil(turns[-1] / (2.0 * math.pi) * PER_TURN) + 1))
+    at = np.interp(knots, turns, s)
+    radius, height, tangent = meridian.at(at)
+    sense = 1.0 if rising else -1.0
+    points = meridian.at(s)
+    number = np.arange(len(s))
+
+    def tips(where: tuple[Array, Array, Array], turned: Array, moment: NDArray[np.intp]) -> Tips:
+        # what was laid in the last turn is of the layer being laid
+        own = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
+        return Tips(where[0], where[1], sense * turned, moment, own)
+
+    laid = Deposit(
+        points[0], points[1], sense * turns, tilting.build(points[2]), number, number == 0,
+        np.interp(turns, knots, np.arange(len(knots))), tilting.size,
+    )
+    looked = tips((radius, height, tangent), knots, np.searchsorted(turns, knots, side="right"))
+    back, issues = tilting.tilt_back(tangent, rising, looked, laid, tips(points, turns, number + 1))
+    build, tool = tilting.axes(points[2], np.interp(turns, knots, back), rising)
     return build, tool, issues
