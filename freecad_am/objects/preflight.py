@@ -28,6 +28,7 @@ from .as_run import arm_of, as_run
 from .findings import issues_of
 from .joint_path import Planned
 from .link_meshes import meshes_of
+from .platforms import platforms
 
 # at which the arm is looked at, and the nozzle depositing and on rapids: together a tenth of the time that planning takes,
 # at most
@@ -75,7 +76,9 @@ def prepared(
         return Evidence(
             made, process, issues, distances=distances,
             balance=deposit_balance.of_toolpath(shape(), made, process.bead_width),
-            looked=None if build.clearance == "none" else clearance_look.looked_at(made, nozzle, NOZZLE_PLACES),
+            looked=None if build.clearance == "none" else clearance_look.looked_at(
+                made, (*made.surroundings, *platforms(looks, made)), nozzle, NOZZLE_PLACES
+            ),
         )
 
     if path is None:

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..brep.off_part import off_faces, off_mesh, off_solids
 from ..core.geometry.on_hub import SolidsOnHub
-from ..core.geometry.surroundings import disc
 from ..core.issues import InputError
+from ..core.kinematics.cell import mounted
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters, NozzleParameters
 from ..core.parameters.process import ProcessParameters
@@ -26,6 +26,7 @@ from ..core.process.wire import fed
 from ..core.strategies import clearance_look, platform, support
 from ..core.toolpath import Toolpath as CoreToolpath
 from . import progress
+from .platforms import platforms
 from .shapes import Taken, taken
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
 
@@ -115,13 +116,12 @@ def planned(
     nothing is told."""
     made = fed(_made(wall, strategy, build, process, cell), process, _model(process))
     progress.report(CHECKED, "looking for beads over nothing")
-    has_platform = cell is not None and cell.platform_diameter > 0.0
-    stands = _mounted(cell, made) if cell is not None and has_platform else made.frame
+    plates = platforms(cell, made)
     if made.family == "revolution":
+        stands = mounted(cell, made.frame, made.family) if cell is not None and plates else made.frame
         return support.told(made, (stands,), made.surroundings, ())
-    platforms = (disc(cell.platform_diameter, stands),) if cell is not None and has_platform else ()
     bases = [group.base for group in wall.groups] if isinstance(wall, SolidsOnHub) else ()
-    return support.told(made, (), (*made.surroundings, *platforms), bases)
+    return support.told(made, (), (*made.surroundings, *plates), bases)
 
 
 def _made(
@@ -149,7 +149,7 @@ def _made(
         made = family.plan(wall, strategy, build, process, _share)
         if cell is not None:
             points = np.vstack([bead.points for _, _, bead in made])
-            platform.refuse_below(wall.label, points, _mounted(cell, made), cell.platform_diameter)
+            platform.refuse_below(wall.label, points, mounted(cell, made.frame, made.family), cell.platform_diameter)
         progress.report(STRATEGY, "keeping the nozzle clear")
         return _kept_clear(made, wall, build, cell)
     from ..core.strategies import revolution
@@ -166,11 +166,6 @@ def _model(process: ProcessParameters) -> BeadModel | None:
     return None if process.bead_model == "none" else bead_table.load(process.bead_model)
 
 
-def _mounted(cell: CellParameters, toolpath: CoreToolpath) -> Any:
-    """The frame (4, 4) in part coordinates that sits on the platform."""
-    return toolpath.frame if cell.mount == "feature" else np.eye(4)
-
-
 def _share(fraction: float, text: str) -> None:
     progress.report(STRATEGY * fraction, text)
 
@@ -179,7 +174,7 @@ def _of_solids(
     solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters, process: ProcessParameters,
     cell: CellParameters | None,
 ) -> CoreToolpath:
-    """Solids. On a hub the machine turns them, so that neither a vertical nor a platform bounds the tool axes."""
+    """Solids. On a hub the machine turns them, so that no vertical bounds the tool axes."""
     from ..core.strategies import wall_clearance
     from ..core.strategies.solids import plan as solids_plan
 
@@ -191,11 +186,12 @@ def _of_solids(
         return toolpath
     progress.report(STRATEGY, "keeping the nozzle clear")
     nozzle = NozzleParameters() if cell is None else cell.nozzle
+    bodies = (*solids.surroundings, *platforms(cell, toolpath))
     if not solids_plan.on_planes(solids):
-        return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, solids_plan.without_axis_limits(build))
+        return wall_clearance.kept_clear(toolpath, bodies, nozzle, solids_plan.without_axis_limits(build))
     if solids_plan.clear_by_itself(toolpath, solids):
         return toolpath
-    return wall_clearance.kept_clear(toolpath, solids.surroundings, nozzle, build)
+    return wall_clearance.kept_clear(toolpath, bodies, nozzle, build)
 
 
 def _kept_clear(
@@ -212,7 +208,5 @@ def _kept_clear(
         return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
     from ..core.strategies import surface_directions, wall_clearance
 
-    bodies = list(wall.surroundings)
-    if cell is not None and cell.platform_diameter > 0.0:
-        bodies.append(disc(cell.platform_diameter, toolpath.frame))
+    bodies = (*wall.surroundings, *platforms(cell, toolpath))
     return wall_clearance.kept_clear(toolpath, bodies, nozzle, build, surface_directions.plane(wall, build))

@@ -9,6 +9,7 @@ import yaml
 
 from tests.batch import wall_checks
 from tests.batch.wall_examples import EXAMPLES, Plans
+from tests.swept_beads import Cone, Swept
 
 CHORD = 0.01  # mm, the chord error of the jobs
 FINE = 2e-5  # mm, at which chords stand for the curve
@@ -115,6 +116,36 @@ def test_the_nozzle_keeps_clear_of_the_substrate(example, planned):
     for bead in planned.passes:
         least = wall_checks.nozzle_depth(bead, example.depth, NOZZLE_TIP, 60.0, NOZZLE_ANGLE)
         assert least >= -(NOZZLE_TIP if bead.layer == 0 else CHORD)
+
+
+def deepest_in_deposit(example, planned, points, step):
+    """mm by which beads laid before, as wide and high as they count, are in the nozzle, at so many points of
+    each bead at most."""
+    assert planned.report["process"]["bead_width_counted_mm"] == 8.0
+    laid = Swept([
+        (one.points, one.build, np.full(len(one.points), 8.0), np.full(len(one.points), example.height), one.layer)
+        for one in planned.passes
+    ], step)
+    cone = Cone(NOZZLE_TIP, NOZZLE_ANGLE, 60.0)
+    low, deepest = cone.clear_of(example.height, 0.0), -np.inf
+    for k, one in enumerate(planned.passes):
+        for j in np.unique(np.linspace(0, len(one.points) - 1, min(points, len(one.points))).astype(int)):
+            number = laid.begin[k] + j + 1
+            deepest = max(deepest, laid.deepest(one.points[j], one.tool[j], number, laid.layer_began(k), cone, low))
+    return deepest
+
+
+def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are(example, planned):
+    if example.job == "tube-on-pipe":  # as in the paper, which leaves the directions alone
+        return
+    assert deepest_in_deposit(example, planned, 12, 1.5) <= CHORD
+
+
+@pytest.mark.long
+def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are_at_all_points(example, planned):
+    if example.job == "tube-on-pipe":
+        return
+    assert deepest_in_deposit(example, planned, 400, 0.4) <= CHORD
 
 
 def test_the_half_shell_is_deposited_to_and_fro(plans):

@@ -28,8 +28,8 @@ def nozzle(issues: Sequence[Issue], looked: Looked | None) -> Promise:
         return Promise(what, "not checked: build_direction.clearance is none", None)
     found = of_codes(issues, DEPOSITING)
     how = (
-        f"the nozzle as a cone at {looked.count} points, against what is there by then; beads as wide and high as they "
-        "count, those of parts of revolution too, where tilt-back takes them for lines"
+        f"the nozzle as a cone at {looked.count} points, against platform, part and what is deposited by then; beads as "
+        "wide and high as they count"
     )
     place = issue_place(found) if found or looked.place is None else Place(*looked.place)
     return Promise(what, how, not found and not looked.touched, float(looked.touched), "points", 0.0, place)

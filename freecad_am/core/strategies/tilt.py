@@ -283,8 +283,8 @@ class Tilting:
             bead = 0 if cases.chained else int(cases.bead[np.argmax(stuck)] - np.searchsorted(layer, hit[0]))
             issues.append(Issue(
                 ERROR, "CLEARANCE",
-                f"however far it is tilted back, the nozzle touches platform or deposit, beads of {self.bead_width:g} mm, in "
-                f"{len(hit)} layer(s), from layer {hit[0]} on; use a slimmer nozzle, another wall, or a smaller "
+                f"however far it is tilted back, the nozzle touches platform or deposit, beads of {self.bead_width:g} mm, "
+                f"in {len(hit)} layer(s), from layer {hit[0]} on; use a slimmer nozzle, another wall, or a smaller "
                 "process.bead_width where beads are not that wide", int(hit[0]), bead,
             ))
         elif (back > 1e-9).any():
