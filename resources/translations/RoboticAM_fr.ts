@@ -6218,8 +6218,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/tilt.py"/>
-        <source>however far it is tilted back, the nozzle touches deposit or platform in {0} layer(s), from layer {1} on; use a slimmer nozzle or another wall</source>
-        <translation>si fort qu&apos;elle soit redressée, la buse touche le dépôt ou le plateau dans {0} couche(s), à partir de la couche {1} ; utilisez une buse plus fine ou une autre paroi</translation>
+        <source>however far it is tilted back, the nozzle touches platform or deposit, beads of {0} mm, in {1} layer(s), from layer {2} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where beads are not that wide</source>
+        <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
@@ -8358,8 +8358,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>the nozzle as a cone at {0} points, against what is there by then; beads as wide and high as they count, those of parts of revolution too, where tilt-back takes them for lines</source>
-        <translation>la buse comme un cône en {0} points, face à ce qui est là à ce moment ; cordons de la largeur et de la hauteur qui comptent, ceux des pièces de révolution aussi, où le redressement les prend pour des lignes</translation>
+        <source>the nozzle as a cone at {0} points, against platform, part and what is deposited by then; beads as wide and high as they count</source>
+        <translation>la buse comme un cône en {0} points, face au plateau, à la pièce et à ce qui est déposé à ce moment ; cordons de la largeur et de la hauteur qui comptent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/readout.py"/>
