@@ -323,6 +323,16 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     return interop.write_wires(obj, path, rapids)
 
 
+def export_waypoints(obj: Any, path: str) -> str:
+    """Write the points of a toolpath, joint path or program as a table, as the commands write waypoints.csv.
+
+    `am.export_waypoints(doc.JointPath, "waypoints.csv")`
+    """
+    from .interop import export as interop
+
+    return interop.write_waypoints(obj, path)
+
+
 @one_thread()
 def make_cam_path(obj: Any) -> Any:
     """The path of a toolpath, joint path or program as an object of the CAM workbench, to be inspected there; it does not

@@ -109,7 +109,7 @@ def test_posts_and_machines_are_told():
 
 
 def test_columns_of_waypoints_are_told():
-    from freecad_am.batch import waypoints
+    from freecad_am.core.simulation import waypoints
 
     text = (ROOT / "docs" / "outputs.md").read_text(encoding="utf-8")
     assert all(f"`{column}`" in text for column in waypoints.HEADER.split(","))

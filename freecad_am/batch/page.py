@@ -182,7 +182,7 @@ def _joint_table(content: Content) -> str:
 
 def _axes(report: dict[str, Any]) -> list[str]:
     """The names of the axes, with their units where these are not all the same."""
-    axes, units = report["machine"]["axes"], report["machine"]["units"]
+    axes, units = report["machine"]["labels"], report["machine"]["units"]
     return [f"{axis}, {unit}" for axis, unit in zip(axes, units)] if "mm" in units else axes
 
 

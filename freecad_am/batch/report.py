@@ -76,7 +76,8 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
     report["comparison"] = others
     report["machine"] = {
         "id": cell.machine.id, "title": cell.machine.title, "setup": cell.setup, "limits": planned.limits,
-        "axes": list(cell.machine.axes), "units": list(cell.machine.units), "controller": cell.machine.controller_remark,
+        "axes": list(cell.machine.columns), "labels": list(cell.machine.axes),
+        "units": list(cell.machine.units), "controller": cell.machine.controller_remark,
     }
 
 

@@ -201,15 +201,15 @@ def _write(
     """Everything but the page, which is drawn last."""
     from freecad_am import api
     from freecad_am.core.process import deposit_balance, spacing
-    from freecad_am.core.simulation import deposit
+    from freecad_am.core.simulation import deposit, waypoints
 
-    from . import report, waypoints
+    from . import report
 
     toolpath = api.result(stages.toolpath)
     planned = None if stages.joint_path is None else api.result(stages.joint_path)
     if planned is not None:
         toolpath = planned.joint_path.toolpath(toolpath)
-    axes = () if cell is None else cell.machine.axes
+    axes = () if cell is None else cell.machine.columns
     motion = deposit.alone(toolpath, len(axes)) if planned is None else planned.motion
     with stages.timed("waypoints", session):
         files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, () if cell is None else cell.machine.units))

@@ -21,6 +21,7 @@ from ..objects import user_machines
 from ..objects.cell import Cell
 from ..objects.progress import Cancelled
 from ..objects.stage import Outcome, stage_of
+from . import suggestions
 from .busy import carry_out
 from .cell_nodes import CellNodes, Rest, Scenery, at_the_end, with_machine
 from .later import Background, Later
@@ -41,6 +42,7 @@ class CellPanel(PreviewPanel):
     gets a deposition point and a branch that suit it, unless others were entered."""
 
     stage, draft = Cell, "Cell"
+    lines = 4
 
     def __init__(self, obj: Any = None) -> None:
         self.of_machine: dict[str, CellParameters] = {}  # what is proposed for machines, by what the field holds
@@ -67,7 +69,7 @@ class CellPanel(PreviewPanel):
         self.machine_box.setToolTip(help)
         self.machine_box.setWhatsThis(help)
         self.machine_box.setChecked(True)
-        self.column.insertWidget(self.column.indexOf(self.state), self.machine_box, 0, QtCore.Qt.AlignLeft)
+        self.column.insertWidget(self.column.indexOf(self.messages) + 1, self.machine_box, 0, QtCore.Qt.AlignLeft)
 
     def _widget(self, place: str) -> Any:
         return self.places[place][0].widget
@@ -237,7 +239,8 @@ class CellPanel(PreviewPanel):
 
     def _draw(self, made: Outcome, drawing: Scenery) -> str:
         self.nodes.set(drawing)
-        return "" if drawing.rest is None else _stands(drawing.rest)
+        without = suggestions.no_post(self.places[MACHINE][0].value)
+        return "\n".join(filter(None, ("" if drawing.rest is None else _stands(drawing.rest), without)))
 
     def _placed(self, error: AmError) -> tuple[str, str]:
         """What is wrong with the file of a machine is told under its name."""

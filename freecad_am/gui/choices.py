@@ -15,8 +15,8 @@ from .texts import marked, tr, translated
 
 FEWEST_LETTERS = 8  # a list may be as narrow: panels are
 WORDS = {  # of keys that are no words by themselves; `tr` gives them in the language of the window
-    "part-on-robot": marked("part on the robot"),
-    "tool-on-robot": marked("tool on the robot"),
+    "part-on-robot": marked("part on robot"),
+    "tool-on-robot": marked("tool on robot"),
     "rotary-table": marked("five-axis machine"),
     "tool-on-robot+positioner": marked("tool on the robot, part on a positioner"),
     "arc-length": marked("along the wall"),

@@ -141,8 +141,8 @@ def register() -> list[str]:
         ),
         "ExportPath": Tool(
             "export_path", marked("Export Path…"),
-            marked("Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it"), _export_path,
-            needs.path,
+            marked("Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it"),
+            _export_path, needs.path,
         ),
         "Program": Tool(
             "program", marked("Program…"), marked("Writes the controller's program of a joint path"), _program,

@@ -23,8 +23,8 @@ from .stage_panel import CLOSED
 from .texts import tr, translated, translated_error
 from .wheel import scrolls
 
-STEP, DXF, CAM, TRAJECTORY = "step", "dxf", "cam", "trajectory"
-_FILES = {STEP: ".step", DXF: ".dxf"}
+STEP, DXF, CSV, CAM, TRAJECTORY = "step", "dxf", "csv", "cam", "trajectory"
+_FILES = {STEP: ".step", DXF: ".dxf", CSV: ".csv"}
 _KINDS = ("toolpath", "joint path", "program")
 _PREFERENCES, _FOLDER = "User parameter:BaseApp/Preferences/Mod/RoboticAM", "WiresFolder"
 
@@ -50,7 +50,8 @@ class ExportPanel:
         self.path.setCurrentIndex(self._first())
         self.kind = self._combo("Kind", tr("What is made of the path"))
         for key, text in (
-            (STEP, tr("STEP file of wires")), (DXF, tr("DXF file of polylines")), (CAM, tr("CAM path in this document")),
+            (STEP, tr("STEP file of wires")), (DXF, tr("DXF file of polylines")),
+            (CSV, tr("CSV table of waypoints")), (CAM, tr("CAM path in this document")),
             (TRAJECTORY, tr("Robot trajectory in this document")),
         ):
             self.kind.addItem(text, key)
@@ -120,7 +121,7 @@ class ExportPanel:
         kind = self.kind.currentData()
         self._tell_file("")
         for widget, wanted in (
-            (self.file_row, kind in _FILES), (self.rapids, kind in _FILES), (self.tolerance.box, kind == TRAJECTORY),
+            (self.file_row, kind in _FILES), (self.rapids, kind in (STEP, DXF)), (self.tolerance.box, kind == TRAJECTORY),
             (self.turn.box, kind == TRAJECTORY),
         ):
             for shown in filter(None, (widget, self.grid.labelForField(widget))):
@@ -191,6 +192,8 @@ class ExportPanel:
         return False
 
     def _call(self, kind: str) -> tuple[str, dict[str, str]]:
+        if kind == CSV:
+            return "export_waypoints", {"path": repr(self.file.text().strip())}
         if kind in _FILES:
             return "export_wires", {"path": repr(self.file.text().strip()), "rapids": repr(self.rapids.isChecked())}
         if kind == CAM:

@@ -141,6 +141,8 @@ def _speed(row: Row, shown: float, expression: str) -> Field:
     factor = preferences.SPEED_UNITS[unit]
     made = QuantityField if factor == 1.0 else PlainQuantity
     quantity = made(round(shown * factor, 9), unit, row.label, expression)
+    if isinstance(quantity.box, QtGui.QAbstractSpinBox):
+        quantity.box.setButtonSymbols(QtGui.QAbstractSpinBox.NoButtons)  # room for "100 mm/s" in a narrow panel
 
     def read() -> float | str:
         value = quantity.read()

@@ -17,7 +17,7 @@ from ..core.parameters.cell import CellParameters
 from ..objects import preferences
 from ..objects.progress import Cancelled
 from ..objects.staleness import UP_TO_DATE
-from . import choices, guess, icons, inputs, picking, recorded
+from . import choices, guess, icons, inputs, picking, recorded, suggestions
 from .busy import carry_out
 from .colours import WRONG
 from .fold import Fold
@@ -61,8 +61,10 @@ class JobPanel:
         self.form.setWindowTitle(tr("New job"))
         self.form.setWindowIcon(QtGui.QIcon(icons.path("new_job")))
         column = QtGui.QVBoxLayout(self.form)
-        self.error, self.reason, self.left_out = QtGui.QLabel(), QtGui.QLabel(), QtGui.QLabel()
-        for label, name in ((self.error, "error"), (self.reason, "reason"), (self.left_out, "left_out")):
+        self.error, self.reason, self.left_out, self.no_post = (QtGui.QLabel() for _ in range(4))
+        for label, name in (
+            (self.error, "error"), (self.reason, "reason"), (self.left_out, "left_out"), (self.no_post, "no_post"),
+        ):
             label.setObjectName(name)
             label.setWordWrap(True)
             label.hide()
@@ -95,10 +97,11 @@ class JobPanel:
         hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
                                "double-click one in the tree to change it."))
         hint.setWordWrap(True)
-        for widget in (self.error, self.fold.widget, self.reason, self.left_out, hint):
+        for widget in (self.fold.widget, self.error, self.reason, self.left_out, self.no_post, hint):
             column.addWidget(widget)
         column.addStretch(1)
         scrolls(self.form)
+        self._entered_anew()
 
     # ---- the selection
 
@@ -216,9 +219,12 @@ class JobPanel:
         self.notes[place].setVisible(bool(text))
 
     def _entered_anew(self, *_: Any) -> None:
-        """What was wrong is no longer there."""
+        """What was wrong is no longer there; a machine without a post is told now, not when all is planned."""
         for place in self.notes:
             self._tell(place, "")
+        without = suggestions.no_post(choices.entered(self.machine))
+        self.no_post.setText(without)
+        self.no_post.setVisible(bool(without))
 
     # ---- called by FreeCAD
 
@@ -328,7 +334,10 @@ def _tell_next(stages: list[Any]) -> None:
     elif stages[-1].Proxy.kind == "program":
         text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
     else:
-        text = tr("The joint path is ready; there is no post for this machine's controller yet. Simulate… plays it.")
+        text = tr(
+            "The joint path is ready; there is no post for this machine's controller yet. Simulate… plays it, Export Path… "
+            "writes its points as a table."
+        )
     Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
     App.Console.PrintMessage(text + "\n")
     _show_whole()

@@ -51,6 +51,7 @@ class JointPathPanel(PreviewPanel):
     """Makes a joint path, or changes one. Its preview knows no rapid moves."""
 
     stage, draft = JointPath, "Joint path"
+    lines = 7
 
     def __init__(self, obj: Any = None) -> None:
         self.aside = Aside()

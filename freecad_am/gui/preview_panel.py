@@ -32,7 +32,7 @@ class PreviewPanel(StagePanel):
     stage: type[Stage]
     is_open = True
     refused: Any = None  # the entries that OK or Apply did not take
-    tells_result = False  # whether what is told is of a preview that is there
+    lines = 5
 
     def __init__(self, title: str, choices: Sequence[Input], obj: Any, nodes: Any) -> None:
         self.nodes = nodes
@@ -40,10 +40,7 @@ class PreviewPanel(StagePanel):
         self.seen: Any = None  # the entries at the last look
         self.shown: Any = None  # those that are previewed
         self.blamed: set[str] = set()  # the places that the last preview was refused for
-        self.state = self._note("preview", "palette(text)")
-        self.state.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
-        self.column.removeWidget(self.state)
-        self.column.insertWidget(self.column.indexOf(self.findings) + (1 if self.heading is None else 2), self.state)
+        self.state = self.messages.add("preview", "palette(text)")
         self.preview = None if nodes is None else Preview(self.document, nodes.switch)
         self._show_own(False)
         self.timer = QtCore.QTimer(self.form)
@@ -151,7 +148,7 @@ class PreviewPanel(StagePanel):
         """Show what was computed, or what is wrong."""
         try:
             made, drawing = worker.result()
-            self._say(self._draw(made, drawing), has_errors(made.issues), True)
+            self._say(self._draw(made, drawing), has_errors(made.issues))
         except AmError as error:
             self._refuse(error)
         except ReferenceError:
@@ -183,13 +180,8 @@ class PreviewPanel(StagePanel):
                 raise InputError(error.code, place, error.message) from None
         return found
 
-    def _say(self, text: str, wrong: bool, of_result: bool = False) -> None:
-        """Tell about the preview. While there is none its text keeps its room: a field that is typed into stays in place."""
-        if of_result:
-            self.state.setMinimumHeight(0)
-        elif self.tells_result and self.state.isVisible():
-            self.state.setMinimumHeight(self.state.height())
-        self.tells_result = of_result
+    def _say(self, text: str, wrong: bool) -> None:
+        """Tell about the preview."""
         self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
         self.state.setText(text)
         self.state.setVisible(bool(text))

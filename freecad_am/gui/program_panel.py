@@ -77,7 +77,7 @@ class ProgramPanel(PreviewPanel):
         self.text.setToolTip(help)
         self.text.setWhatsThis(help)
         self.text.hide()
-        self.column.insertWidget(self.column.indexOf(self.state) + 1, self.text)
+        self.column.insertWidget(self.column.indexOf(self.messages) + (1 if self.heading is None else 2), self.text)
         self.preflight = PreflightList(self._go)
         self.preflight.widget.hide()
         self.column.insertWidget(self.column.indexOf(self.text) + 1, self.preflight.widget)

@@ -24,6 +24,7 @@ from . import fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
 from .later import Later
+from .messages import Messages
 from .signals import connect
 from .texts import marked, tr, translated, translated_error
 from .wheel import scrolls
@@ -41,6 +42,7 @@ class StagePanel:
     """
 
     icon = function = ""  # where they are not called as the stage's kind is
+    lines = 3  # that messages have room for above the fields
     draft = ""  # the name in errors of what is not made yet
 
     def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
@@ -52,8 +54,10 @@ class StagePanel:
         self.form.setWindowIcon(QtGui.QIcon(icons.path(self.icon or proxy.kind.replace(" ", "_"))))
         self.column = QtGui.QVBoxLayout(self.form)
         self.column.setContentsMargins(2, 2, 2, 2)
-        self.error = self._note("error", WRONG)
-        self.findings = self._note("findings", "palette(text)")  # above all fields: some change what is deposited
+        self.messages = Messages(self.lines)
+        self.column.addWidget(self.messages)
+        self.error = self.messages.add("error", WRONG)
+        self.findings = self.messages.add("findings", "palette(text)")  # above all fields: some change what is deposited
         self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
         self.told: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
         self.heading: Any = None
@@ -82,16 +86,6 @@ class StagePanel:
             self.say(missing[0])
 
     # ---- what is shown
-
-    def _note(self, name: str, colour: str) -> Any:
-        label = QtGui.QLabel()
-        label.setObjectName(name)
-        label.setWordWrap(True)
-        label.setStyleSheet(f"QLabel {{ color: {colour}; }}")
-        label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
-        label.hide()
-        self.column.addWidget(label)
-        return label
 
     def _add_section(self, section: Any) -> None:
         current = None if self.obj is None else self._current(section)
@@ -155,6 +149,7 @@ class StagePanel:
         """Show what is wrong."""
         self.error.setText(text)
         self.error.setVisible(bool(text))
+        self.messages.to_top()
 
     # ---- what is wrong
 

@@ -13,6 +13,7 @@ from ..core.process import bead_table
 from ..objects import preferences, user_machines
 from ..posts import catalogue
 from .choices import machines
+from .texts import tr
 
 
 def of(section: str, key: str) -> Callable[[], list[tuple[str, str]]] | None:
@@ -35,6 +36,18 @@ def _texts_of(section: str, key: str) -> Callable[[], list[str]] | None:
 def _branches() -> list[str]:
     sides = [(a, b, c) for a in ("front", "back") for b in ("up", "down") for c in ("flip", "noflip")]
     return ["auto", *(" ".join(words) for words in sides)]
+
+
+def no_post(name: str) -> str:
+    """What to say of a machine whose controller no post writes for; '' for others, and for one that cannot be read."""
+    try:
+        told = machine.load(name, user_machines.folders())
+    except InputError:
+        return ""
+    if told.posts is None or told.posts:
+        return ""
+    return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
+              "written. Export Path… writes its points as a table.")
 
 
 def post_for(path: Any) -> str:

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..core.issues import InputError
+from ..core.simulation import waypoints
 from . import cam_path, dxf, robot_trajectory, step_wires
 from .lines import Line
-from .source import lines_of
+from .source import lines_of, motion_of
 
 STEP, DXF = (".step", ".stp"), (".dxf",)
 
@@ -24,14 +25,36 @@ def write_wires(obj: Any, path: str, rapids: bool) -> str:
     ending = os.path.splitext(path)[1].lower()
     if ending not in STEP + DXF:
         raise InputError("UNSUPPORTED_FILE", path, "wires are written as .step or .dxf; end the name with one of them")
+    lines = lines_of(obj, rapids)
+    return _whole(path, lambda unfinished: _write(lines, unfinished, ending, obj.Label))
+
+
+def write_waypoints(obj: Any, path: str) -> str:
+    """Write the points of a toolpath, joint path, or a program's joint path as the commands write waypoints.csv; the path.
+    The file appears whole or not at all.
+
+    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and what `motion_of` raises.
+    """
+    if os.path.splitext(path)[1].lower() != ".csv":
+        raise InputError("UNSUPPORTED_FILE", path, "waypoints are written as .csv; end the name with it")
+    motion, columns, units = motion_of(obj)
+
+    def write(unfinished: str) -> None:
+        with open(unfinished, "w", encoding="ascii", newline="") as stream:
+            stream.writelines(waypoints.text(motion, columns, units))
+
+    return _whole(path, write)
+
+
+def _whole(path: str, write: Callable[[str], None]) -> str:
+    """Let a file be written beside, and put it in its place; the path."""
     folder = os.path.dirname(os.path.abspath(path))
     if not os.path.isdir(folder):
         raise InputError("NO_FOLDER", path, f"there is no folder {folder}; make it, or choose another")
-    lines = lines_of(obj, rapids)
     try:
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as beside:
-            unfinished = os.path.join(beside, f"wires{ending}")
-            _write(lines, unfinished, ending, obj.Label)
+            unfinished = os.path.join(beside, f"file{os.path.splitext(path)[1].lower()}")
+            write(unfinished)
             os.replace(unfinished, path)
     except OSError as error:
         raise InputError("NOT_WRITABLE", path, f"{error.strerror or error}; choose a file you can write") from None

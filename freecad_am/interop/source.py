@@ -6,6 +6,10 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.issues import InputError
+from ..core.kinematics import machine
+from ..core.motion import Motion
+from ..core.simulation import deposit
+from ..objects import user_machines
 from ..objects.stage import stage_of
 from .lines import Line, of_motion, of_toolpath
 
@@ -17,14 +21,33 @@ def lines_of(obj: Any, rapids: bool = True) -> tuple[Line, ...]:
 
     Raises InputError for any other object, and for one without a result.
     """
+    obj = _path_of(obj)
+    value = obj.Proxy.value(obj)
+    lines = of_toolpath(value) if obj.Proxy.kind == "toolpath" else of_motion(value.motion)
+    return lines if rapids else tuple(line for line in lines if line.deposit)
+
+
+def motion_of(obj: Any) -> tuple[Motion, tuple[str, ...], tuple[str, ...]]:
+    """The motion of the same, of a toolpath its beads alone; what tables call the axes, and their units, none of a toolpath.
+
+    Raises InputError as `lines_of`, and where the machine's file is gone.
+    """
+    obj = _path_of(obj)
+    value = obj.Proxy.value(obj)
+    if obj.Proxy.kind == "toolpath":
+        return deposit.alone(value), (), ()
+    arm = machine.load(obj.Cell.Machine, user_machines.folders())
+    return value.motion, arm.columns, arm.units
+
+
+def _path_of(obj: Any) -> Any:
+    """The toolpath or joint path that is meant."""
     stage = stage_of(obj)
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
         raise InputError("BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program")
-    if stage.kind == "program":
-        if obj.JointPath is None:
-            raise InputError("NO_INPUT", obj.Label, "its joint path is gone; choose a joint path")
-        obj, stage = obj.JointPath, obj.JointPath.Proxy
-    value = stage.value(obj)
-    lines = of_toolpath(value) if stage.kind == "toolpath" else of_motion(value.motion)
-    return lines if rapids else tuple(line for line in lines if line.deposit)
+    if stage.kind != "program":
+        return obj
+    if obj.JointPath is None:
+        raise InputError("NO_INPUT", obj.Label, "its joint path is gone; choose a joint path")
+    return obj.JointPath

@@ -7,9 +7,8 @@ import io
 import numpy as np
 import pytest
 
-from freecad_am.batch import waypoints
 from freecad_am.core.motion import Motion
-from freecad_am.core.simulation import deposit
+from freecad_am.core.simulation import deposit, waypoints
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 COLUMNS = ("layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm,"

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Export Path by clicks: files and objects appear, errors stay in the panel, one step of undo."""
 
+import csv
 import os
 
 import FreeCAD as App
+import numpy as np
 import Part
 import pytest
 
@@ -65,6 +67,27 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
     assert not person.field(panel, "Tolerance").isVisible()
     taken(person)
     assert sorted(os.listdir(folder)) == sorted([f"{job.Label}.dxf", "mes fils é.step"])
+
+
+def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
+    """Of a robot that has no post, with the columns of every robot."""
+    cell = api.make_cell(job.Document, machine="kuka-kr16-2", deposition_point=(1321, 0, 1621, 0, 0, 0), branch="auto")
+    path = api.make_joint_path(job.Document, job, cell)
+    person.select(path)
+    panel = opened(person)
+    person.choose(panel, "Kind", "CSV table of waypoints")
+    assert not person.field(panel, "Rapids").isVisible()
+    person.type(panel, "File", str(tmp_path / "points.csv"))
+    taken(person)
+    with (tmp_path / "points.csv").open(encoding="ascii") as stream:
+        rows = list(csv.DictReader(stream))
+    motion = api.result(path).motion
+    assert [name for name in rows[0] if name.startswith("q")] == [f"q{k}_deg" for k in range(1, 7)]
+    joints = np.radians([[float(row[f"q{k}_deg"]) for k in range(1, 7)] for row in rows])
+    np.testing.assert_allclose(joints, motion.joints, rtol=0, atol=1e-8)
+    places = [[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows]
+    np.testing.assert_allclose(places, motion.position, rtol=0, atol=1e-6)
+    assert {row["kind"] for row in rows} == {"deposit", "rapid"}
 
 
 def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):

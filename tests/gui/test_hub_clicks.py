@@ -211,7 +211,8 @@ def test_a_field_that_is_typed_into_stays_in_place_while_nothing_can_be_previewe
         return field.mapTo(panel, person.core.QPoint(0, 0)).y()
 
     before = place()
-    assert told.height() > 1.5 * told.fontMetrics().lineSpacing(), "a text of several lines"
+    several = 1.5 * told.fontMetrics().lineSpacing()
+    person.until(lambda: told.height() > several, f"a text of several lines: {told.text()}", 5)
     person.type(panel, "LayerHeight", "0 mm")
     person.until(lambda: told.text().startswith("No preview"), "that there is none", 5)
     person.idle(0.2)

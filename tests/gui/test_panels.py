@@ -226,3 +226,28 @@ def test_a_tooltip_begins_with_the_name_of_its_tool(person, hemisphere):
         button = person.button(f"RoboticAM_{command}")
         person.until(lambda: f"<b>{name}</b>" in button.toolTip(), f"the name of {command}", 5)  # noqa: B023
         assert not button.statusTip().startswith("<")
+
+
+def test_fields_stay_in_place_while_messages_grow_and_go(person, hand, hemisphere):
+    """What is told is scrolled to where it is long; an error has its place too."""
+    person.select(hemisphere)
+    person.click("RoboticAM_Feature")
+    panel = person.panel("RoboticAM_RevolutionFeature")
+    field, state = person.field(panel, "LayerHeight"), person.field(panel, "preview")
+
+    def place():
+        person.idle(0.2)
+        return field.mapTo(panel, person.core.QPoint(0, 0)).y()
+
+    before = place()
+    person.until(lambda: state.text().startswith("Layers"), "the preview", 20)
+    assert place() == before
+    hand.enter(panel, "LayerHeight", "0 mm")
+    person.until(lambda: state.text().startswith("No preview"), "that there is none", 5)
+    assert place() == before
+    state.setText("a line\n" * 20)
+    assert place() == before
+    bar = person.field(panel, "messages").verticalScrollBar()
+    assert bar.maximum() > 0  # the rest can be scrolled to
+    person.press("Cancel")
+    person.panel_closed()

@@ -91,3 +91,17 @@ def test_the_first_entry_of_a_program_s_menu_reads_it(person, hemisphere, coarse
     text = person.panel("RoboticAM_ProgramText")
     assert "/PROG" in person.field(text, "text").toPlainText()
     text.close()
+
+
+def test_a_machine_without_a_post_is_told_as_it_is_chosen(person, hemisphere):
+    person.select(hemisphere)
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    told = person.field(panel, "no_post")
+    assert not told.isVisible()
+    person.choose(panel, "Machine", "kuka-kr16-2")
+    assert told.isVisible() and "no program is written" in told.text()
+    person.choose(panel, "Machine", "table-xyzac")
+    assert not told.isVisible()
+    person.press("Cancel")
+    person.panel_closed()

@@ -38,7 +38,7 @@ import numpy as np
 import FreeCAD as App
 from freecad_am.core import one_thread
 import freecad_am.api as am
-from freecad_am.batch import waypoints
+from freecad_am.core.simulation import waypoints
 from freecad_am.core.kinematics.proposed_cell import cell_of
 """ + VASE + """
 def made(machine, scale, **joints):

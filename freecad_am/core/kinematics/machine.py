@@ -76,6 +76,11 @@ class Machine:
         return bool(self.chain.sliding.any())
 
     @property
+    def columns(self) -> tuple[str, ...]:
+        """What tables call the axes: q1 to q6 for every robot, so that whoever reads them needs to know no machine."""
+        return self.axes if self.is_table else tuple(f"q{index + 1}" for index in range(len(self.axes)))
+
+    @property
     def units(self) -> tuple[str, ...]:
         """The unit that each axis is shown in, 'deg' or 'mm'."""
         return tuple("mm" if sliding else "deg" for sliding in self.chain.sliding)

@@ -113,8 +113,9 @@ def check_controller(machine: Machine, post: str) -> None:
         return
     if machine.controller_remark == NOT_TOLD:
         raise InputError("WRONG_CONTROLLER", "program.post", f"{machine.title} is a URDF, which does not tell what the "
-                         "controller shows; leave program out, or make a machine file of it with New Machine…")
-    known = f"use one of {', '.join(machine.posts)}" if machine.posts else "there is no post for it yet; leave program out"
+                         "controller shows; plan without a program, or make a machine file of it with New Machine…")
+    known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
+        "there is no post for it yet: plan without a program; waypoints.csv has its axes")
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from freecad_am.core.motion import Motion
-from freecad_am.core.toolpath import Array
+from ..motion import Motion
+from ..toolpath import Array
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
 WIRE = "wire_feed_mm_s"

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a panel tells, above its fields, in a place of fixed height: fields stay where they are as messages grow and go."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+MARGIN = 2  # pixels
+
+
+class Messages(QtGui.QScrollArea):
+    """Labels below each other; what has no room is scrolled to."""
+
+    def __init__(self, lines: int) -> None:
+        super().__init__()
+        self.setObjectName("messages")
+        self.setFrameShape(QtGui.QFrame.NoFrame)
+        self.setWidgetResizable(True)
+        self.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
+        inner = QtGui.QWidget()
+        self.column = QtGui.QVBoxLayout(inner)
+        self.column.setContentsMargins(0, 0, 0, 0)
+        self.column.setSpacing(MARGIN)
+        self.column.addStretch(1)
+        self.setWidget(inner)
+        inner.setAutoFillBackground(False)
+        self.viewport().setAutoFillBackground(False)
+        self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + 2 * MARGIN)
+
+    def add(self, name: str, colour: str) -> Any:
+        """A label below those that are there, hidden."""
+        label = QtGui.QLabel()
+        label.setObjectName(name)
+        label.setWordWrap(True)
+        label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
+        label.setStyleSheet(f"QLabel {{ color: {colour}; }}")
+        label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        label.hide()
+        self.column.insertWidget(self.column.count() - 1, label)
+        return label
+
+    def to_top(self) -> None:
+        """Show what stands first, such as an error."""
+        self.verticalScrollBar().setValue(0)
