@@ -53,7 +53,8 @@ def _rows(motion: Motion, units: tuple[str, ...], rows: slice) -> str:
     parts = [part for text in texts for part in (text, np.full((1, count), ord(","), dtype=np.uint8))]
     parts[-1][:] = ord("\n")
     everything = np.concatenate(parts).T.ravel()
-    return everything[everything > 0].tobytes().decode("ascii")
+    text: str = everything[everything > 0].tobytes().decode("ascii")
+    return text
 
 
 def _digits(values: Array, decimals: int) -> Bytes:
