@@ -1412,6 +1412,11 @@
         <translation>Trajectoire CAM ici</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <source>CSV table of waypoints</source>
+        <translation>Tableau CSV de points</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/toolpath_panel.py"/>
         <source>Calibration table</source>
         <translation>Tableau d&apos;étalonnage</translation>
@@ -4228,8 +4233,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
-        <source>The joint path is ready; there is no post for this machine&apos;s controller yet. Simulate… plays it.</source>
-        <translation>La trajectoire articulaire est prête ; il n&apos;y a pas encore de post-processeur pour la commande de cette machine. Simuler… la joue.</translation>
+        <source>The joint path is ready; there is no post for this machine&apos;s controller yet. Simulate… plays it, Export Path… writes its points as a table.</source>
+        <translation>La trajectoire articulaire est prête ; il n&apos;y a pas encore de post-processeur pour la commande de cette machine. Simuler… la joue, Exporter une trajectoire… écrit ses points en tableau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -4515,6 +4520,11 @@
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>There is no path to look at yet: make a toolpath or a joint path.</source>
         <translation>Il n&apos;y a pas encore de trajectoire à regarder : faites une trajectoire d&apos;outil ou articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/suggestions.py"/>
+        <source>There is no post for this machine&apos;s controller yet: all is planned, checked and simulated, but no program is written. Export Path… writes its points as a table.</source>
+        <translation>Il n&apos;y a pas encore de post-processeur pour la commande de cette machine : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit. Exporter une trajectoire… écrit ses points en tableau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/inputs.py"/>
@@ -5003,8 +5013,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
-        <source>Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it</source>
-        <translation>Écrit une trajectoire en fils STEP ou DXF, ou en fait une trajectoire CAM ou Robot</translation>
+        <source>Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF ou en tableau, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
@@ -7598,8 +7608,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
-        <source>part on the robot</source>
-        <translation>pièce sur le robot</translation>
+        <source>part on robot</source>
+        <translation>pièce sur robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -8058,8 +8068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
-        <source>the controller of {0} does not read {1}; there is no post for it yet; leave program out</source>
-        <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle ; retirez program</translation>
+        <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
+        <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
@@ -8953,8 +8963,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
-        <source>tool on the robot</source>
-        <translation>outil sur le robot</translation>
+        <source>tool on robot</source>
+        <translation>outil sur robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
@@ -9130,6 +9140,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>way</source>
         <translation>parcours</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>waypoints are written as .csv; end the name with it</source>
+        <translation>les points sont écrits en .csv ; terminez le nom ainsi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -9443,8 +9458,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
-        <source>{0} is a URDF, which does not tell what the controller shows; leave program out, or make a machine file of it with New Machine…</source>
-        <translation>{0} est un URDF, qui ne dit pas ce qu’affiche la commande ; omettre program, ou en faire un fichier machine avec Nouvelle machine…</translation>
+        <source>{0} is a URDF, which does not tell what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
+        <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
@@ -10664,8 +10679,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
-        <source>Writes a path as STEP or DXF wires, or makes a CAM path or Robot trajectory of it</source>
-        <translation>Écrit une trajectoire en fils STEP ou DXF, ou en fait une trajectoire CAM ou Robot</translation>
+        <source>Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it</source>
+        <translation>Écrit une trajectoire en fils STEP ou DXF ou en tableau, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
 </context>
 <context>
