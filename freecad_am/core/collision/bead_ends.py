@@ -20,7 +20,8 @@ from .nozzle import Nozzle, exempt_height, travelling
 from .obstacles import Obstacles
 from .tolerances import ABOVE_FACES, CHORD
 
-GRAIN = 1.5  # length of the pieces the deposit is looked at as, mm
+# length of the pieces the deposit is looked at as, mm, near nozzles and near links
+GRAIN, LINK_GRAIN = 1.5, 5.0
 HALVINGS = 6  # of a nozzle's length: to a hundredth of it
 
 
@@ -64,9 +65,9 @@ class Beads(NamedTuple):
             np.concatenate([np.full(len(one.points), height) if one.height is None else one.height for one in beads]), first,
         )
 
-    def solid(self) -> Obstacles:
-        """The deposit, each piece from the number of its last point on."""
-        return of_beads(self.points, self.build, self.width, self.height, self.first, grain=GRAIN)
+    def solid(self, grain: float = GRAIN) -> Obstacles:
+        """The deposit in pieces of so many mm, each from the number of its last point on."""
+        return of_beads(self.points, self.build, self.width, self.height, self.first, grain=grain)
 
 
 class Size(NamedTuple):

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whether the links of a robot meet what is in its cell: nozzle, platform, bodies, and what has been deposited before.
 
-Links are rods that hold what is drawn of them; bodies are their triangles and, where closed, their inside; the deposit is
-its points, thinned, with as much room about them as thinning and beads ask for. So what is not told to touch does not
-touch, as far as links are what is drawn. What the flange carries is not looked at against the last two links, which hold
-it and can hardly move against it, nor what stands still against the base. Links against each other, the floor, cables
-and what holds the nozzle are not looked at at all.
+Links are rods that hold what is drawn of them; bodies are their triangles and, where closed, their inside; beads are as
+wide and high as they are. So what is not told to touch does not touch, as far as links are what is drawn. What the flange
+carries is not looked at against the last two links, which hold it and can hardly move against it, nor what stands still
+against the base. Links against each other, the floor, cables and what holds the nozzle are not looked at at all.
 """
 
 from __future__ import annotations
@@ -33,34 +32,7 @@ Mask = NDArray[np.bool_]
 NOZZLE, PLATFORM, DEPOSIT = "nozzle", "platform", "deposit"
 NONE = -1
 PIECE = 4096  # joint vectors done together
-MOST, FINEST = 10_000, 2.0  # points of a deposit, and mm between them
 SIDES = 24  # of a nozzle
-
-
-@dataclass(frozen=True)
-class Deposit:
-    """What is deposited, one point in each of many small cubes. points: (m, 3) in part coordinates; since: (m,) the number
-    of the first of all points in each; room: mm about them within which all of the deposit is."""
-
-    points: Array
-    since: NDArray[np.intp]
-    room: float
-
-
-def deposit(points: Array, build: Array, width: float, height: float) -> Deposit:
-    """The deposit of beads of a width and a height, mm, that stand on points (n, 3) along unit vectors build (n, 3), in the
-    order of deposition."""
-    points = points + 0.5 * height * build
-    low, edge = points.min(axis=0), FINEST
-    while True:
-        cube = np.floor((points - low) / edge).astype(np.int64)
-        span = cube.max(axis=0) + 1
-        number = (cube[:, 0] * span[1] + cube[:, 1]) * span[2] + cube[:, 2]
-        _, first, own = np.unique(number, return_index=True, return_inverse=True)
-        if len(first) <= MOST:
-            off = np.linalg.norm(points - points[first[own.ravel()]], axis=1)
-            return Deposit(points[first], first, float(off.max() + np.hypot(0.5 * width, 0.5 * height)))
-        edge *= 1.25
 
 
 @dataclass(frozen=True)
@@ -79,20 +51,19 @@ class Touches:
 
 @dataclass(frozen=True)
 class _Group:
-    """What links (numbers) are looked at against, within a ball, seen from the part or from the nozzle. room: mm added to
-    every rod."""
+    """What links (numbers) are looked at against, within a ball, seen from the part or from the nozzle."""
 
     scene: Scene
     links: range
     centre: Array
     radius: float
-    room: float
     by_nozzle: bool = False
 
 
 @dataclass(frozen=True)
 class ArmContact:
-    """A robot in its cell. rods: of each link (axes + 1), in the frame of the link, base first. bodies: in part coordinates.
+    """A robot in its cell. rods: of each link (axes + 1), in the frame of the link, base first. bodies, deposit: in part
+    coordinates.
 
     names: what can be touched, as messages call it.
     """
@@ -100,7 +71,7 @@ class ArmContact:
     cell: Cell
     rods: Sequence[Sequence[Rod]]
     bodies: Sequence[Body] = ()
-    deposit: Deposit | None = None
+    deposit: Obstacles | None = None
     names: tuple[str, ...] = field(init=False)
     _groups: tuple[_Group, ...] = field(init=False, repr=False)
     _balls: tuple[tuple[Array, float], ...] = field(init=False, repr=False)
@@ -114,9 +85,10 @@ class ArmContact:
         names = [NOZZLE, *(body.name for body in around)]
         if self.deposit is not None:
             names.append(DEPOSIT)
-            points = self.deposit.points
-            laid = Scene(of_bodies([], points, 0.0), Obstacles(points[:, None], self.deposit.since))
-            groups.append(_Group(laid, part, *_ball(points), self.deposit.room))
+            points = self.deposit.corners.reshape(-1, 3)
+            centre, radius = _ball(points)
+            about = 0.0 if self.deposit.radius is None else float(self.deposit.radius.max())
+            groups.append(_Group(Scene(of_bodies([], points, 0.0), self.deposit), part, centre, radius + about))
         object.__setattr__(self, "names", tuple(names))
         object.__setattr__(self, "_groups", tuple(groups))
         object.__setattr__(self, "_balls", tuple(_about(link) for link in self.rods))
@@ -157,7 +129,7 @@ class ArmContact:
             for number in group.links:
                 middle, size = self._balls[number]
                 away = links[:, number, :3, :3] @ middle + links[:, number, :3, 3] - centre
-                within = size + group.radius + 2.0 * group.room
+                within = size + group.radius + 2.0 * ABOUT_FACES
                 rows = np.flatnonzero((link == NONE) & (np.einsum("ij,ij->i", away, away) < within**2))
                 if len(rows):
                     seen = frames.inverse(frame[rows]) @ links[rows, number]
@@ -176,9 +148,9 @@ def _meets(group: _Group, rods: Sequence[Rod], seen: Array, moment: Index) -> Ma
         # only rods that come near the ball are looked at closely
         along = np.clip(np.einsum("ij,ij->i", group.centre - start, axis), 0.0, rod.length)
         off = start + along[:, None] * axis - group.centre
-        within = group.radius + rod.radius + 2.0 * group.room
+        within = group.radius + rod.radius + 2.0 * ABOUT_FACES
         near = np.flatnonzero(np.einsum("ij,ij->i", off, off) < within**2)
-        solid = Frustum(rod.radius + group.room, 0.0, -group.room, rod.length + group.room)
+        solid = Frustum(rod.radius + ABOUT_FACES, 0.0, -ABOUT_FACES, rod.length + ABOUT_FACES)
         met[left[near]] = group.scene.touched(solid, start[near], axis[near], moment[left[near]])
     return met
 
@@ -208,7 +180,7 @@ def _nozzle(cell: Cell) -> Body:
 
 
 def _of_body(body: Body, links: range, by_nozzle: bool = False) -> _Group:
-    return _Group(Scene(of_bodies([body], body.vertices, 0.0)), links, *_ball(body.vertices), ABOUT_FACES, by_nozzle)
+    return _Group(Scene(of_bodies([body], body.vertices, 0.0)), links, *_ball(body.vertices), by_nozzle)
 
 
 def _about(link: Sequence[Rod]) -> tuple[Array, float]:

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kinematics.arm_contact import NONE, ArmContact, Deposit, deposit
+from ..collision.bead_ends import LINK_GRAIN, Beads
+from ..collision.obstacles import Obstacles
+from ..kinematics.arm_contact import NONE, ArmContact
 from ..motion import Motion
 
 Array = NDArray[np.float64]
@@ -31,13 +33,16 @@ class ArmTouches:
     step: float
 
 
-def laid(motion: Motion, width: float, height: float) -> Deposit | None:
+def laid(motion: Motion, width: float, height: float) -> Obstacles | None:
     """The deposit of a motion as arms can touch it; width of beads where the motion does not tell it, and height, mm."""
-    points = motion.position[motion.deposit]
-    if not len(points):
+    some = motion.deposit
+    if not some.any():
         return None
-    widest = float(np.nanmax(np.append(motion.width[motion.deposit], width)))
-    return deposit(points, motion.build[motion.deposit], widest, height)
+    wide = np.where(np.isnan(motion.width[some]), width, motion.width[some])
+    return Beads(
+        motion.position[some], motion.build[some], motion.tool[some], wide, np.full(len(wide), height),
+        motion.point[some] == 0,
+    ).solid(LINK_GRAIN)
 
 
 def arm_touches(motion: Motion, arm: ArmContact, most: int | None = None) -> ArmTouches:

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import opw
-from ...core.kinematics.arm_contact import ArmContact, deposit
+from ...core.kinematics.arm_contact import ArmContact
 from ...core.kinematics.cell import Cell
 from ...core.parameters.joints import JointParameters
 from ...core.parameters.process import ProcessParameters
@@ -57,9 +58,7 @@ class Source:
     @cached_property
     def arm(self) -> ArmContact:
         """The robot with what is around it and, in the order of the beads, the deposit; made in the background."""
-        widest = max([self.width, *(float(bead.width.max()) for bead in self.beads if bead.width is not None)])
-        points, build = (np.concatenate([getattr(bead, name) for bead in self.beads]) for name in ("points", "build"))
-        laid = deposit(points, build, widest, self.toolpath.layer_height)
+        laid = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
         rods = link_rods.of_robot(self.cell.machine.chain, self.shapes)
         return ArmContact(self.cell, rods, self.toolpath.surroundings, laid)
 

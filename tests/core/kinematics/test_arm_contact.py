@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Links that touch: nothing that is drawn reaches into a body untold, and what is told is near."""
 
-import dataclasses
 
 import numpy as np
 import pytest
 
+from freecad_am.core.collision.deposit import of_beads
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.kinematics import arm_contact
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.arm_contact import DEPOSIT, NONE, NOZZLE, PLATFORM, ArmContact, deposit
+from freecad_am.core.kinematics.arm_contact import DEPOSIT, NONE, NOZZLE, PLATFORM, ArmContact
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation import link_rods, robot_links
 from freecad_am.core.simulation.placing import placing
+from tests.posts.driven import bead_body
 
 PART_ON_ROBOT = {}
 TOOL_ON_ROBOT = {"setup": "tool-on-robot", "deposition_point": (900.0, 0.0, -100.0, 0.0, 0.0, 0.0)}
@@ -39,9 +40,9 @@ def rods_of(cell):
     return [link_rods.of_solids(link) for link in drawn(cell)]
 
 
-def laid(points, width=2.0):
-    """Beads of no height."""
-    return deposit(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), width, 0.0)
+def laid(points, width=8.0, height=2.0):
+    """One bead through points."""
+    return of_beads(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), width, height, [0])
 
 
 def anywhere(cell, count, seed):
@@ -110,26 +111,41 @@ def test_only_what_was_there_before_is_touched(setup):
     assert there.sum() > 10
     none = everything.touches(q, np.zeros(200, dtype=np.int64))
     assert not (none.what == everything.names.index(DEPOSIT)).any()
-    # with the first k points it is what a deposit of those alone says; room for thinning is the same for both
+    # with the first k points it is what a deposit of those alone says
     k = 120
-    first = ArmContact(cell, rods, (), dataclasses.replace(laid(points[:k]), room=everything.deposit.room))
-    assert (everything.touches(q, np.full(200, k)).link == first.touches(q).link).mean() > 0.99
+    first = ArmContact(cell, rods, (), laid(points[:k]))
+    assert (everything.touches(q, np.full(200, k)).link == first.touches(q).link).all()
+    assert (everything.touches(q, np.full(200, k)).any != everything.touches(q).any).any()
 
 
-def test_a_thinned_deposit_leaves_room_for_all_of_its_points():
-    points = np.random.default_rng(5).uniform(-100, 100, (60_000, 3))
-    made = laid(points, 5.0)
-    assert len(made.points) <= arm_contact.MOST < len(points)
-    for number in np.random.default_rng(6).integers(0, len(points), 300):
-        near = np.linalg.norm(made.points - points[number], axis=1) <= made.room - 2.5 + 1e-9
-        assert (made.since[near] <= number).any()
-    assert (points[made.since] == made.points).all()
-
-
-def test_beads_stand_on_their_points():
-    points, up = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
-    made = deposit(points, up, 6.0, 8.0)
-    assert np.abs(made.points - [[0.0, 0.0, 4.0], [54.0, 0.0, 0.0]]).max() < 1e-12 and made.room == pytest.approx(5.0)
+@SETUPS
+def test_links_touch_beads_as_wide_and_high_as_they_are(setup):
+    """Against points in and on the beads, a mm apart: where one is in a rod it is told, where it is told one is near."""
+    cell = cell_of(setup)
+    rods = rods_of(cell)
+    turn = np.linspace(0.0, 4.0 * np.pi, 160)
+    points = np.stack([250.0 * np.cos(turn), 250.0 * np.sin(turn), 150.0 + 8.0 * turn], axis=1)
+    arm = ArmContact(cell, rods, (), laid(points))
+    dense = bead_body(points, np.tile([0.0, 0.0, 1.0], (len(points), 1)), 8.0, 2.0)
+    q = anywhere(cell, 400, 8)
+    found = arm.touches(q)
+    looked = range(1, 7) if setup else range(5)
+    apart = np.full((len(q), 7), np.inf)
+    for k in range(len(q)):
+        for link in looked:
+            seen = frames.inverse(seen_from_part(cell, q[k], link))
+            own = dense @ seen[:3, :3].T + seen[:3, 3]
+            for rod in rods[link]:
+                axis = (rod.end - rod.start) / rod.length
+                along = (own - rod.start) @ axis
+                away = np.linalg.norm(own - rod.start - along[:, None] * axis, axis=1) - rod.radius
+                out = np.maximum(np.maximum(-along, along - rod.length), 0.0)
+                apart[k, link] = min(apart[k, link], np.hypot(np.maximum(away, 0.0), out).min())
+    told = found.what == arm.names.index(DEPOSIT)
+    other = found.any & ~told
+    assert told.sum() > 8 and (~found.any).sum() > 100
+    assert (apart[~other & ~told].min(axis=1) > 0.0).all()
+    assert all(apart[k, found.link[k]] < 1.0 for k in np.flatnonzero(told))
 
 
 def test_platform_and_nozzle_are_looked_at():

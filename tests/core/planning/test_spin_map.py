@@ -6,12 +6,13 @@ import dataclasses
 import numpy as np
 import pytest
 
+from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.surroundings import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import opw
-from freecad_am.core.kinematics.arm_contact import ArmContact, deposit
+from freecad_am.core.kinematics.arm_contact import ArmContact
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import BRANCHES, JointParameters, given_polynomials, given_text
 from freecad_am.core.planning import plan, spin_curve, spin_map
@@ -346,8 +347,7 @@ def test_cells_where_the_arm_touches_are_those_in_which_a_link_does(funnel, setu
     beads = beads_of(funnel)[0]
     starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads])])
     moment = starts[at.bead] + at.point
-    points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
-    contact = ArmContact(cell, rods, [wall], deposit(points, build, 6.0, 9.0))
+    contact = ArmContact(cell, rods, [wall], Beads.of(beads, 6.0, 9.0).solid())
     touched = spin_map.arm_touched(task, found, FLIP, contact, moment)
     looked = picture.reachable & ~picture.beyond & ~picture.outside & ~found.touching
     assert 0 < touched.sum() < looked.sum() and not (touched & ~looked).any()

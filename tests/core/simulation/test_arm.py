@@ -116,7 +116,11 @@ def test_between_gaps_every_row_is_told_as_looking_everywhere_tells_it(a_motion,
 def test_the_deposit_of_a_motion_has_the_size_of_its_beads(a_motion):
     motion = a_motion(7)
     wide = dataclasses.replace(motion, width=np.where(motion.deposit, np.arange(len(motion)) % 5 + 2.0, np.nan))
-    made = arms.laid(wide, 1.0, 0.5)
-    assert len(made.points) == motion.deposit.sum()  # random points are far apart
-    assert made.room == pytest.approx(np.hypot(3.0, 0.25))
-    assert arms.laid(motion, 1.0, 0.5).room >= np.hypot(0.5, 0.25)
+    made, plain = arms.laid(wide, 1.0, 0.5), arms.laid(motion, 1.0, 0.5)
+    # sections of stadiums half a mm high: round by a quarter, and flat between
+    assert np.unique(made.radius) == pytest.approx([0.25])
+    for laid, low, high in ((made, 1.5, 5.5), (plain, 0.5, 0.5)):
+        flat = np.linalg.norm(laid.corners[:, 1] - laid.corners[:, 0], axis=1)
+        assert (flat > low - 1e-9).any() and (flat <= high + 1e-9).all()
+    # each piece from the row at its end on
+    assert set(made.since) <= set(range(int(motion.deposit.sum())))
