@@ -23,7 +23,8 @@ def most_beyond(joints, told):
     """By how much, at the most, joints (n, axes) are beyond limits as a machine file tells them; NaN is not told."""
     ranges = [(values, ends) for values, ends in zip(joints.T, told["axes"], strict=True) if ends is not None]
     ranges += [(joints @ np.array(one["coefficients"], dtype=float), one["range"]) for one in told.get("coupled", ())]
-    return max(max(ends[0] - np.nanmin(values), np.nanmax(values) - ends[1]) for values, ends in ranges)
+    known = [(values[~np.isnan(values)], ends) for values, ends in ranges]
+    return max(max(ends[0] - values.min(), values.max() - ends[1]) for values, ends in known if len(values))
 
 
 def beyond(waypoints, machine, limits):
@@ -44,8 +45,9 @@ def told_joints(files, machine):
         pattern = FANUC if any(name.endswith(".LS") for name in files) else VAL3
         shown = np.array([re.findall(pattern.format(axis), text) for axis in range(1, 7)], dtype=float).T
     else:  # the last word of each axis holds; where positions are told these are the tip's, and rotary words alone count
-        turning = [one["name"].upper() for one in told["joints"] if one.get("type") != "prismatic"]
-        words = [*("XYZ" if not re.search(r"TRAORI|M428|[ABC]3=", text) else "   "), *turning]
+        bare = not re.search(r"TRAORI|M428|[ABC]3=", text)
+        words = [
+            one["name"][-1].upper() if bare or one.get("type") != "prismatic" else "no word" for one in told["joints"]]
         rows = [line for line in text.splitlines() if re.search(r"\bG1 ", line)]
         found = [[re.findall(rf"{word}=?(?:DC\()?(-?\d+\.\d+)", line) for word in words] for line in rows]
         shown = np.array([[float(one[-1]) if one else np.nan for one in line] for line in found])
