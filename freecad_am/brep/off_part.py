@@ -66,6 +66,9 @@ def _by_triangles(shape: Any, points: Array) -> Array:
 
 
 def _signed(vertices: Array, triangles: Any, points: Array) -> Array:
+    """Distances (n,), NaN where the kernel makes no triangles of a shape."""
+    if not len(triangles):
+        return np.full(len(points), np.nan)
     mesh = SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max()))
     pieces = np.array_split(points, max(1, len(points) // PIECE))
     return np.concatenate([mesh.signed(some)[0] for some in pieces])
@@ -91,7 +94,7 @@ def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool)
         vertices, triangles = beside(triangles_of, shape, FINE)
         finer = _signed(vertices, triangles, points[unsure])
         exact[unsure] = np.maximum((finer if solid else np.abs(finer)) - 2.0 * FINE, 0.0)
-    return np.minimum(exact, exact[asked].max(initial=0.0))
+    return np.minimum(exact, np.fmax.reduce(exact[asked], initial=0.0))
 
 
 def _by_kernel(shape: Any, place: Array, solid: bool) -> float:

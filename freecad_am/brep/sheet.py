@@ -48,6 +48,9 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     triangles = _turned(triangles, owner, names, label)
     places = Places(shape, patches, nodes, vertices, edge)
     made = refined(vertices, triangles, owner, edge, places.middles, MOST) if about < 2 * MOST else None
+    if made is None and about < MOST:  # long needles, as on slanted tubes: edges turned reach across from side to side
+        places = Places(shape, patches, nodes, vertices, edge)
+        made = refined(vertices, triangles, owner, edge, places.middles, MOST, turned=False)
     if made is None:
         raise InputError(
             "TOO_FINE", label, f"with edges of {edge:.3g} mm, by layer height and smallest radius, the mesh of the wall has "

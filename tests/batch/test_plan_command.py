@@ -203,6 +203,7 @@ def test_through_a_link_and_from_elsewhere(workshop, tmp_path_factory):
         ("layer_height: 4 mm", "layer_height: 0 mm", "BAD_VALUE", "cup.yaml: strategy.layer_height"),
         ("layer_height: 4 mm", "layer_height: 500 mm", "LAYER_HEIGHT", "cup.yaml: strategy.layer_height"),
         ("layer_height: 4 mm", "layer_height: 1e-6 mm", "TOO_MANY", "cup.yaml: strategy.layer_height"),
+        ("limits: paper", "nozzle: {length: 1e9 mm}", "BAD_VALUE", "cup.yaml: cell.nozzle.length"),
         ("limits: paper", "limits: papre", "UNKNOWN_LIMITS", "cup.yaml: cell.limits"),
         ("limits: paper", "machine: fanuc-arcmate120", "UNKNOWN_MACHINE", "did you mean fanuc-arcmate120ic"),
         ("limits: paper", "machine: none/such.json", "UNKNOWN_MACHINE", "such.json"),

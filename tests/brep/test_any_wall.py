@@ -269,3 +269,15 @@ def test_refusals_by_real_shapes(make, substrate, height, code, words):
     assert "(" in error.message
     for word in words:
         assert word in error.message
+
+
+@pytest.mark.parametrize(("radius", "tall", "lean", "edge"), [(10.0, 120.0, 0.9, 3.0), (15.0, 150.0, 0.5, 5.0)])
+def test_the_mesh_of_a_slanted_tube_has_no_edges_across(radius, tall, lean, edge):
+    """Long needles, of which edges that are turned reached from side to side: halving them never ended."""
+    skin = Part.makeCircle(radius).extrude(Vector(lean * tall, 0, tall)).toNurbs()
+    wall = sheet([("Face1", skin.Faces[0])], edge, "Wall")
+    corner = wall.vertices[wall.triangles]
+    assert np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2).max() <= edge
+    assert len(wall.triangles) < 100 * skin.Area / edge**2
+    x, y, z = wall.vertices.T
+    np.testing.assert_allclose(np.hypot(x - lean * z, y), radius, atol=1e-9)

@@ -9,6 +9,7 @@ import pytest
 from FreeCAD import Vector
 
 from freecad_am import api
+from freecad_am.brep import off_part
 from freecad_am.brep.off_part import off_faces, off_mesh, off_solids
 from freecad_am.objects import toolpath as stage
 
@@ -34,6 +35,20 @@ def test_distances_from_chosen_faces(rng):
     past = off_faces(shape, round_, ring(rng, 30.0, 55.0, 60.0, 50), 0.03)
     assert past.min() >= 5.0 - 1e-6 and past.max() <= 10.0 + 1e-6
     assert np.isnan(off_faces(Part.makeLine(Vector(), Vector(0, 0, 1)), (), points, 0.03)).all()
+
+
+def test_a_shape_of_which_the_kernel_makes_no_triangles(rng, monkeypatch):
+    """Its own distances from some places, nothing of the others, where it ended as an internal error."""
+    monkeypatch.setattr(off_part, "triangles_of", lambda *_: (np.zeros((0,)), np.zeros((0,), dtype=int)))
+    radius = 30.0 + rng.uniform(-3.0, 3.0, 150)
+    points = ring(rng, radius, 5.0, 45.0, 150)
+    shape = Part.makeCylinder(30.0, 50.0)
+    for found, true in (
+        (off_faces(shape, ["Face1"], points, 0.03), np.abs(radius - 30.0)),
+        (off_solids(shape, points, 0.03), np.maximum(radius - 30.0, 0.0)),
+    ):
+        known = np.isfinite(found)
+        assert 0 < known.sum() < 150 and found[known] == pytest.approx(true[known], abs=1e-6)
 
 
 def test_distances_outside_of_solids(rng):

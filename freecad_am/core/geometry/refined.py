@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 ROUNDS = 60
 NEEDLE = 0.5  # of the shortest to the longest side
+ENDLESS = 100  # more edges that are too long than twice the least there were: halving them does not end
 LEVEL = 0.3  # cosine between the normals of two triangles, down to which an edge may be turned in any case
 FLIPS, FEW, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
 
@@ -43,22 +44,28 @@ class Edges:
 
 
 def refined(
-    vertices: Array, triangles: Index, owner: Index, longest: float, place: Placed, most: int
+    vertices: Array, triangles: Index, owner: Index, longest: float, place: Placed, most: int, turned: bool = True
 ) -> tuple[Array, Index, Index] | None:
     """Vertices, triangles and their owners (m,) with no edge longer than `longest` mm; None when there would be more than
-    `most` triangles.
+    `most` triangles, or edges that are turned come back as long as they were, again and again.
 
-    place: moves the new middles of edges to where they belong. What was shared stays shared.
+    place: moves the new middles of edges to where they belong. What was shared stays shared. turned: whether edges are
+    turned after each round of halving.
     """
+    highest = least = 0  # edges that are too long: at most so far, and at least since
     for _ in range(ROUNDS):
         edges = Edges(triangles)
         length = np.linalg.norm(vertices[edges.ends[:, 0]] - vertices[edges.ends[:, 1]], axis=1)
         split = length > longest
-        if not split.any():
+        long = int(split.sum())
+        if not long:
             break
+        highest, least = (long, long) if long > highest else (highest, min(long, least))
+        if turned and least < 0.5 * highest and long > 2 * least + ENDLESS:
+            return None
         # halve the longest edge of each triangle that has an edge to halve, so that triangles stay in shape
         own = length[edges.of] + 1e-9 * length.max() * edges.of / len(length)  # no ties
-        first = _first_cut(edges, own, owner, longest, split)
+        first = _first_cut(edges, own, owner, longest, split) if turned else np.argmax(own, axis=1)
         top = np.take_along_axis(edges.of, first[:, None], axis=1)[:, 0]
         while True:
             more = split[edges.of].any(axis=1) & ~split[top]
@@ -74,7 +81,8 @@ def refined(
         number[split] = len(vertices) + np.arange(len(ends))
         vertices = np.vstack([vertices, middle])
         triangles, owner = _halved(triangles, owner, number[edges.of], first)
-        triangles = flipped(vertices, triangles, owner)
+        if turned:
+            triangles = flipped(vertices, triangles, owner)
     return vertices, triangles, owner
 
 

@@ -21,8 +21,8 @@ class NozzleParameters:
     half_angle: float = f.parameter(
         math.radians(20.0), f.ANGLE, "Angle between the nozzle's axis and its side.", low=0.0, high=math.radians(89.0)
     )
-    diameter: float = f.parameter(1.0, f.LENGTH, "Diameter of the nozzle's flat tip.", low=0.0)
-    length: float = f.parameter(60.0, f.LENGTH, "Length of the nozzle from its tip.", low=0.0, open_low=True)
+    diameter: float = f.parameter(1.0, f.LENGTH, "Diameter of the nozzle's flat tip.", low=0.0, high=1000.0)
+    length: float = f.parameter(60.0, f.LENGTH, "Length of the nozzle from its tip.", low=0.0, high=10_000.0, open_low=True)
     tool: Pose = f.parameter(
         (0.0, 0.0, 200.0, 0.0, 0.0, 0.0), f.POSE,
         "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.",
