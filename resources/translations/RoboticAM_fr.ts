@@ -5497,7 +5497,7 @@
         <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>at least {0}</source>
         <translation>au moins {0}</translation>
     </message>
@@ -7232,12 +7232,12 @@
         <translation>plus de deux faces se rencontrent en une arête en {0} ; une paroi se ramifie par des faces lisses à ouvertures : laissez l&apos;une d&apos;elles de côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>more than {0}</source>
         <translation>plus de {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>more than {0} and at most {1}</source>
         <translation>plus de {0} et au plus {1}</translation>
     </message>
