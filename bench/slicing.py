@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A mesh of 200,000 triangles cut by 50 equidistant cones, closed loops included, against trimesh with 50 planes."""
+"""A mesh of 200,000 triangles cut by 50 equidistant cones, and by 1,000 planes, closed loops included, against trimesh."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ import numpy as np
 
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.slicing.equidistant import Facets
+from freecad_am.core.slicing.plane_sections import PlaneCuts
 
 from rows import Row
 
 AROUND, UP, CUTS, ROUNDS = 400, 250, 50, 5
 CHORD_ERROR = 0.05
+SECTIONS, FEWER = 1000, 3  # planes, and rounds of them
 
 
 def run() -> list[Row]:
@@ -34,7 +36,33 @@ def run() -> list[Row]:
         Row(name, whole, median(peers) if peers else None, "s", 1.5),
         Row(halves, whole, 2.0 * halved, "s", 0.6),
         Row(f"{2 * CUTS} cones against twice the time of {CUTS}", doubled, 2.0 * whole, "s", 0.6),
+        _sections(vertices, faces),
     ]
+
+
+def _sections(vertices: np.ndarray, faces: np.ndarray) -> Row:
+    """Plane sections with their loops, against trimesh's own sections as paths."""
+    heights = np.linspace(vertices[:, 2].min(), vertices[:, 2].max(), SECTIONS + 2)[1:-1]
+    ours, peers = [], []
+    for _ in range(FEWER):
+        start = process_time()
+        assert all(PlaneCuts(vertices, faces).loops(heights))
+        ours.append(process_time() - start)
+        peer = _peer_sections(vertices, faces, heights)
+        peers += [] if peer is None else [peer]
+    name = f"{len(faces):,} triangles cut by {SECTIONS:,} planes, loops included, against trimesh's sections"
+    return Row(name, median(ours), median(peers) if peers else None, "s", 3.0)
+
+
+def _peer_sections(vertices: np.ndarray, faces: np.ndarray, heights: np.ndarray) -> float | None:
+    try:
+        import trimesh
+    except ImportError:
+        return None
+    start = process_time()
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    mesh.section_multiplane(np.zeros(3), np.array([0.0, 0.0, 1.0]), heights)
+    return process_time() - start
 
 
 def _ours(vertices: np.ndarray, faces: np.ndarray, cuts: int) -> float:

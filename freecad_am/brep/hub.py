@@ -37,8 +37,9 @@ class Bodies(NamedTuple):
     issues: tuple[Issue, ...]
 
 
-def bodies_of(source: Any, label: str, chord_error: float) -> Bodies:
+def bodies_of(source: Any, label: str, chord_error: float, touching: bool = False) -> Bodies:
     """The solids of a Part.Shape, or the pieces of a mesh (a Mesh.Mesh, or a Body), in part coordinates.
+    touching: a solid may touch itself along edges.
 
     InputError NO_SOLID, SELF_CROSSING, and those of `mesh_repair.repaired`.
     """
@@ -54,15 +55,15 @@ def bodies_of(source: Any, label: str, chord_error: float) -> Bodies:
     made: list[tuple[Any, SolidMesh]] = []
     for solid in source.Solids:
         first = next((entry for entry in made if entry[0].isPartner(solid)), None)
-        made.append((solid, _meshed(solid, chord_error, label) if first is None else _placed(*first, solid)))
+        made.append((solid, _meshed(solid, chord_error, label, touching) if first is None else _placed(*first, solid)))
     return Bodies(_named([mesh for _, mesh in made], label), ())
 
 
-def _meshed(solid: Any, chord_error: float, label: str) -> SolidMesh:
+def _meshed(solid: Any, chord_error: float, label: str, touching: bool) -> SolidMesh:
     vertices, corners = beside(tessellated, solid.copy(), SHARE * chord_error)[:2]
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
-    mesh.refuse_unsound(label, of_shape=True)
+    mesh.refuse_unsound(label, of_shape=True, touching=touching)
     mesh.refuse_crossing(label, CROSSED * chord_error)
     return mesh
 

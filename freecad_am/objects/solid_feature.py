@@ -53,7 +53,7 @@ class SolidFeature(Stage):
             solid: list[Body] = []
             issues: tuple[Issue, ...] = ()
             for one in objects:
-                found = bodies_of(one.body() if one.shape is None else one.shape, one.label, strategy.chord_error)
+                found = bodies_of(one.body() if one.shape is None else one.shape, one.label, strategy.chord_error, True)
                 solid += found.bodies
                 issues += found.issues
             solids = stacked(solid, strategy, label, issues)

@@ -37,15 +37,16 @@ class SolidMesh:
         a, b, c = (self.vertices[self.triangles[:, k]] - self.vertices[self.triangles[0, 0]] for k in range(3))
         return float(dot(a, np.cross(b, c)).sum() / 6.0)
 
-    def refuse_unsound(self, label: str, of_shape: bool = False) -> None:
+    def refuse_unsound(self, label: str, of_shape: bool = False, touching: bool = False) -> None:
         """InputError OPEN_MESH, NON_MANIFOLD or INSIDE_OUT with a place, unless the mesh bounds a solid. of_shape: it stands
-        for a solid with exact faces, so that there is no mesh to repair."""
+        for a solid with exact faces, so that there is no mesh to repair. touching: it may touch itself along edges."""
         edges = Edges(self.triangles)
+        several = (edges.count > 2) & ~(touching & (edges.count % 2 == 0))
         for wrong, code, what, cure in (
             (edges.count == 1, "OPEN_MESH", "the mesh has a hole", "fill holes (Mesh, Close holes) or export it again"),
-            ((edges.count > 2) & of_shape, "NON_MANIFOLD", "the solid touches itself along an edge, so that its inside is "
+            (several & of_shape, "NON_MANIFOLD", "the solid touches itself along an edge, so that its inside is "
              "not known", "draw it apart there, or let it overlap there and fuse it (Part, Boolean)"),
-            (edges.count > 2, "NON_MANIFOLD", "three or more triangles share an edge", "repair the mesh (Mesh, Analyze)"),
+            (several, "NON_MANIFOLD", "three or more triangles share an edge", "repair the mesh (Mesh, Analyze)"),
         ):
             if wrong.any():
                 where = place(self.vertices[edges.ends[np.argmax(wrong)]].mean(axis=0))

@@ -17,6 +17,7 @@ from ..parameters.strategy import SolidParameters
 from ..slicing.plane_sections import PlaneCuts
 from .covered import with_covered
 from .margins import grown, within_margin
+from .overhang import with_overhangs
 from .plane_layer import PlaneLayer
 from .surface import Array, Slice
 
@@ -37,7 +38,7 @@ def count(top: float, strategy: SolidParameters) -> int:
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of bodies upwards, on the planes 0, h, 2 h ... mm above that of the base; those without any region are left
     out. InputError TOO_LOW where no layer reaches into them."""
-    return with_covered(_cut(base, bodies, strategy), strategy.thick)
+    return with_covered(with_overhangs(_cut(base, bodies, strategy), base, strategy), strategy.thick)
 
 
 def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
@@ -49,7 +50,7 @@ def _cut(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Itera
             "TOO_LOW", "strategy.layer_height", f"{strategy.layer_height:g} mm is too much for "
             f"{', '.join(body.name for body in bodies)}, {top:.4g} mm high along strategy.direction (the highest place is "
             f"at {_highest(base, local)}): no layer is cut in its {strategy.cut_at}; give at most "
-            f"{0.999 * top / max(strategy.share_of_cut, 0.001):.3g} mm",
+            f"{0.99 * top / max(strategy.share_of_cut, 0.001):.3g} mm",
         )
     heights: Array = strategy.layer_height * (np.arange(number, dtype=np.float64) + strategy.share_of_cut)
     cuts = [

@@ -18,7 +18,6 @@ from ..parameters.strategy import SolidParameters
 Array = NDArray[np.float64]
 
 AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64)
-STEEP = np.sin(np.radians(45.0))  # walls that lean farther over are carried by nothing
 LARGEST = 12  # flat faces that the part may be laid on, beside the axes
 ALIKE = np.cos(np.radians(2.0))
 STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
@@ -39,7 +38,7 @@ def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issue
     asked = strategy.stacking()
     if asked is None:
         found = best(bodies, strategy)
-        way, issues = found[0].way, (*issues, _told(found, label))
+        way, issues = found[0].way, (*issues, _told(found, label, np.degrees(strategy.max_overhang)))
     else:
         way = np.array(asked) / np.linalg.norm(asked)
     turned = upright(np.zeros(3), way)
@@ -55,7 +54,8 @@ def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     height, then in their order."""
     vertices, normals, areas = _facets(bodies)
     ways = _candidates(normals, areas)
-    found = [_judged(way, vertices, normals, areas, STANDING * strategy.layer_height) for way in ways]
+    steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
+    found = [_judged(way, vertices, normals, areas, steep, standing) for way in ways]
     total = max(float(areas.sum()), 1e-300)
     return sorted(found, key=lambda one: (round(one.area / total / CLOSE), round(one.height, 6)))
 
@@ -84,14 +84,14 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
     return ways
 
 
-def _judged(way: Array, corners: Array, normals: Array, areas: Array, standing: float) -> Stacked:
+def _judged(way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float) -> Stacked:
     heights = corners @ way
     low, high = float(heights.min()), float(heights.max())
-    over = (normals @ way < -STEEP) & (heights.max(axis=1) > low + standing)
+    over = (normals @ way < -steep - 1e-9) & (heights.max(axis=1) > low + standing)
     return Stacked(way, float(areas[over].sum()), high - low)
 
 
-def _told(found: Sequence[Stacked], label: str) -> Issue:
+def _told(found: Sequence[Stacked], label: str, lean: float) -> Issue:
     chosen = found[0]
     upright_one = next(one for one in found if one.way is AXES[0] or np.array_equal(one.way, AXES[0]))
     other = "" if chosen is upright_one else (
@@ -100,5 +100,5 @@ def _told(found: Sequence[Stacked], label: str) -> Issue:
     x, y, z = (round(float(value), 6) + 0.0 for value in chosen.way)
     return Issue(
         NOTE, "DIRECTION", f"{label} is stacked along ({x:g}, {y:g}, {z:g}): {chosen.area:.4g} mm^2 of it lean over nothing "
-        f"by more than 45 deg, and it is {chosen.height:.4g} mm high{other}",
+        f"by more than {lean:.4g} deg, and it is {chosen.height:.4g} mm high{other}",
     )

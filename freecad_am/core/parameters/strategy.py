@@ -245,6 +245,10 @@ class SolidParameters(FilledParameters):
         "middle", f.CHOICE, "Where in its height a layer takes its outline from the part.",
         choices=("middle", "bottom", "top"),
     )
+    max_overhang: float = f.parameter(
+        math.radians(45.0), f.ANGLE, "Largest angle between the stacking direction and a wall that leans out, before there "
+        "is a warning; 90 deg: none.", low=0.0, high=math.pi / 2.0,
+    )
     fuse: str = f.parameter(
         "auto", f.CHOICE, "Solids that touch or overlap are deposited as one (auto), or each by itself (none).",
         choices=("auto", "none"), advanced=True,

@@ -19,7 +19,21 @@ from ..geometry.mesh import chains
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
+MOST_SIDES = 16  # pairs of triangles that meet in an edge
 AT_ONCE = 1_000_000  # crossings of planes worked on together; bounds the memory
+
+
+def _paired(key: Index, forward: NDArray[np.bool_]) -> Index:
+    """Numbers (n,) of edges by their keys and which way a triangle goes along them: where a solid touches itself along an
+    edge, so that four triangles or more meet there, each number is of two, one of either way. Which two they are is all the
+    same: loops that touch bound the same area however they go on."""
+    order = np.lexsort((forward, key))
+    alike = np.r_[False, (np.diff(key[order]) == 0) & (np.diff(forward[order].astype(np.int8)) == 0)]
+    at = np.arange(len(key))
+    begin = np.maximum.accumulate(np.where(alike, 0, at)) if len(key) else at
+    rank = np.empty(len(key), dtype=np.int64)
+    rank[order] = np.minimum(at - begin, MOST_SIDES - 1)
+    return np.asarray(key * MOST_SIDES + rank)
 
 
 class PlaneCuts:
@@ -34,14 +48,10 @@ class PlaneCuts:
         self.vertices, self.triangles = vertices, triangles[~flat]
         following = self.triangles[:, [1, 2, 0]]
         low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
-        key = low.astype(np.int64).ravel() * len(vertices) + high.ravel()
-        order = np.argsort(key, kind="stable")
-        ranked = key[order]
-        first = np.r_[True, ranked[1:] != ranked[:-1]] if len(ranked) else np.zeros(0, dtype=bool)
-        number = np.empty(len(key), dtype=np.intp)
-        number[order] = np.cumsum(first) - 1
-        self._edge_of: Index = number.reshape(-1, 3)
-        start, end = np.divmod(ranked[first], len(vertices))
+        key = _paired(low.astype(np.int64).ravel() * len(vertices) + high.ravel(), (self.triangles < following).ravel())
+        known, number = np.unique(key, return_inverse=True)
+        self._edge_of: Index = np.ravel(number).reshape(-1, 3).astype(np.intp)
+        start, end = np.divmod(known // MOST_SIDES, len(vertices))
         turned = vertices[start, 2] > vertices[end, 2]
         self._lower: Index = np.where(turned, end, start)
         self._upper: Index = np.where(turned, start, end)

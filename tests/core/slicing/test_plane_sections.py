@@ -97,6 +97,16 @@ def test_what_touches_only_closes_all_the_same():
         assert area(loops) == pytest.approx(section_of_hull(solid[0] - (0, 0, 1e-9), height - 2e-9), abs=1e-5)
 
 
+def test_a_solid_that_touches_itself_along_an_edge():
+    """Two bars corner to corner, whose vertices there are one: four triangles meet in the edge between them."""
+    points, faces = joined(box((0, 0, 0), (10, 10, 20)), box((10, 10, 0), (20, 20, 20)))
+    places, index = np.unique(points, axis=0, return_inverse=True)
+    faces = np.ravel(index)[faces]
+    assert len(places) == 14
+    for loops in PlaneCuts(places, faces).loops([5.0, 10.0, 19.0]):
+        assert area(loops) == pytest.approx(200.0) and sum(len(loop) for loop in loops) >= 8
+
+
 def test_planes_in_blocks_are_the_same(monkeypatch):
     from freecad_am.core.slicing import plane_sections
 

@@ -185,6 +185,24 @@ def test_the_best_direction_is_the_one_that_needs_no_support():
     assert "20 mm high" in issue.message and "1400 mm^2" in issue.message
 
 
+@pytest.mark.parametrize(
+    "lean, most, told", [(30, 45, False), (50, 45, True), (50, 60, False), (80, 89, False), (88, 90, False)]
+)
+def test_walls_that_lean_out_are_told(lean, most, told):
+    """A frustum upside down; its area over each layer is that of the ring by which it is wider, less what may lean out."""
+    out = 10.0 * math.tan(math.radians(lean))
+    cone = tube([(0.5, 0.0), (30.0, 0.0), (30.0 + out, 10.0), (0.5, 10.0)])
+    made = planned(cone, layer_height=2.0, max_overhang=math.radians(most), fill="contours")
+    found = [issue for issue in made.issues if issue.code == "OVERHANG"]
+    assert bool(found) == told
+    if told:
+        inner = 30.0 + 1.0 * math.tan(math.radians(lean))
+        outer = inner + 2.0 * math.tan(math.radians(lean))
+        free = math.pi * (outer**2 - (inner + 2.0 * math.tan(math.radians(most)) + ERROR) ** 2)
+        assert float(found[0].message.split(" mm^2")[0]) == pytest.approx(free, rel=0.05)
+        assert found[0].layer == 1 and "(and 3 layers of solids more)" in found[0].message
+
+
 def test_a_wall_thinner_than_a_bead_gets_one_bead_and_says_so():
     made = planned(box((0, 0, 0), (60, 2, 8)))
     assert all(len(layer.beads) == 1 for layer in made.layers)
@@ -204,7 +222,7 @@ def test_a_part_lower_than_any_cut_is_refused():
     with pytest.raises(InputError) as caught:
         planned(box((0, 0, 5), (30, 30, 5.9)), layer_height=2.0)
     assert caught.value.code == "TOO_LOW" and "0.9 mm high" in caught.value.message
-    assert "give at most 1.8 mm" in caught.value.message
+    assert "give at most 1.78 mm" in caught.value.message
     assert len(planned(box((0, 0, 5), (30, 30, 5.9)), layer_height=1.79).layers) == 1
 
 

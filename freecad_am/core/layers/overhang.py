@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What of a plane layer leans out over the one below it by more than is asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from ..geometry.on_hub import Base
+from ..geometry.region import Region
+from ..geometry.told import place
+from ..issues import WARNING, Issue
+from ..parameters.strategy import SolidParameters
+from .surface import Slice
+
+CODE = "OVERHANG"
+ARC = 0.1  # of how far layers may lean out, or of the chord error if that is more: of the borders that are compared
+NEVER = math.radians(89.9)  # nothing leans out by more
+LEAST = 0.25  # of the bead spacing: sides of a square that is not worth telling of
+
+
+def with_overhangs(slices: Iterator[Slice], base: Base, strategy: SolidParameters) -> Iterator[Slice]:
+    """Layers of one stack of planes with an issue for each that leans out by more than `max_overhang` from the direction in
+    which they are stacked, with the area and where the largest piece of it is."""
+    reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error
+    least = (LEAST * strategy.bead_spacing) ** 2
+    before: Slice | None = None
+    for one in slices:
+        issues = one.issues
+        if before is not None and strategy.max_overhang < NEVER:
+            over = _over(one, before if before.layer == one.layer - 1 else None, reach, strategy.chord_error, least)
+            if over:
+                spot = max(over, key=lambda part: part.area).inside()
+                at = place(base.placed(one.surface.wrap(spot[None]).points)[0])
+                issues = (*issues, Issue(
+                    WARNING, CODE, f"{math.fsum(part.area for part in over):.4g} mm^2 lean out over the layer below by more "
+                    f"than {math.degrees(strategy.max_overhang):.4g} deg, the largest piece at {at}; deposit what carries "
+                    "it first, choose another strategy.direction, or raise strategy.max_overhang", one.layer,
+                ))
+        before = one
+        yield one._replace(issues=issues)
+
+
+def _over(one: Slice, below: Slice | None, reach: float, chord_error: float, least: float) -> list[Region]:
+    """The pieces of a layer farther than `reach` mm beside the one below it."""
+    under = () if below is None else below.regions
+    carried = [
+        part for region in under if isinstance(region, Region) for part in region.grown(reach, max(ARC * reach, chord_error))
+    ]
+    pieces = [
+        part for region in one.regions if isinstance(region, Region)
+        for part in (region.without(carried) if carried else (region,))
+    ]
+    return [part for part in pieces if part.area > least]
