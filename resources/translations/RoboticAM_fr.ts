@@ -9823,13 +9823,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/stacking.py"/>
-        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than 45 deg, and it is {5} mm high</source>
-        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de 45 deg, et sa hauteur est de {5} mm</translation>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/stacking.py"/>
-        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than 45 deg, and it is {5} mm high; along (0, 0, 1) it would be {6} mm^2 and {7} mm</source>
-        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de 45 deg, et sa hauteur est de {5} mm ; suivant (0, 0, 1) ce serait {6} mm^2 et {7} mm</translation>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 of it lean over nothing by more than {5} deg, and it is {6} mm high; along (0, 0, 1) it would be {7} mm^2 and {8} mm</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 en surplombent le vide de plus de {5} deg, et sa hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -9930,6 +9930,11 @@
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} mm/s cannot be written; use {1} to {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez {1} à {2} mm/s</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/overhang.py"/>
+        <source>{0} mm^2 lean out over the layer below by more than {1} deg, the largest piece at {2}; deposit what carries it first, choose another strategy.direction, or raise strategy.max_overhang</source>
+        <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
