@@ -15,6 +15,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from . import icons
+from .signals import connect
 from .texts import tr
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "tools"
@@ -71,6 +72,7 @@ class HelpWindow:
         self.text = QtGui.QTextBrowser()
         self.text.setObjectName("page")
         self.text.setOpenExternalLinks(True)
+        connect(self.text, "sourceChanged(QUrl)", self._without_empty_headings)
         row, column = QtGui.QHBoxLayout(), QtGui.QVBoxLayout(self.window)
         for label, act in ((tr("All tools"), lambda: self.show(INDEX)), (tr("Back"), self.text.backward)):
             button = QtGui.QPushButton(label)
@@ -81,6 +83,14 @@ class HelpWindow:
         column.addLayout(row)
         column.addWidget(self.note)
         column.addWidget(self.text, 1)
+
+    def _without_empty_headings(self, *_: Any) -> None:
+        """Markdown has a row of headings in every table: those that are empty are left out."""
+        for table in self.text.document().rootFrame().childFrames():
+            if isinstance(table, QtGui.QTextTable) and table.rows() > 1:
+                cells = (table.cellAt(0, column) for column in range(table.columns()))
+                if not any(cell.firstCursorPosition().block().text().strip() for cell in cells):
+                    table.removeRows(0, 1)
 
     def show(self, page: str, note: str = "") -> None:
         """Show a page of docs/tools, above it a note."""

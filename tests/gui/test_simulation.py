@@ -328,6 +328,7 @@ def test_a_program_that_resumes_plays_only_what_it_runs(person, hemisphere):
     person.field(window, "close").click()
     panel, simulation = opened(person, program)
     assert simulation.run.title == program.Label
+    assert person.panel("RoboticAM_Simulation").windowTitle() == f"Simulation of {program.Label} ({program.Document.Label})"
     person.field(panel, "layer_on").click()
     person.screenshot("simulation_program")
 

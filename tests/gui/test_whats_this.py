@@ -71,3 +71,16 @@ def test_what_is_not_ours_is_left_to_freecad(person):
     docks = person.window.findChildren(person.widgets.QDockWidget)
     combo = next(dock for dock in docks if not dock.objectName().startswith("RoboticAM"))
     assert whats_this._ours(combo) == ("", "")
+
+
+def test_tables_of_the_help_begin_with_what_they_say(person, shown):
+    person.gui.runCommand(whats_this.NAME)
+    for page in ("README.md", "cell.md", "export-path.md"):
+        whats_this.show(page)
+        person.idle(0.1)
+        document = whats_this._windows[-1].text.document()
+        tables = [one for one in document.rootFrame().childFrames() if isinstance(one, person.widgets.QTextTable)]
+        assert tables, page
+        for table in tables:
+            cells = [table.cellAt(0, column) for column in range(table.columns())]
+            assert any(cell.firstCursorPosition().block().text().strip() for cell in cells), page

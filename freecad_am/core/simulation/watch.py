@@ -117,11 +117,11 @@ def watch(
         near = (margin < NEAR) & ~seen.past
     labels, axes = cell.limits.labels, cell.machine.axes
     found = [Finding(row, UNREACHABLE) for row, _ in _runs(~motion.reachable, np.zeros(len(motion)))]
-    for kind, mask in ((LIMIT, seen.past), (NEAR_LIMIT, near)):
-        found += [Finding(row, kind, labels[limit[worst]], float(margin[worst])) for row, worst in _runs(mask, margin)]
+    for kind, mask in ((LIMIT, seen.past), (NEAR_LIMIT, near)):  # where it is worst, as errors of the plan say
+        found += [Finding(worst, kind, labels[limit[worst]], float(margin[worst])) for _, worst in _runs(mask, margin)]
     found += [
-        Finding(row, SINGULAR, "", float(condition[worst]), float(threshold[worst]))
-        for row, worst in _runs(seen.singular, condition)
+        Finding(worst, SINGULAR, "", float(condition[worst]), float(threshold[worst]))
+        for _, worst in _runs(seen.singular, condition)
     ]
     share = np.where(kept.slowed, kept.achieved / np.where(kept.asked > 0.0, kept.asked, 1.0), 1.0)
     found += [

@@ -58,7 +58,9 @@ class Simulation:
     # ---- the dock
 
     def _title(self) -> str:
-        return tr("Simulation of {title}").format(title=self.run.title)
+        document = App.listDocuments().get(self.run.document)
+        of = self.run.title if document is None else tr("{} ({})").format(self.run.title, document.Label)
+        return tr("Simulation of {title}").format(title=of)
 
     def _speak(self) -> None:
         """The window has another language."""
