@@ -10357,6 +10357,11 @@
         <translation>{} (mm)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>{} ({})</source>
+        <translation>{} ({})</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/pick_panel.py"/>
         <source>{} are missing: click them in the tree or the 3D view.</source>
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
