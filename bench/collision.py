@@ -61,7 +61,7 @@ def _queries() -> list[Row]:
     lean, turn = rng.uniform(0.0, np.pi / 4, LOOKS), rng.uniform(0.0, 2.0 * np.pi, LOOKS)
     axis = np.stack([np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)], axis=1)
     try:
-        from freecad_am.core.collision.fcl_obstacles import FclObstacles
+        from fcl_obstacles import FclObstacles
     except ImportError:
         return [Row(f"touched and distance at {LOOKS} looks, against python-fcl", 0.0, None, "s", 1.0)]
     wall, pipe = _always(there), _pipe()

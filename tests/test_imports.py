@@ -67,7 +67,7 @@ FOREIGN = {
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
-ALONE = {"core/geometry/region": {"shapely"}, "core/collision/fcl_obstacles": {"fcl"}}
+ALONE = {"core/geometry/region": {"shapely"}}
 
 
 def modules():

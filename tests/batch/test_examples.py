@@ -67,7 +67,7 @@ def test_no_row_of_a_shipped_example_is_beyond_a_limit(path, root, tmp_path):
     """As it is shipped, in waypoints and in the text; those planned coarser elsewhere are looked at there."""
     done = subprocess.run(
         [str(root / "freecad-am"), "plan", str(path), "-o", str(tmp_path / "out"), "--no-page"], cwd=tmp_path,
-        capture_output=True, env={**os.environ, "FREECAD_USER_HOME": str(tmp_path)}, text=True, check=False, timeout=900,
+        capture_output=True, env={**os.environ, "FREECAD_USER_HOME": str(tmp_path)}, text=True, check=False, timeout=3600,
     )
     assert done.returncode == 0, done.stderr
     cell = read_job(str(path)).cell

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The Flexible Collision Library in place of our tree of obstacles, where python-fcl is installed.
+"""The Flexible Collision Library in place of our tree of obstacles: the peer of `bench collision`.
 
-Nobody takes it for being there: a scene has it where it is put into it, `dataclasses.replace(scene, deposit=FclObstacles(
-scene.deposit))`, so that the same job has the same bytes on every machine. The library knows no frusta: a nozzle is a
-pyramid of SIDES sides within the round one, up to `off` smaller than it.
+It stands here and not in the workbench: a job has the same bytes on every machine, so that a library which is there on some
+and answers a little otherwise has no place in planning. A scene takes what answers `touched` and `distance` as `Obstacles`
+does, such as this. The library knows no frusta: a nozzle is a pyramid of SIDES sides within the round one, up to `off`
+smaller than it.
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from typing import Any
 import fcl
 import numpy as np
 
-from ..geometry.frames import smallest_rotation
-from .frustum import Array, Frustum, Index, Mask
-from .obstacles import ALWAYS, Obstacles
+from freecad_am.core.collision.frustum import Array, Frustum, Index, Mask
+from freecad_am.core.collision.obstacles import ALWAYS, Obstacles
+from freecad_am.core.geometry.frames import smallest_rotation
 
 SIDES = 64
 
