@@ -7,13 +7,17 @@ half of the smaller of the two. Between two points it is the hull of both sectio
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 
-from .frustum import Array, Index, Mask
+from .frustum import Array, Frustum, Index, Mask
 from .obstacles import Obstacles
 
 BENT = 0.2  # rad that joined pieces turn at most: so they are as near to the bead as its own chords
 CORNER = np.cos(np.radians(10.0))  # of the turn from one segment to the next, beyond which the outer side is filled
+PART = 25_000  # points of the parts of a deposit that is made again whenever it is asked
 
 
 def of_beads(
@@ -76,6 +80,47 @@ def of_beads(
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
         np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), beside),
     )
+
+
+def in_parts(points: Array, build: Array, width: Array, height: Array, starts: Index, **what: Any) -> InParts:
+    """The deposit that `of_beads` makes of the same, for few looks."""
+    return InParts(points, build, width, height, starts, what)
+
+
+@dataclass(frozen=True)
+class InParts:
+    """The deposit that `of_beads` makes, made part by part whenever it is asked: for few looks at a long one, whose pieces
+    take more memory than its points. what: further arguments of `of_beads`."""
+
+    points: Array
+    build: Array
+    width: Array
+    height: Array
+    starts: Index
+    what: dict[str, Any]
+
+    def touched(
+        self, solid: Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
+    ) -> Mask:
+        """As `Obstacles.touched`."""
+        found, count = np.zeros(len(tip), dtype=bool), len(self.points)
+        begins = np.zeros(count, dtype=bool)
+        begins[self.starts] = True
+        for first in range(0, count, PART):
+            rows = np.flatnonzero(~found if moment is None else ~found & (moment > first))
+            if not len(rows):
+                continue
+            # with the two pieces before, for what is filled at the corner between two
+            part = slice(max(first - 2, 0), min(first + PART, count))
+            laid = of_beads(
+                self.points[part], self.build[part], self.width[part], self.height[part], begins[part],
+                np.arange(part.start, part.stop), **self.what,
+            )
+            found[rows] = laid.touched(
+                solid.rows(rows), tip[rows], axis[rows], None if moment is None else moment[rows],
+                None if own is None else own[rows],
+            )
+        return found
 
 
 def _unit(vectors: Array) -> Array:

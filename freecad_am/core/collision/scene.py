@@ -21,6 +21,7 @@ import numpy as np
 
 from ..geometry.surroundings import Body
 from .bodies import Bodies, of_bodies
+from .deposit import InParts
 from .frustum import Array, Frustum, Index, Mask
 from .nozzle import Nozzle
 from .obstacles import Obstacles
@@ -28,10 +29,11 @@ from .obstacles import Obstacles
 
 @dataclass(frozen=True)
 class Scene:
-    """bodies: always there; deposit: from its moments on, None without any."""
+    """bodies: always there; deposit: from its moments on, None without any; in parts it tells no
+    distances."""
 
     bodies: Bodies
-    deposit: Obstacles | None = None
+    deposit: Obstacles | InParts | None = None
 
     def touched(
         self, solid: Nozzle | Frustum, tip: Array, axis: Array, moment: Index | None = None, own: Index | None = None
@@ -60,10 +62,13 @@ class Scene:
         found = self.bodies.distance(nozzle.bodies, tip, axis, reach)
         if self.deposit is None:
             return found
+        assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
         return np.minimum(found, self.deposit.distance(nozzle.deposit, tip, axis, _all(moment, len(tip)), reach))
 
 
-def scene(bodies: Sequence[Body], around: Array, reach: float, deposit: Obstacles | None = None) -> Scene:
+def scene(
+    bodies: Sequence[Body], around: Array, reach: float, deposit: Obstacles | InParts | None = None
+) -> Scene:
     """The scene of bodies, as far as they are no farther than `reach` mm from the box about the points around (n, 3), and a
     deposit."""
     return Scene(of_bodies(bodies, around, reach), deposit)

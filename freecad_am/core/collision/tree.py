@@ -11,7 +11,7 @@ import numpy as np
 from .frustum import Array, Index
 
 BRANCH = 8
-PAIRS = 200_000  # of queries and nodes looked at together: memory does not grow with either
+PAIRS = 50_000  # of queries and nodes looked at together: memory does not grow with either
 
 
 def packed(points: Array) -> Index:

@@ -30,7 +30,7 @@ class Looked:
 def looked_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, most: int) -> Looked:
     """Whether the nozzle touches bodies, the platform one of them, or what is deposited by then, beads as wide and high as
     they are, at so many points at most, evenly spread."""
-    room = room_of(toolpath, bodies, nozzle, np.pi)
+    room = room_of(toolpath, bodies, nozzle, np.pi, often=False)
     beads = list(toolpath)
     starts = np.cumsum([0, *(len(bead) for _, _, bead in beads)])
     rows = np.unique(np.round(np.linspace(0, starts[-1] - 1, min(most, starts[-1]))).astype(np.intp))

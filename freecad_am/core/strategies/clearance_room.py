@@ -57,8 +57,11 @@ def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 
     return depositing(0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean)
 
 
-def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float) -> Room:
-    """The room of all points of a toolpath, in order, among bodies; max_tilt: rad."""
+def room_of(
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float, often: bool = True
+) -> Room:
+    """The room of all points of a toolpath, in order, among bodies; max_tilt: rad. Where it is asked but once it takes less
+    memory."""
     beads = [bead for _, _, bead in toolpath]
     points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
     counts = np.array([len(bead) for bead in beads])
@@ -71,7 +74,8 @@ def room_of(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters
         lean = float(np.arccos(np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0)).max())
         own = np.concatenate([first + _turn_before(bead.parameter) for first, bead in zip(own[starts], beads, strict=True)])
     looked = nozzle_of(nozzle, float(heights.max()), lean)
-    laid = deposit.of_beads(points, build, toolpath.widths, heights, starts, beside=looked.foot)
+    made = deposit.of_beads if often else deposit.in_parts
+    laid = made(points, build, toolpath.widths, heights, starts, beside=looked.foot)
     # a bead that closes a gap overlaps those about the gap, of layers below too
     own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own)
     return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)

@@ -182,3 +182,24 @@ def test_memory_is_linear():
         return most
 
     assert peak(12_000) < 200e6
+
+
+def test_deposit_made_part_by_part_is_touched_as_all_of_it(monkeypatch):
+    rng = np.random.default_rng(23)
+    turn = np.linspace(0.0, 40.0, 700)
+    points = np.stack([20.0 * np.cos(turn), 20.0 * np.sin(turn), 0.15 * turn], axis=1)
+    points[:, :2] += 4.0 * np.sign(np.sin(5.0 * turn))[:, None]  # corners
+    build, width, height = units(rng, 700) * 0.1 + [0.0, 0.0, 1.0], rng.uniform(2.0, 5.0, 700), rng.uniform(0.5, 1.5, 700)
+    build /= np.linalg.norm(build, axis=1, keepdims=True)
+    starts = np.array([0, 90, 91, 400])
+    whole = deposit.of_beads(points, build, width, height, starts, beside=3.0)
+    tip, axis = rng.uniform(-26.0, 26.0, (4000, 3)) + [0.0, 0.0, 2.0], units(rng, 4000)
+    moment, own = rng.integers(0, 720, 4000), rng.integers(0, 700, 4000)
+    late = np.full(4000, 700)
+    expected = [whole.touched(NOZZLE, tip, axis, late), whole.touched(NOZZLE, tip, axis, moment, own)]
+    assert 0.2 < expected[1].mean() < expected[0].mean() < 0.95
+    for part in (7, 64, 1000):
+        monkeypatch.setattr(deposit, "PART", part)
+        made = deposit.in_parts(points, build, width, height, starts, beside=3.0)
+        np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, late), expected[0])
+        np.testing.assert_array_equal(made.touched(NOZZLE, tip, axis, moment, own), expected[1])
