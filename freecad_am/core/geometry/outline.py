@@ -17,6 +17,8 @@ Index = NDArray[np.intp]
 
 # a row of points that turns by more than this has a corner there, where nothing else is known, rad
 CORNER = np.radians(35.0)
+# a segment so many times as long as one beside it is no piece of the same arc: a circle through both would bow it most
+LONG = 3.0
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,8 @@ def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, 
 def estimated(points: Array, closed: bool) -> Outline:
     """The outline of points (n, 3) alone: the tangent at a point is that of the circle through it and its neighbours.
 
-    A segment next to a corner is straight. closed: the last point is the first.
+    A segment next to a corner is straight, and one much longer than its neighbour, as where an arc runs into a line: points
+    of a curve lie about evenly. closed: the last point is the first.
     """
     along = np.diff(points, axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -73,7 +76,8 @@ def estimated(points: Array, closed: bool) -> Outline:
         tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
         tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
     corner = (before * after).sum(axis=1) < np.cos(CORNER)
-    straight = (corner[:-1] | corner[1:])[:, None]
+    long = (length > LONG * np.minimum(far[:-1], near[1:]))[:, 0]
+    straight = (corner[:-1] | corner[1:] | long)[:, None]
     leaving, arriving = np.where(straight, along, tangent[:-1]), np.where(straight, along, tangent[1:])
     return outline(points, np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1))
 

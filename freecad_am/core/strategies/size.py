@@ -82,7 +82,8 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
             apart = group.base.surface.distance(group.base.inside(body.vertices))
             away, within = max(0.0, float(apart.max())), max(0.0, -float(apart.min()))
             deep.append((away + strategy.margin) / strategy.layer_height)
-            length = _volume(body) * away / max(away + within, 1e-9) / strategy.layer_height / spacing
+            grown = float(np.prod(1.0 + 2.0 * strategy.margin / np.ptp(body.vertices, axis=0)))
+            length = _volume(body) * grown * away / max(away + within, 1e-9) / strategy.layer_height / spacing
             # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
             around = 0.5 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(away, extent))

@@ -2,8 +2,9 @@
 """Cubics through points: a helix with known tangents, an astroid with its cusps, the seam of a turned-about bead."""
 
 import numpy as np
+import pytest
 
-from freecad_am.core.geometry.outline import outline
+from freecad_am.core.geometry.outline import estimated, outline
 from freecad_am.core.toolpath import Bead
 
 
@@ -80,3 +81,14 @@ def test_tangents_go_with_the_bead():
     part = bead.part(slice(3, 9))
     assert not part.closed and len(part) == 6
     assert np.abs(part.outline.at(np.arange(5), 0.5)[0] - middle[3:8]).max() < 1e-12
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_a_line_between_arcs_stays_straight(closed):
+    """A slot of few points, turning by 22.5 deg at each: the circle through a line and an arc bowed the line by 4.8 mm."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, 9)
+    right = np.c_[50 + 5 * np.cos(angle), 5 * np.sin(angle), 0 * angle]
+    points = np.r_[right, -right, right[:1]]
+    found, _ = estimated(points, closed).at(np.arange(len(points) - 1), 0.5)
+    off = np.abs(np.hypot(np.maximum(np.abs(found[:, 0]) - 50, 0), found[:, 1]) - 5)
+    assert off.max() <= 5 * (1 - np.cos(np.pi / 16)) + 1e-12  # what the chords themselves are off

@@ -57,6 +57,7 @@ def on_hub(made, **values):
     lambda: on_part(WALLS["a bend"][0](), layer_height=5.0, chord_error=0.001),
     lambda: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01),
     lambda: on_hub(solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"),
+    lambda: on_hub(solids(CYLINDER, box()), margin=30.0, layer_height=6.0, bead_spacing=8.0),
 ])
 def test_counts_are_about_right(make):
     told, made = make()
