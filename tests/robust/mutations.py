@@ -80,7 +80,8 @@ def put(job, key, value):
 
 def specs(job):
     """(dotted key, Spec, default) of all parameters that the job may have."""
-    kind = job.get("strategy", {}).get("kind", "revolution")
+    kind = str(job.get("strategy", {}).get("kind", "revolution"))
+    kind = kind if kind in STRATEGIES else "revolution"  # what was done to it before
     return [
         entry for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS}.items() if name in ("strategy", *SECTIONS)
         for entry in _specs(factory, name)
