@@ -48,14 +48,17 @@ def _set(job, chance):
         mutations.put(job, key, mutations.valid_value(key, spec, default, chance))
 
 
-def _excess(job, away, margin, placed, points):
+def _excess(job, away, margin, placed, points, build):
     """By how much the farthest point is off; away: distances in the part's own place, margin: mm allowed."""
     if not len(points):
         return 0.0
     inverse = np.array(placed.inverse().toMatrix().A).reshape(4, 4)
-    own = points @ inverse[:3, :3].T + inverse[:3, 3]
+    high = job_length(job["strategy"]["layer_height"]) if job["strategy"]["kind"] == "solid" else 0.0
+    shares = (0.0, 0.5, 1.0) if high else (0.0,)  # plane layers are cut at their bottom, middle or top
+    cuts = [points + share * high * build for share in shares]
+    farthest = np.min([away(cut @ inverse[:3, :3].T + inverse[:3, 3]) for cut in cuts], axis=0).max()
     rounding = 1e-9 * np.abs(points).max() + 2e-6  # waypoints have six decimals
-    return float(away(own).max()) - margin(job) - rounding
+    return float(farthest) - margin(job) - rounding
 
 
 def _on_wall(job):

@@ -31,9 +31,9 @@ def seed_of_round():
 def assert_sound(make, count, seed, folder):
     """Run the jobs that make(number, chance, folder) writes and fail with what was wrong, by signature.
 
-    make: gives the words of the command and a function of points (n, 3) that tells how far, mm, these are off what they may
-    be, or None. With ROBUST_LOG, the path of a file, a round that was stopped goes on where it was; ROBUST_FIRST and
-    ROBUST_COUNT choose some of its jobs.
+    make: gives the words of the command and a function of points (n, 3) and build directions (n, 3) that tells how far, mm,
+    the farthest is off what it may be, or None. With ROBUST_LOG, the path of a file, a round that was stopped goes on
+    where it was; ROBUST_FIRST and ROBUST_COUNT choose some of its jobs.
     """
     log = os.environ.get("ROBUST_LOG")
     known = _logged(Path(log), seed) if log else {}
@@ -65,7 +65,7 @@ def run(make, number, seed, folder):
         wrong = faults(done, place)
         points = deposited(place / "out" / "waypoints.csv")
         if off is not None and points is not None and done.status == 0:
-            farthest = off(points)
+            farthest = off(*points)
             if not farthest <= 0.0:
                 wrong.append(f"off the part: {farthest:.4g} mm more than it may be")
         return {
@@ -107,18 +107,20 @@ def faults(done, folder):
 
 
 def deposited(path):
-    """Some deposit points (n, 3) mm of a file of waypoints, both ends of many beads among them; None where there is none."""
+    """Some deposit points (n, 3) mm of a file of waypoints, ends of many beads among them, and the build directions (n, 3)
+    there; None where there is no file."""
     if not path.exists():
         return None
     with path.open(encoding="utf-8", newline="") as stream:
         rows = [
-            (row["layer"], row["bead"], float(row["x_mm"]), float(row["y_mm"]), float(row["z_mm"]))
+            (row["layer"], row["bead"], *(float(row[name]) for name in ("x_mm", "y_mm", "z_mm", "bx", "by", "bz")))
             for row in csv.DictReader(stream) if row["kind"] == "deposit"
         ]
     ends = [k for k in range(len(rows)) if k in (0, len(rows) - 1) or rows[k][:2] != rows[k - 1][:2]]
     some = [ends[k] for k in np.linspace(0, len(ends) - 1, LOOKED_AT // 3).astype(int)] if rows else []
     some += np.linspace(0, len(rows) - 1, LOOKED_AT - len(some)).astype(int).tolist() if rows else []
-    return np.array([rows[k][2:] for k in sorted(set(some))]).reshape(-1, 3)
+    chosen = np.array([rows[k][2:] for k in sorted(set(some))]).reshape(-1, 6)
+    return chosen[:, :3], chosen[:, 3:]
 
 
 def summary(rows):

@@ -40,7 +40,7 @@ def triangles_of(file):
     return np.array([[tuple(vertices[k]) for k in facet] for facet in facets])
 
 
-def off(path, points):
+def off(path, points, build):
     """By how much, mm, the farthest deposit point is farther off the part than its job allows; 0 where nobody can tell."""
     job = yaml.safe_load(path.read_bytes())
     file = path.parent / job["part"]["file"]
@@ -48,15 +48,22 @@ def off(path, points):
         return 0.0
     strategy, process = job.get("strategy") or {}, job.get("process") or {}
     around = triangles_of(str(file.resolve()))
-    away = triangles.distance(points, around)
+    away = np.min([triangles.distance(place, around) for place in cuts(points, build, strategy)], axis=0)
     chord = length(strategy.get("chord_error", 0.01))
     if strategy.get("kind") in ("developable", "solid"):
-        away = np.where(triangles.inside(points, around), 0.0, away)
+        inside = [triangles.inside(place, around) for place in cuts(points, build, strategy)]
+        away = np.where(np.any(inside, axis=0), 0.0, away)
         widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))
         return away.max() - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)
     if strategy.get("wall") == "middle":  # halfway between two walls of the part
         return away.max() - 10.0
     return away.max() - (chord + DEFLECTION + 0.02)
+
+
+def cuts(points, build, strategy):
+    """Where the part may have been cut for the layers that points lie in: plane layers at bottom, middle or top."""
+    high = length(strategy.get("layer_height", 1.0)) if strategy.get("kind") == "solid" else 0.0
+    return [points + share * high * build for share in ((0.0, 0.5, 1.0) if high else (0.0,))]
 
 
 def length(value):

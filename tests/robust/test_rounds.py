@@ -44,9 +44,10 @@ def test_points_beside_the_part_are_seen(tmp_path):
     def make(number, chance, folder):
         out = folder / "out"
         out.mkdir()
-        rows = "layer,bead,kind,x_mm,y_mm,z_mm", "0,0,rapid,9,9,9", "0,0,deposit,1,2,3", "0,0,deposit,1,2,4"
+        rows = "layer,bead,kind,x_mm,y_mm,z_mm,bx,by,bz", "0,0,rapid,9,9,9,0,0,1", "0,0,deposit,1,2,3,0,0,1"
+        rows = *rows, "0,0,deposit,1,2,4,0,0,1"
         (out / "waypoints.csv").write_text("\n".join(rows))
-        return ["machines"], lambda points: triangles.distance(points, CUBE).max() - 0.5
+        return ["machines"], lambda points, _: triangles.distance(points, CUBE).max() - 0.5
 
     found = rounds.run(make, 0, 1, tmp_path)
     assert found["status"] == 0 and "off the part: 1.5 mm more than it may be" in found["wrong"]
