@@ -43,8 +43,8 @@ class SolidMesh:
         edges = Edges(self.triangles)
         several = (edges.count > 2) & ~(touching & (edges.count % 2 == 0))
         for wrong, code, what, cure in (
-            ((edges.count == 1) & of_shape, "OPEN_MESH", "faces of the solid do not meet along their edges", "check it where "
-             "it was drawn (Part, Check geometry), and draw those faces again or sew them"),
+            ((edges.count == 1) & of_shape, "OPEN_MESH", "faces of the solid do not meet along their edges", "check it "
+             "where it was drawn (Part, Check geometry), and draw those faces again or sew them"),
             (edges.count == 1, "OPEN_MESH", "the mesh has a hole", "fill holes (Mesh, Close holes) or export it again"),
             (several & of_shape, "NON_MANIFOLD", "the solid touches itself along an edge, so that its inside is "
              "not known", "draw it apart there, or let it overlap there and fuse it (Part, Boolean)"),
