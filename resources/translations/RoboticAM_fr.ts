@@ -5777,6 +5777,11 @@
         <translation>cellule</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>check it where it was drawn (Part, Check geometry), and draw those faces again or sew them</source>
+        <translation>vérifiez-le là où il a été dessiné (Part, Vérifier la géométrie), et redessinez ou cousez ces faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>choose a URDF file</source>
         <translation>choisissez un fichier URDF</translation>
@@ -6040,6 +6045,11 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>every point of the motion, rapids included, against the machine file</source>
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <source>faces of the solid do not meet along their edges</source>
+        <translation>des faces du solide ne se joignent pas le long de leurs arêtes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh.py"/>
