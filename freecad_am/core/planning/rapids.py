@@ -84,7 +84,10 @@ class Surroundings:
         return met
 
     def names(self, moves: Moves) -> list[str]:
-        """What is met on any of the moves: deposit, bodies by their names and the platform."""
+        """What is met on any of the moves but those whose joints are NaN: deposit, bodies by their names, the platform."""
+        moves = moves.of(np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1)))
+        if not len(moves.start):
+            return []
         looks = _driven(self.cell, moves, FINE)
         nozzle = self._nozzle(moves, looks)
         found = ["the deposit"] if self._deposit_touched(nozzle, looks, moves).any() else []

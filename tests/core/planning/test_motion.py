@@ -128,6 +128,9 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     moves = Driven(joints, joints, np.zeros(1, dtype=int))
     assert surroundings.met(moves)[0] == met
     assert surroundings.names(moves) == ["the platform"] * met
+    lost = Driven(np.r_[joints, np.nan * joints], np.r_[joints, joints], np.zeros(2, dtype=int))  # one cannot be reached
+    assert surroundings.names(lost) == ["the platform"] * met
+    assert surroundings.names(lost.of(np.array([1]))) == []
 
 
 def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):
