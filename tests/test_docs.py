@@ -32,6 +32,7 @@ BY_HAND = {"version", "name", "part.file", "part.object", "part.faces", "part.st
            "substrate", "fixtures", "strategy.kind"}
 WORDS = {f.LENGTH: "length", f.ANGLE: "angle", f.SPEED: "speed", f.TIME: "time", f.RATIO: "percentage", f.NUMBER: "number",
          f.COUNT: "whole number", f.TEXT: "text", f.POSE: "pose", f.ANGLE_RANGE: "two angles",
+         f.RATIO_RANGE: "two percentages",
          f.TURN_RATE: "turn"}
 
 
@@ -59,7 +60,7 @@ def default_text(spec, value):
     if isinstance(value, tuple):
         if spec.kind == f.POSE:
             value = [*value[:3], *(number / f.TO_INNER[f.ANGLE] for number in value[3:])]
-        texts = [f.outer_text(dataclasses.replace(spec, kind=f.ANGLE), v) if spec.kind == f.ANGLE_RANGE
+        texts = [f.outer_text(dataclasses.replace(spec, kind=f.END_OF[spec.kind]), v) if spec.kind in f.END_OF
                  else v if isinstance(v, str) else f"{v:.9g}" for v in value]
         return f"[{', '.join(texts)}]"
     return f.outer_text(spec, value)

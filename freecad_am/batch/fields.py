@@ -77,7 +77,7 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return math.inf if value == "inf" else value
     if isinstance(value, list):
         return _list(spec, field, value, key)
-    if spec.kind in (f.POSE, f.ANGLE_RANGE):
+    if spec.kind == f.POSE or spec.kind in f.END_OF:
         wanted = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
         also = "".join(f" or {word}" for word in spec.words)
         raise InputError("BAD_VALUE", key, f"{_shown(value)} is not a list; give {wanted}{also}")
@@ -112,10 +112,11 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
             raise InputError("BAD_VALUE", key, f"a pose has six numbers x y z RX RY RZ, not {len(value)}")
         kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
         return tuple(_finite(number, kind, key) for number, kind in zip(value, kinds))
-    if spec.kind == f.ANGLE_RANGE:
+    if spec.kind in f.END_OF:
         if len(value) != 2:
-            raise InputError("BAD_VALUE", key, f"a range has two angles, not {len(value)}")
-        return tuple(_finite(number, f.ANGLE, key) for number in value)
+            what = "angles" if spec.kind == f.ANGLE_RANGE else "percentages"
+            raise InputError("BAD_VALUE", key, f"a range has two {what}, not {len(value)}")
+        return tuple(_finite(number, f.END_OF[spec.kind], key) for number in value)
     if spec.kind == f.TEXT and "tuple" in str(field.type):
         return tuple(text(word, key) for word in value)
     raise InputError("BAD_VALUE", key, f"{quantity.shown(value)} is a list; give one value")

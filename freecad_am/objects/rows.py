@@ -142,9 +142,9 @@ def rows(cls: type) -> tuple[Row, ...]:
         if spec.kind == f.GROUP:
             factory: Any = field.default_factory
             found += [dataclasses.replace(row, path=(field.name, *row.path)) for row in rows(factory)]
-        elif spec.kind == f.ANGLE_RANGE:
-            end = dataclasses.replace(spec, kind=f.ANGLE)
-            found += [Row((field.name, i), end, f.ANGLE, field.default[i]) for i in (0, 1)]
+        elif spec.kind in f.END_OF:
+            end = dataclasses.replace(spec, kind=f.END_OF[spec.kind])
+            found += [Row((field.name, i), end, end.kind, field.default[i]) for i in (0, 1)]
         else:
             found.append(Row((field.name,), spec, _form(spec, str(field.type)), field.default))
     return tuple(found)
@@ -187,7 +187,7 @@ def _assemble(cls: type, nested: dict[str, Any]) -> Any:
         if spec.kind == f.GROUP:
             factory: Any = field.default_factory
             value = _assemble(factory, value)
-        elif spec.kind == f.ANGLE_RANGE:
+        elif spec.kind in f.END_OF:
             value = (value[0], value[1])
         values[field.name] = value
     return cls(**values)

@@ -128,6 +128,8 @@ def valid_value(key, spec, default, chance):
         ]
     if spec.kind == f.ANGLE_RANGE:
         return sorted(round(chance.uniform(-180.0, 180.0), 2) for _ in range(2))
+    if spec.kind == f.RATIO_RANGE:
+        return sorted(round(chance.uniform(40.0, 200.0), 1) for _ in range(2))
     scale = 1.0 / f.TO_INNER.get(spec.kind, 1.0)
     low = (-180.0 if spec.kind == f.ANGLE else 0.0) if spec.low is None else spec.low * scale
     high = low + 360.0 if spec.high is None else spec.high * scale

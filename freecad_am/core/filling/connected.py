@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.plane_curve import Array
+from ..geometry.plane_curve import Array, nearest
 from ..geometry.region import Region, along
 from .contours import levels, middles
 from .curve import Beads, PlaneCurve, begun, long_enough
@@ -22,7 +22,8 @@ from .rings import Beside, Ring, crossed, side_by_side
 
 REACH = 1.7  # spacings; contours farther apart are not joined
 TRIES = 64  # places at which two contours may be joined
-LOOP, THINNEST = 0.12, 0.3  # of the spacing: half of what a loop about a bead in the middle encloses; least width of a bead
+THINNEST = 0.3  # of the width; no bead is narrower
+LOOP = (0.05, 0.25)  # of the spacing: half of what a loop about a bead in the middle encloses, at least and at most
 OPEN, SHARE = 0.8, 0.2  # of the width at which the gap allowed stays open beside links; of the length of a contour
 INSIDE = 1e-4  # of a link, cut off at its ends when it is looked at
 
@@ -81,7 +82,8 @@ def connected(region: Region, beads: Beads) -> list[PlaneCurve]:
         return long_enough(loose, beads.shortest)
     loose = long_enough(loose, beads.shortest)
     alone = [*curves, *loose]
-    curves += [_loop(curve, beads) for curve in loose]
+    wide = [_half(curve, curves, beads) for curve in loose]
+    curves += [_loop(curve, half, beads) for curve, half in zip(loose, wide)]
     rings = [Ring(curve.points) for curve in curves]
     rings[0].take(-0.1 * beads.spacing, 0.1 * beads.spacing)
     links: list[list[Link]] = [[] for _ in rings]
@@ -90,16 +92,26 @@ def connected(region: Region, beads: Beads) -> list[PlaneCurve]:
         made = [replace(curves[0], kind="connected")]
     else:
         loops = len(rings) - len(loose)
-        shares = [1.0] * loops + [_share(rings, number, beads) for number in range(loops, len(rings))]
+        shares = [1.0] * loops + [_share(rings, loops + k, half, beads) for k, half in enumerate(wide)]
         made = [_walked(rings, links, shares)]
     return made + [curve for number, curve in enumerate(alone) if number not in joined]
 
 
-def _loop(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
+def _half(curve: PlaneCurve, contours: list[PlaneCurve], beads: Beads) -> float:
+    """How far (mm) from a bead in the middle the sides of a loop about it run, so that each is in the middle of its half of
+    the gap between contours; 0 where it is closed as it is."""
+    if curve.closed:
+        return 0.0
+    away = np.min([nearest(one.points, curve.points, True).distance for one in contours], axis=0)
+    half = 0.5 * (float(away.mean()) / beads.spacing - 0.5)
+    return beads.spacing * min(max(half, LOOP[0]), LOOP[1])
+
+
+def _loop(curve: PlaneCurve, half: float, beads: Beads) -> PlaneCurve:
     """A closed curve, or a thin loop about an open one."""
     if curve.closed:
         return curve
-    parts = along([(curve.points, False)], LOOP * beads.spacing, beads.chord_error)
+    parts = along([(curve.points, False)], half, beads.chord_error)
     return begun(PlaneCurve(parts[0].rings()[0], True, curve.kind, curve.ring), beads)
 
 
@@ -211,8 +223,8 @@ def _take(one: Ring, other: Ring, link: Link) -> None:
     other.take(start, start + span)
 
 
-def _share(rings: list[Ring], number: int, beads: Beads) -> float:
-    """What of their usual width the two sides of a loop have between its neighbours, in the mean."""
+def _share(rings: list[Ring], number: int, half: float, beads: Beads) -> float:
+    """What of their usual width the two sides of a loop, so far (mm) from its middle, have between its neighbours."""
     ring = rings[number]
     places = ring.at(np.linspace(0.0, ring.length, TRIES, endpoint=False))
     low, high = places.min(axis=0) - beads.spacing, places.max(axis=0) + beads.spacing
@@ -221,7 +233,9 @@ def _share(rings: list[Ring], number: int, beads: Beads) -> float:
         if k != number and ((other.points > low) & (other.points < high)).all(axis=1).any()
     ]
     away = np.minimum(np.min(near, axis=0), beads.spacing) if near else np.full(TRIES, beads.spacing)
-    return float(np.clip((away / beads.spacing - 0.5 + LOOP).mean(), THINNEST, 1.0))
+    if half == 0.0:  # a closed bead with neighbours on both sides
+        return float(np.clip((2.0 * away / beads.spacing - 1.0).mean(), THINNEST, 1.0))
+    return float(np.clip(((away + half) / beads.spacing - 0.5).mean(), THINNEST, 1.0))
 
 
 def _walked(rings: list[Ring], links: list[list[Link]], shares: list[float]) -> PlaneCurve:

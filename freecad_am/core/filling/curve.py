@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.plane_curve import Array, begun_at, doubled_area, length
+from ..geometry.plane_curve import Array, begun_at, doubled_area, length, up_to
 
+NEXT, OVER = 0.7548776662, 0.5698402910  # of a length: starts of the next contour, of the next layer (the sequence R2)
 LEVEL = 1e-9  # of a ring's extent; points less apart are equally far out
 
 
@@ -47,7 +48,8 @@ class Beads:
     shortest: beads that close gaps go on until they are that long (mm), others below it are dropped. thin: 'single' lays one
     bead where a region, or a neck of it, is narrower than a bead; 'refuse' refuses. clockwise: sense of closed beads. start:
     a point (x, y) that closed beads begin nearest to, or the direction (rad) in which they begin farthest out. chord_error:
-    mm, of arcs; 0: 0.005 spacings. where: a place (2,) in words.
+    mm, of arcs; 0: 0.005 spacings. where: a place (2,) in words. spread: by what share of its length the outermost closed
+    bead begins behind `start`, those inside of it by ever other ones; None: none does.
     """
 
     spacing: float
@@ -59,6 +61,7 @@ class Beads:
     chord_error: float = 0.0
     where: Callable[[Array], str] = on_plane
     width: float = 0.0
+    spread: float | None = None
 
     @property
     def inset(self) -> float:
@@ -71,10 +74,15 @@ class Beads:
         if self.chord_error <= 0.0:
             object.__setattr__(self, "chord_error", 0.005 * self.spacing)
 
-    def ring(self, points: Array) -> Array:
-        """A ring (n, 2) with the sense and the start asked for."""
+    def ring(self, points: Array, number: int = 0) -> Array:
+        """A ring (n, 2) with the sense and the start asked for; number: of contours outside of it."""
         turned = points[::-1] if (doubled_area(points) < 0.0) != self.clockwise else points
-        return begun_at(turned, self.start_of(turned))
+        begun = begun_at(turned, self.start_of(turned))
+        behind = 0.0 if self.spread is None else (self.spread + NEXT * number) % 1.0
+        if behind == 0.0:
+            return begun
+        whole = np.vstack([begun, begun[:1]])
+        return begun_at(begun, up_to(whole, behind * length(begun, True))[-1])
 
     def start_of(self, points: Array) -> Array:
         """The place (2,) that a ring should begin nearest to."""
@@ -97,4 +105,4 @@ def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
 
 def begun(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
     """A closed curve with the sense and start asked for; an open one as it is."""
-    return replace(curve, points=beads.ring(curve.points)) if curve.closed and not curve.turns else curve
+    return replace(curve, points=beads.ring(curve.points, curve.ring)) if curve.closed and not curve.turns else curve

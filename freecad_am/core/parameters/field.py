@@ -16,11 +16,12 @@ from ..issues import InputError
 
 LENGTH, ANGLE, SPEED, TIME = "length", "angle", "speed", "time"
 RATIO, NUMBER, COUNT, FLAG, CHOICE, TEXT, POSE = "ratio", "number", "count", "flag", "choice", "text", "pose"
-ANGLE_RANGE, TURN_RATE = "angle range", "turn rate"
+ANGLE_RANGE, RATIO_RANGE, TURN_RATE = "angle range", "ratio range", "turn rate"
 GROUP = "group"
 
 # the unit a bare number has outside, and how many of ours one of it makes
 OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%", TURN_RATE: "deg/mm"}
+END_OF = {ANGLE_RANGE: ANGLE, RATIO_RANGE: RATIO}  # what either end of a range is
 TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, TURN_RATE: math.pi / 180.0, RATIO: 0.01}
 
 
@@ -103,6 +104,14 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
     elif spec.kind == ANGLE_RANGE:
         if len(value) != 2 or not value[0] < value[1]:
             raise InputError("BAD_VALUE", key, f"{value!r} is not a range; give two angles, the smaller first")
+    elif spec.kind == RATIO_RANGE:
+        if isinstance(value, (int, float, str)) or len(value) != 2:
+            raise InputError("BAD_VALUE", key, f"{value!r} is not a range; give two percentages, the smaller first")
+        for end in value:
+            _check_number(dataclasses.replace(spec, kind=RATIO), end, key)
+        if value[0] > value[1]:
+            ends = " to ".join(outer_text(dataclasses.replace(spec, kind=RATIO), end) for end in value)
+            raise InputError("BAD_VALUE", key, f"{ends} is not a range; give the smaller percentage first")
     else:
         _check_number(spec, value, key)
 

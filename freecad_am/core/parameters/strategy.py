@@ -147,6 +147,15 @@ class FilledParameters(LayerParameters):
         "also grid, triangles, honeycomb, gyroid.",
         choices=("contours", "connected", "lines", "spiral", "zigzag", "grid", "triangles", "honeycomb", "gyroid"),
     )
+    spacing_range: tuple[float, float] = f.parameter(
+        (1.0, 1.0), f.RATIO_RANGE, "How narrow and how wide beads may be, of their usual width and spacing, so that "
+        "contours come out even over the thickness of a region, and beads in thin places are as wide as these.", low=0.3,
+        high=2.0,
+    )
+    starts: str = f.parameter(
+        "aligned", f.CHOICE, "Where beads start: where the seam says (aligned), or apart from those of neighbouring "
+        "contours and layers, lines of every second layer at their other end (spread).", choices=("aligned", "spread"),
+    )
     fill_density: float = f.parameter(
         1.0, f.RATIO, "Share of the area inside of the walls that beads fill: their length times their spacing.", low=0.01,
         high=1.0,
@@ -200,6 +209,10 @@ class FilledParameters(LayerParameters):
         if self.walls == math.inf:
             object.__setattr__(self, "walls", "inf")
         f.check(self, "strategy")
+        object.__setattr__(self, "spacing_range", tuple(self.spacing_range))
+        if not self.spacing_range[0] <= 1.0 <= self.spacing_range[1]:
+            ends = " to ".join(f"{100.0 * end:g} %" for end in self.spacing_range)
+            raise InputError("BAD_VALUE", "strategy.spacing_range", f"{ends} is without 100 %, the usual width; include it")
         if self.fill in ("connected", "spiral") and self.fill_density < 1.0:
             raise InputError(
                 "BAD_VALUE", "strategy.fill_density", f"{self.fill} fills the whole, not {100.0 * self.fill_density:g} %; "
@@ -210,6 +223,11 @@ class FilledParameters(LayerParameters):
     def rounds(self) -> float:
         """How many contours lie round lines and the like; infinity for contours alone."""
         return 0 if not self.contour else math.inf if self.walls == "inf" else float(self.walls)
+
+    @property
+    def rounds_alone(self) -> bool:
+        """Whether contours, of whatever kind, are all there is."""
+        return self.fill in ("contours", "connected", "spiral") or self.rounds == math.inf
 
     @property
     def thick(self) -> int:

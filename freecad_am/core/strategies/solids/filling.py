@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...filling.curve import Beads, PlaneCurve
+from ...filling.adaptive import fitted, shared
+from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.sparse import Infill
 from ...geometry.developable import Array
@@ -87,7 +88,7 @@ class Pictures:
         beads = Beads(
             strategy.bead_spacing, strategy.gap * strategy.bead_spacing, strategy.shortest, strategy.thin,
             process.direction == "clockwise", seam - turned, ARCS * strategy.chord_error, where,
-            self._width,
+            self._width, one.layer * OVER if strategy.starts == "spread" else None,
         )
         angle = strategy.fill_angle + one.layer * strategy.fill_angle_step - turned
         infill = Infill()
@@ -102,6 +103,7 @@ class Pictures:
         for number, region in enumerate(one.regions):
             found, left, cover = self._picture(one, region, beads, angle, infill)
             covers.append(cover)
+            found = [_from_other_end(curve) for curve in found] if beads.spread is not None and one.layer % 2 else found
             curves += [replace(curve, sheet=region.sheet) for curve in found] if isinstance(region, Region) else found
             islands += [number] * len(found)
             gaps += left
@@ -132,6 +134,7 @@ class Pictures:
         known = self._known.setdefault(one.surface.alike, [])
         for other in known:
             alike = abs(other.angle - angle) < 1e-9 and abs(_number(other.beads) - _number(beads)) < 1e-9
+            alike = alike and other.beads.spread == beads.spread
             if alike and _equal(other.rings, region.rings()) and _same(other.infill, infill):
                 return other.curves, other.left, other.cover
         curves, left = self._made(region, beads, angle, infill)
@@ -144,9 +147,14 @@ class Pictures:
     ) -> tuple[tuple[PlaneCurve, ...], list[tuple[Array, float]]]:
         """The beads of a region and what they leave open, of which nothing is told where room is left on purpose."""
         strategy = self._strategy
-        links = strategy.longest_link * beads.spacing
+        links, (least, most) = strategy.longest_link * beads.spacing, strategy.spacing_range
+        share = 1.0
+        if isinstance(region, Region) and infill.density == 1.0 and strategy.rounds_alone:
+            beads, share = fitted(region, beads, least, most)
         curves = fill(region, beads, strategy.fill, angle, strategy.rounds, links, infill)
         left = open_places(region, curves, beads) if infill.density == 1.0 else []
+        if isinstance(region, Region) and infill.density == 1.0:
+            curves = tuple(shared(region, curves, beads, share, least, most))
         return curves, left
 
 
@@ -185,16 +193,26 @@ def _standing_out(one: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> lis
     """What is told of single beads in regions narrower than they are."""
     rings = [ring for region in one.regions if isinstance(region, Region) for ring in region.rings()]
     rings += [ring for region in one.regions if isinstance(region, Strip) for ring, _ in region.rings()]
-    single = [curve.points for curve in curves if curve.kind == "centre" and curve.ring == 0]
+    single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]
     if not single:
         return []
-    points = np.vstack(single)
-    out = beads.inset - np.min([nearest(ring, points, closed=True).distance for ring in rings], axis=0)
+    points = np.vstack([curve.points for curve in single])
+    share = np.concatenate([np.ones(len(curve.points)) if curve.share is None else curve.share for curve in single])
+    out = share * beads.inset - np.min([nearest(ring, points, closed=True).distance for ring in rings], axis=0)
     worst = int(np.argmax(out))
+    if (share < 1.0).any() and out[worst] < 0.02 * beads.inset:
+        return []
     return [Issue(
         NOTE, "THIN_SINGLE", f"{len(single)} bead(s) alone in regions narrower than a bead of {2.0 * beads.inset:.3g} mm "
         f"stand out of them, by up to {out[worst]:.3g} mm at {beads.where(points[worst])}", one.layer,
     )]
+
+
+def _from_other_end(curve: PlaneCurve) -> PlaneCurve:
+    """An open curve the other way round; a closed one as it is."""
+    if curve.closed:
+        return curve
+    return replace(curve, points=curve.points[::-1], share=None if curve.share is None else curve.share[::-1])
 
 
 def _same(one: Infill, other: Infill) -> bool:

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads narrower or wider than usual, so that contours come out even over the thickness of a region."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..geometry.plane_curve import Array, dense, nearest
+from ..geometry.region import WIDTH, Region
+from .curve import Beads, PlaneCurve
+
+MORE = 1.002  # of the thickness, beside what the measure of it may be short of: a contour in the middle is no thin loop
+PLACES = 0.25  # of the spacing, mm between places at which widths are looked at
+
+
+def fitted(region: Region, beads: Beads, least: float, most: float) -> tuple[Beads, float]:
+    """Beads of which a whole number fits into the thickest place of a region, and their share of the usual width, between
+    least and most and as near to 1 as may be; the usual ones where there is no such number."""
+    width = 2.0 * beads.inset
+    if least == most:
+        return beads, 1.0
+    thickness = MORE * (1.0 + WIDTH) * region.width
+    beside = (thickness - width) / beads.spacing  # so many more than one
+    share = 1.0
+    if beside > 0.0:
+        count = np.arange(max(int(beside) - 1, 0), int(beside) + 3)
+        shares = thickness / (width + count * beads.spacing)
+        share = float(shares[np.argmin(np.abs(np.log(shares)))])
+    if not least <= share <= most * MORE * (1.0 + WIDTH):
+        share = 1.0
+    spacing = share * beads.spacing
+    return replace(beads, spacing=spacing, width=share * width, gap=share * beads.gap), share
+
+
+def shared(
+    region: Region, curves: Sequence[PlaneCurve], beads: Beads, share: float, least: float, most: float
+) -> list[PlaneCurve]:
+    """The curves with the share of the usual width that each of their points has: that of the fitted beads, of those in the
+    middle what room their neighbours leave them. Between least and most."""
+    if least == most:
+        return list(curves)
+    others = [curve for curve in curves if curve.kind not in ("centre", "closing")]
+    return [
+        _in_room(curve, others, region, beads, share, least, most) if curve.kind in ("centre", "closing")
+        else _times(curve, share) for curve in curves
+    ]
+
+
+def _times(curve: PlaneCurve, share: float) -> PlaneCurve:
+    if share == 1.0:
+        return curve
+    return replace(curve, share=share * (np.ones(len(curve.points)) if curve.share is None else curve.share))
+
+
+def _in_room(
+    curve: PlaneCurve, others: Sequence[PlaneCurve], region: Region, beads: Beads, share: float, least: float, most: float
+) -> PlaneCurve:
+    """A bead with points as dense as its width may change, as wide as the room about it."""
+    step = PLACES * beads.spacing
+    if curve.closed:
+        points = dense(curve.points, step)
+    else:  # there and back is a ring, of which the way there is the first half
+        points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
+        points = points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
+    border = 2.0 * region.nearest(points)[1] / (2.0 * beads.inset)
+    beside: Array = np.full(len(points), np.inf)
+    for other in others:
+        beside = np.minimum(beside, nearest(other.points, points, other.closed).distance)
+    room = np.minimum(border, 2.0 * beside / beads.spacing - 1.0)
+    return replace(curve, points=points, share=np.clip(share * room, least, most))

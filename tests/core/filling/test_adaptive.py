@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads as wide as their room, measured on a raster swept by discs of their widths; starts that keep apart."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.filling.adaptive import fitted, shared
+from freecad_am.core.filling.curve import OVER, Beads
+from freecad_am.core.filling.fill import fill
+from freecad_am.core.geometry.region import regions
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.strategy import DevelopableParameters
+
+_spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
+shapes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(shapes)
+
+S = 5.0
+BEADS = Beads(S, 1.0, 2.0, chord_error=0.02)
+STEP = 0.1
+
+
+def adapted(region, pattern, least, most):
+    beads, share = fitted(region, BEADS, least, most)
+    return shared(region, fill(region, beads, pattern), beads, share, least, most), share
+
+
+def places(curves):
+    """Dense places of beads and their widths there."""
+    found = []
+    for curve in curves:
+        share = np.ones(len(curve.points)) if curve.share is None else curve.share
+        ends = np.c_[curve.points, share]
+        ends = np.vstack([ends, ends[:1]]) if curve.closed else ends
+        for a, b in zip(ends, ends[1:]):
+            t = np.linspace(0.0, 1.0, max(int(np.ceil(np.hypot(*(b - a)[:2]) / STEP)), 1) + 1)[:, None]
+            found.append(a + t * (b - a))
+    rows = np.vstack(found)
+    return rows[:, :2], S * rows[:, 2]
+
+
+def swept(curves, grid):
+    """Which places of a grid lie within half of a bead's width there."""
+    points, width = places(curves)
+    covered = np.zeros(len(grid), dtype=bool)
+    for low in np.arange(0.0, width.max() + 0.25, 0.25):
+        some = (width >= low) & (width < low + 0.25)
+        if some.any():
+            away, which = cKDTree(points[some]).query(grid)
+            covered |= away <= 0.5 * width[some][which] + 0.01
+    return covered
+
+
+def bar(thick, length=90.0):
+    return shapes.polygon((0, 0), (length, 0), (length, thick), (0, thick))
+
+
+@pytest.mark.parametrize("pattern", ["contours", "connected", "spiral"])
+@pytest.mark.parametrize("thick", [7.0, 8.5, 12.5, 17.0, 22.0, 23.4])
+def test_bars_of_any_thickness_are_filled_evenly(thick, pattern):
+    loops = bar(thick)
+    region, = regions(loops)
+    curves, share = adapted(region, pattern, 0.7, 1.4)
+    count = round(thick / (share * S))
+    assert share * S * count == pytest.approx(thick, rel=0.01) and 0.7 <= share <= 1.41
+    grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])  # none of it on the border
+    within = shapes.inside(loops, grid)
+    covered = swept(curves, grid)
+    corner = np.min([np.hypot(*(grid - point).T) for point in loops[0]], axis=0) < 0.75 * share * S
+    # the corners of contours inside stay open, and those beside the ends of a bead in the middle: none is as wide as the gap
+    assert (covered & within & ~corner).sum() >= 0.975 * (within & ~corner).sum()
+    assert (covered & ~within).sum() <= 0.01 * within.sum()
+    if pattern == "contours":
+        area = sum(
+            (np.hypot(*np.diff(line, axis=0).T) * 0.5 * (wide[1:] + wide[:-1])).sum() for line, wide in (
+                (np.vstack([c.points, c.points[:1]]) if c.closed else c.points,
+                 S * (np.r_[c.share, c.share[:1]] if c.closed else c.share)) for c in (
+                    c if c.share is not None else shares_of_one(c) for c in curves)
+            )
+        )
+        assert area == pytest.approx(thick * 90.0, rel=0.08), "what is laid is what the bar takes"
+
+
+def shares_of_one(curve):
+    import dataclasses
+
+    return dataclasses.replace(curve, share=np.ones(len(curve.points)))
+
+
+def test_a_wedge_narrower_than_a_bead_is_as_wide_as_its_bead():
+    region, = regions(shapes.polygon((0, 0), (80, 0), (80, 4.9), (0, 3.0)))
+    curve, = adapted(region, "contours", 0.5, 1.5)[0]
+    x, share = curve.points[:, 0], curve.share
+    inner = (x > 4.0) & (x < 76.0)
+    assert S * share[inner] == pytest.approx(3.0 + 1.9 * x[inner] / 80.0, rel=0.02)
+
+
+def test_the_usual_range_changes_nothing():
+    for name in ("comb", "wavy 1"):
+        region, = regions(shapes.SHAPES[name])
+        usual = fill(region, BEADS)
+        curves, share = adapted(region, "contours", 1.0, 1.0)
+        assert share == 1.0 and all(a is b or (np.array_equal(a.points, b.points) and b.share is None)
+                                    for a, b in zip(usual, curves, strict=True))
+    # nothing within the range: the usual spacing, and gaps in the middle as wide as they are
+    region, = regions(bar(8.0))
+    curves, share = adapted(region, "contours", 0.95, 1.05)
+    assert share == 1.0
+
+
+@pytest.mark.parametrize("name", ["annulus", "blade", "wavy 2", "L"])
+def test_spread_starts_keep_apart_and_aligned_ones_do_not(name):
+    def starts(spread):
+        found = {}
+        for layer in range(6):
+            beads = Beads(S, 1.0, 2.0, chord_error=0.02, spread=layer * OVER if spread else None)
+            region, = regions(shapes.SHAPES[name][:1])  # without holes there is one contour of each number, or few
+            for curve in fill(region, beads):
+                if curve.kind == "contour":
+                    found.setdefault((layer, curve.ring), []).append(curve.points)
+        return {key: rings[0] for key, rings in found.items() if len(rings) == 1}
+
+    def share(a, b):
+        """How far apart two starts are: along the first ring from its start to where the other's is next, of all of it."""
+        at = shapes.dense(a, True, 0.1)
+        near = np.argmin(np.hypot(*(at - b[0]).T)) / len(at)
+        return min(near, 1.0 - near)
+
+    def least(found):
+        pairs = [(key, (key[0] + i, key[1] + j)) for key in found for i, j in ((0, 1), (1, 0), (1, 1), (1, -1))]
+        return [share(found[a], found[b]) for a, b in pairs if b in found]
+    assert max(least(starts(False))) < 0.12 or name in ("wavy 2", "L", "blade")
+    apart = least(starts(True))
+    # where contours differ in shape from the ones outside of them, so do the shares of their length
+    assert len(apart) > 8 and np.median(apart) > 0.2 and min(apart) > (0.02 if name in ("wavy 2", "L") else 0.08)
+
+
+@pytest.mark.parametrize("given,told", [
+    ((0.2, 1.4), "20 % is out of range; give at least 30 % and at most 200 %"),
+    ((1.4, 0.7), "140 % to 70 % is not a range; give the smaller percentage first"),
+    ((1.1, 1.4), "110 % to 140 % is without 100 %, the usual width; include it"),
+    ((1.0,), "is not a range; give two percentages"),
+    ((float("nan"), 1.2), "nan is not a number"),
+])
+def test_ranges_that_are_none_are_told(given, told):
+    with pytest.raises(InputError, match="spacing_range") as refused:
+        DevelopableParameters(spacing_range=given)
+    assert told in str(refused.value)
