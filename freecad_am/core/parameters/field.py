@@ -20,9 +20,9 @@ ANGLE_RANGE, RATIO_RANGE, TURN_RATE = "angle range", "ratio range", "turn rate"
 GROUP = "group"
 
 # the unit a bare number has outside, and how many of ours one of it makes
-OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%", TURN_RATE: "deg/mm"}
+OUTER_UNIT = {LENGTH: "mm", ANGLE: "deg", SPEED: "mm/s", TIME: "s", RATIO: "%", RATIO_RANGE: "%", TURN_RATE: "deg/mm"}
 END_OF = {ANGLE_RANGE: ANGLE, RATIO_RANGE: RATIO}  # what either end of a range is
-TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, TURN_RATE: math.pi / 180.0, RATIO: 0.01}
+TO_INNER = {ANGLE: math.pi / 180.0, ANGLE_RANGE: math.pi / 180.0, TURN_RATE: math.pi / 180.0, RATIO: 0.01, RATIO_RANGE: 0.01}
 
 
 @dataclass(frozen=True)
