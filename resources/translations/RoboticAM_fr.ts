@@ -294,6 +294,11 @@
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these. (%)</source>
+        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
         <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
@@ -907,6 +912,11 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>What was in the file.</source>
         <translation>Ce qui était dans le fichier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Where beads start: where the seam says (aligned), or apart from those of neighbouring contours and layers, lines of every second layer at their other end (spread).</source>
+        <translation>Départ des cordons : où le dit la couture (alignés), ou loin de ceux des contours et couches voisins, les lignes d&apos;une couche sur deux par leur autre bout (répartis).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2320,6 +2330,11 @@
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>How many seconds of the job pass in one</source>
         <translation>Combien de secondes du travail passent en une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these.</source>
+        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -3917,6 +3932,21 @@
         <translation>Espacement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Spacing range</source>
+        <translation>Plage d&apos;écartement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Spacing range from</source>
+        <translation>Écartement de</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Spacing range to</source>
+        <translation>Écartement à</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>Speed</source>
         <translation>Vitesse</translation>
@@ -4010,6 +4040,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Start edges</source>
         <translation>Arêtes de départ</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Starts</source>
+        <translation>Départs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/stage_panel.py"/>
@@ -4872,6 +4907,11 @@
         <translation>À quoi se rapportent les positions des programmes cartésiens, dans les coordonnées de la pièce : x y z mm, RX RY RZ deg ; auto : le repère qui repose sur le plateau.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Where beads start: where the seam says (aligned), or apart from those of neighbouring contours and layers, lines of every second layer at their other end (spread).</source>
+        <translation>Départ des cordons : où le dit la couture (alignés), ou loin de ceux des contours et couches voisins, les lignes d&apos;une couche sur deux par leur autre bout (répartis).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Where closed beads start.</source>
         <translation>Là où commencent les cordons fermés.</translation>
@@ -5340,6 +5380,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>against the horizontal</source>
         <translation>par rapport à l&apos;horizontale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>aligned</source>
+        <translation>alignés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -7732,6 +7777,11 @@
         <translation>débit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>ratio range</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
         <source>read back by a reader of its own and driven through the joint-frame chain and PyKDL</source>
         <translation>relu par un lecteur à part et mené par la chaîne des repères et PyKDL</translation>
@@ -7960,6 +8010,11 @@
         <location filename="../../freecad_am/core/planning/room.py"/>
         <source>split for a limited axis</source>
         <translation>divisé pour un axe limité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>spread</source>
+        <translation>répartis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
@@ -9688,8 +9743,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a range; give the smaller percentage first</source>
+        <translation>{0} n&apos;est pas une plage ; donnez d&apos;abord le plus petit pourcentage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a range; give two angles, the smaller first</source>
         <translation>{0} n&apos;est pas une plage ; donnez deux angles, le plus petit d&apos;abord</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
+        <source>{0} is not a range; give two percentages, the smaller first</source>
+        <translation>{0} n&apos;est pas une plage ; donnez deux pourcentages, le plus petit d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
@@ -9845,6 +9910,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>{0} is there twice; give each bead one</source>
         <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>{0} is without 100 %, the usual width; include it</source>
+        <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/support.py"/>
