@@ -7779,7 +7779,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>ratio range</source>
-        <translation type="unfinished"></translation>
+        <translation>plage de parts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/written.py"/>
