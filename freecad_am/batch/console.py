@@ -15,6 +15,7 @@ from typing import Any
 from freecad_am.core.issues import ERROR, Issue
 
 SAME = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
+FIRST = ("REMEDY", "NO_REMEDY")  # codes of what would make a job feasible
 _MOST_ISSUES = 12  # told on stderr; the report has them all
 # signs that move the cursor, end a line or turn the direction of writing: in a name they could forge what we say
 _UNSEEN = re.compile(
@@ -73,8 +74,8 @@ class Session:
         _write(self._saved[1], escaped(line) + "\n")
 
     def issues(self, found: Iterable[Issue]) -> None:
-        """Tell findings, errors first, on stderr; of many only some."""
-        ordered = sorted(found, key=lambda issue: issue.level != ERROR)
+        """Tell findings, first what would make the job feasible, then errors, on stderr; of many only some."""
+        ordered = sorted(found, key=lambda issue: (issue.code not in FIRST, issue.level != ERROR))
         for issue in ordered[:_MOST_ISSUES]:
             self.say(f"{issue.level}[{issue.code}] {issue.where or 'job'}: {' '.join(issue.message.split())}")
         if len(ordered) > _MOST_ISSUES:

@@ -19,6 +19,7 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
+from ..core.planning.remedies import Tried, remedies
 from ..core.planning.speeds import SLOWED
 from ..core.process import bead_table, predicted
 from ..core.simulation.timeline import timeline
@@ -29,6 +30,7 @@ from .stage import Link, Outcome, Section, Stage, Work, stage_of
 from .staleness import UP_TO_DATE
 
 JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves
+TRYING = 0.95
 
 
 @dataclass(frozen=True)
@@ -41,13 +43,15 @@ class Planned:
 
 @dataclass(frozen=True)
 class Job:
-    """What a joint path is planned of, away from the document. toolpath: reads it."""
+    """What a joint path is planned of, away from the document. toolpath: reads it. fixed: makes it with one build direction,
+    None where it has it, or cannot."""
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
     folders: tuple[str, ...]
     process: ProcessParameters
     parameters: JointParameters
+    fixed: Callable[[], Toolpath] | None = None
 
 
 def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters]:
@@ -104,6 +108,7 @@ class JointPath(Stage):
         return Job(
             toolpath.Proxy.reader(toolpath), cell.Proxy.value(cell), tuple(user_machines.folders()),
             toolpath.Proxy.parameters(toolpath, ProcessParameters), self.parameters(obj, JointParameters),
+            toolpath.Proxy.fixed(toolpath),
         )
 
     def prepare(self, obj: Any) -> Work:
@@ -121,6 +126,8 @@ class JointPath(Stage):
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height
             )
             issues = (*joint_path.issues, *rapid_issues, *_heights_as_run(joint_path, toolpath, process))
+            asked = Tried(lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed)
+            issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0
             return Outcome(Planned(joint_path, motion), issues,

@@ -7,7 +7,7 @@ A family of features is imported when one of it is planned: all of them take lon
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,7 @@ from .platforms import platforms
 from .shapes import Taken, taken
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
 
+FIXED = "fixed"
 STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
 CHECKED, LOOKED = 0.92, 0.95  # and what is left into last looks
 
@@ -75,6 +76,21 @@ class Toolpath(Stage):
             return Outcome(toolpath, toolpath.issues, figures)
 
         return work
+
+    def fixed(self, obj: Any) -> Callable[[], CoreToolpath] | None:
+        """What makes the toolpath anew with one build direction, the axis of the part, without the document; None where it
+        has that, and of features other than parts of revolution."""
+        feature = obj.Feature
+        shape = stage_of(feature)
+        if shape is None or strategy_of(shape) is not RevolutionParameters:
+            return None
+        build = shape.parameters(feature, BuildDirectionParameters)
+        if build.mode == FIXED:
+            return None
+        wall, strategy = shape.reader(feature), shape.parameters(feature, RevolutionParameters)
+        process = self.parameters(obj, ProcessParameters)
+        carried = None if obj.Cell is None else obj.Cell.Proxy.value(obj.Cell)
+        return lambda: planned(wall(), strategy, dataclasses.replace(build, mode=FIXED), process, carried)
 
     def further_inputs(self, obj: Any) -> list[str]:
         model = self.parameters(obj, ProcessParameters).bead_model

@@ -179,6 +179,12 @@ def _axis_speeds(path: BeadPath) -> Array:
     return speed
 
 
+def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
+    """The share of their speeds at which the axes can follow all paths, at most 1."""
+    return float(min((1.0 / max(float((_axis_speeds(path) / cell.machine.max_speed).max(initial=0.0)), 1.0)
+                      for path in paths if path.reachable), default=1.0))
+
+
 def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
     """An issue for every bead on which an axis would have to turn faster than it can."""
     found = []

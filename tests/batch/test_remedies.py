@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What an infeasible job is told would make it feasible does so, when it is put into the job as it was told."""
+
+import json
+import re
+
+import pytest
+
+PART = "part: {file: cup.step}\nstrategy: {layer_height: 10 mm, chord_error: 0.2 mm}\n"
+JOBS = {
+    # the deposition point left out is that of another machine
+    "machine": {"cell": {"machine": "kuka-kr16-2"}},
+    "speed": {"cell": {"limits": "paper"}, "process": {"travel_speed": "300 mm/s"}},
+    "range": {"cell": {}, "joints": {"rotation_range": "[-5 deg, 5 deg]"}},
+    "tool": {"cell": {"machine": "abb-irb2400-12-155", "setup": "tool-on-robot"}},
+}
+EXPECTED = {"machine": "cell.deposition_point", "speed": "process.travel_speed", "range": "", "tool": ""}
+
+
+def written(sections):
+    lines = [PART]
+    for section, keys in sections.items():
+        lines.append(f"{section}:\n" + "".join(f"  {key}: {value}\n" for key, value in keys.items()))
+    return "".join(lines)
+
+
+@pytest.mark.parametrize("name", JOBS)
+def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
+    sections = {section: dict(keys) for section, keys in JOBS[name].items()}
+    sections["cell"]["platform_diameter"] = "100 mm"
+    workshop.write_job(written(sections))
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 3, done.err
+    first = done.err.splitlines()[0]
+    assert first.startswith("note[REMEDY] job: with `") and first.endswith("this job is feasible; it was planned so")
+    told = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first)
+    assert told and EXPECTED[name] in first
+    report = json.loads(workshop.files()["report.json"])
+    assert report["status"] == "infeasible" and sum(issue["code"] == "REMEDY" for issue in report["issues"]) == 1
+    for section, key, value in told:
+        sections.setdefault(section, {})[key] = value
+    workshop.write_job(written(sections))
+    again = workshop.run("plan", "cup.yaml")
+    assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err
+
+
+def test_what_was_tried_in_vain_is_told(workshop):
+    # far out of reach, where no change of the program helps
+    workshop.write_job(written({
+        "cell": {"limits": "paper", "branch": "auto", "deposition_point": "[3000, 0, 3000, 0, 0, 0]"},
+    }))
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 3
+    told = "note[NO_REMEDY] job: none of these makes the job feasible, each was tried: `"
+    assert done.err.startswith((told, "note[REMEDY]"))
