@@ -7202,6 +7202,11 @@
         <translation>recherche de cordons au-dessus du vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>looking for what would make it feasible: {0}</source>
+        <translation>recherche de ce qui le rendrait faisable : {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>looking whether the deposit lies on the part</source>
         <translation>vérification que le dépôt est sur la pièce</translation>
@@ -7435,6 +7440,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>none of these layers lies on another</source>
         <translation>aucune de ces couches ne repose sur une autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>none of these makes the job feasible, each was tried: {0}</source>
+        <translation>rien de ceci ne rend le travail faisable, tout a été essayé : {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/constant.py"/>
@@ -9255,6 +9265,16 @@
         <location filename="../../freecad_am/posts/names.py"/>
         <source>with the {0} digits of its parts it has more than {1} characters</source>
         <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>with {0} the {1} of the layers in question that were planned anew are feasible; the whole job was not tried</source>
+        <translation>avec {0}, les {1} couches en cause replanifiées sont faisables ; le travail entier n’a pas été essayé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/remedies.py"/>
+        <source>with {0} this job is feasible; it was planned so</source>
+        <translation>avec {0}, ce travail est faisable ; il a été planifié ainsi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/patch_wall.py"/>
