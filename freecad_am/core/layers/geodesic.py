@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers by the way through the solid from where it stands: each lies on the one below, so that nothing needs support."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from ..geometry.mesh import Mesh
+from ..geometry.plane_curve import doubled_area
+from ..geometry.region import Region, regions
+from ..geometry.solid_mesh import Search, SolidMesh
+from .carried_on import carried_on, gradients
+from .chart import Chart
+from .eikonal import Links, arrival, links
+from .flattening import Flattened, flattened, turned
+from .level import Cubes
+from .voxels import Array, Index, Mask, Voxels, voxels
+
+NEAR = 2.5  # steps; nodes so near to the start know their distance from its triangles
+DEEP = 3  # nodes; farther inside nothing asks how far the surface is
+STRETCH = 0.15  # most that a piece is stretched or squeezed; what would be more is laid flat in two
+OUTER = 0.02  # share of the area whose stretch does not count: slivers, and the very corners of fans
+OVERLAID = 0.01  # share of the area by which a picture may lie on itself
+HALVINGS = 6
+MARGIN = 2.0  # steps that pieces reach past where they are cut in two
+
+
+class Piece(NamedTuple):
+    """A part of a layer on its chart, and what of its picture is deposited; stretch: the largest share by which lengths
+    differ from those in the part."""
+
+    chart: Chart
+    regions: tuple[Region, ...]
+    stretch: float
+
+
+@dataclass(frozen=True, eq=False)
+class GeodesicField:
+    """The distance u mm through a solid from its start. cubes: u on a grid; depth: how deep inside the solid, mm, on the
+    nodes of the same; way: its gradient, smoothed; top: the largest distance; lost: volume (mm3) that no way leads to."""
+
+    solid: SolidMesh
+    grid: Voxels
+    cubes: Cubes
+    depth: Cubes
+    way: tuple[Cubes, Cubes, Cubes]
+    top: float
+    lost: float
+
+    def pieces(self, distance: float) -> Iterator[Piece]:
+        """What of the solid lies at a distance, mm, in pieces that can be laid flat."""
+        mesh = self.cubes.level(distance)
+        if not len(mesh.faces):
+            return
+        inside = _filled(self.depth.sampled(mesh.vertices)[0], -self.grid.step)
+        inside[np.unique(mesh.border_edges)] = -self.grid.step
+        for part, own in _connected(mesh, inside > 0.0):
+            yield from self._laid(part, inside[own], HALVINGS)
+
+    def onto(self, points: Array, distance: float) -> Array:
+        """Points (n, 3) moved along the way through the solid to where u is the distance."""
+        for _ in range(3):
+            value, slope = self.cubes.sampled(points)
+            value, slope = _filled(value, distance), _filled(slope, 0.0)
+            square = np.maximum((slope * slope).sum(axis=1), 0.25)
+            points = points - ((value - distance) / square)[:, None] * slope
+        return points
+
+    def directions(self, points: Array) -> Array:
+        """Unit build directions (n, 3): the way u grows fastest, smoothed."""
+        way = np.stack([_filled(one.sampled(points)[0], 0.0) for one in self.way], axis=1)
+        unit: Array = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
+        return unit
+
+    def _laid(self, mesh: Mesh, inside: Array, halvings: int) -> Iterator[Piece]:
+        flat = flattened(mesh)
+        area = _areas(mesh)
+        within = np.where((inside[mesh.faces] > 0.0).any(axis=1), area, 0.0)
+        stretch = _stretch(flat, within)
+        if stretch <= STRETCH or halvings == 0:
+            chart = Chart(mesh, turned(mesh, flat.points))
+            loops = _loops(chart, inside)
+            found = regions(loops)
+            bounded = 0.5 * sum(doubled_area(loop) for loop in loops)
+            if halvings == 0 or abs(sum(one.area for one in found) - bounded) <= OVERLAID * max(bounded, 0.0):
+                if found:
+                    yield Piece(chart, found, stretch)
+                return
+        for half in _halves(mesh, inside, MARGIN * self.grid.step):
+            for part, own in _connected(half.mesh, half.inside > 0.0):
+                yield from self._laid(part, half.inside[own], halvings - 1)
+
+
+class _Half(NamedTuple):
+    mesh: Mesh
+    inside: Array
+
+
+def field(solid: SolidMesh, start: Index, step: float) -> GeodesicField:
+    """The distance from some triangles (k,) of a solid's boundary, on a grid of `step` mm.
+
+    ValueError where no node of the grid is near the start.
+    """
+    search = Search(solid, 2.0 * step)
+    grid = _rounded_up(voxels(solid.vertices, solid.triangles, step), search)
+    linked = links(grid)
+    places = grid.places(linked.nodes)
+    seeds, values = _seeds(solid, start, places, step)
+    if not len(seeds):
+        raise ValueError("no node of the grid is near the start")
+    u = arrival(linked, step, seeds, values)
+    reached = np.isfinite(u)
+    way = _smoothed(linked, gradients(linked, np.where(reached, u, np.nan), step))
+    carried = carried_on(grid, linked, u)
+    return GeodesicField(
+        solid, grid, Cubes(carried, grid.origin, step), Cubes(_depths(grid, search, carried), grid.origin, step),
+        tuple(Cubes(carried_on(grid, linked, np.where(reached, one, np.inf)), grid.origin, step) for one in way.T),  # type: ignore[arg-type]
+        float(u[reached].max()), float((~reached).mean()) * solid.volume,
+    )
+
+
+def _seeds(solid: SolidMesh, start: Index, places: Array, step: float) -> tuple[Index, Array]:
+    """Nodes near the start and their distances from it."""
+    chosen = SolidMesh(solid.vertices, solid.triangles[start])
+    corners = solid.vertices[chosen.triangles]
+    low, high = corners.min(axis=(0, 1)) - NEAR * step, corners.max(axis=(0, 1)) + NEAR * step
+    near = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
+    if not len(near):
+        return near, np.zeros(0)
+    away = np.abs(Search(chosen, 2.0 * step).signed(places[near])[0])
+    close = away < NEAR * step
+    return near[close], away[close]
+
+
+def _rounded_up(grid: Voxels, search: Search) -> Voxels:
+    """The grid with the nodes that lie less than half a step outside: corners that ways lead round are then, on the whole,
+    where they are, not up to a step farther in."""
+    wide = grid.solid.copy()
+    for axis in range(3):
+        wide |= np.roll(grid.solid, 1, axis) | np.roll(grid.solid, -1, axis)
+    nodes = np.flatnonzero(wide & ~grid.solid)
+    solid = grid.solid.ravel().copy()
+    solid[nodes] = search.signed(grid.places(nodes))[0] < 0.5 * grid.step
+    return Voxels(grid.origin, grid.step, solid.reshape(grid.solid.shape))
+
+
+def _depths(grid: Voxels, search: Search, carried: Array) -> Array:
+    """How deep (nx, ny, nz) mm nodes lie in the solid, below 0 outside; no more than DEEP steps is told, nan where the field
+    is not known."""
+    depth = np.where(np.isnan(carried), np.nan, DEEP * grid.step).ravel()
+    inner = grid.solid.copy()
+    for _ in range(DEEP):
+        inner[1:-1, 1:-1, 1:-1] &= (
+            inner[:-2, 1:-1, 1:-1] & inner[2:, 1:-1, 1:-1] & inner[1:-1, :-2, 1:-1] & inner[1:-1, 2:, 1:-1]
+            & inner[1:-1, 1:-1, :-2] & inner[1:-1, 1:-1, 2:]
+        )
+    asked = np.flatnonzero(~np.isnan(depth) & ~inner.ravel())
+    depth[asked] = -search.signed(grid.places(asked))[0]
+    return depth.reshape(grid.solid.shape)
+
+
+def _smoothed(linked: Links, way: Array) -> Array:
+    """Directions (n, 3) of the nodes, each the mean of its own and its neighbours', of unit length, twice."""
+    for _ in range(2):
+        unit = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
+        padded = np.vstack([unit, np.zeros((1, 3))])
+        way = 2.0 * unit + padded[linked.beside].sum(axis=0)
+    smoothed: Array = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-300)
+    return smoothed
+
+
+def _connected(mesh: Mesh, inside: Mask) -> Iterator[tuple[Mesh, Index]]:
+    """The pieces of a mesh that hang together by vertices inside, each with the triangles about it and its vertices here."""
+    pairs = mesh.edges[inside[mesh.edges].all(axis=1)]
+    n = len(inside)
+    label = connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False)[1]
+    label = np.where(inside, label, -1)
+    owner = label[mesh.faces].max(axis=1)
+    for one in np.unique(owner[owner >= 0]):
+        yield mesh.part(np.flatnonzero((label[mesh.faces] == one).any(axis=1)))
+
+
+def _areas(mesh: Mesh) -> Array:
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    areas: Array = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return areas
+
+
+def _stretch(flat: Flattened, weight: Array) -> float:
+    """The stretch or squeeze that all triangles but OUTER of their weight (m,) keep below."""
+    each = np.maximum(flat.most - 1.0, 1.0 - flat.least)
+    order = np.argsort(each, kind="stable")
+    done = np.cumsum(weight[order])
+    return float(each[order[np.searchsorted(done, (1.0 - OUTER) * done[-1])]])
+
+
+def _halves(mesh: Mesh, inside: Array, margin: float) -> Iterator[_Half]:
+    """A piece in two, across its longest side; both reach a little past the cut."""
+    kept = inside > 0.0
+    middle = mesh.vertices[kept].mean(axis=0)
+    axis = np.linalg.svd(mesh.vertices[kept] - middle, full_matrices=False)[2][0]
+    along = (mesh.vertices - middle) @ axis
+    for sign in (-1.0, 1.0):
+        side = np.minimum(inside, sign * along)
+        faces = np.flatnonzero((sign * along > -margin)[mesh.faces].all(axis=1))
+        part, own = mesh.part(faces)
+        cut = side[own].copy()
+        border = np.unique(part.border_edges)
+        cut[border] = np.minimum(cut[border], -1e-6 * margin)
+        yield _Half(part, cut)
+
+
+def _loops(chart: Chart, inside: Array) -> tuple[Array, ...]:
+    """The loops (k, 2) about the part of a chart that is inside."""
+    flat = Mesh(np.column_stack([chart.flat, np.zeros(len(chart.flat))]), chart.mesh.faces)
+    lines = flat.level_lines(inside, np.arange(len(flat.faces)))
+    return tuple(line.points[::-1, :2] for line in lines if line.closed and len(line.points) > 2)
+
+
+def _filled(values: Array, instead: float) -> Array:
+    found: Array = np.where(np.isfinite(values), values, instead)
+    return found

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Distances through a solid on a grid, their levels and these laid flat, against what is known by other ways."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial.transform import Rotation
+
+from freecad_am.core.geometry.mesh import Mesh
+from freecad_am.core.geometry.refined import Edges
+from freecad_am.core.layers.carried_on import carried_on
+from freecad_am.core.layers.chart import Chart
+from freecad_am.core.layers.eikonal import arrival, links
+from freecad_am.core.layers.flattening import flattened, stretched, turned
+from freecad_am.core.layers.level import Cubes
+from freecad_am.core.layers.voxels import Voxels, voxels
+
+from .shapes import box, icosphere
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_nodes_of_a_turned_box_are_those_between_its_planes(seed):
+    rng = np.random.default_rng(seed)
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = Rotation.random(random_state=seed).as_matrix(), rng.uniform(-300.0, 300.0, 3)
+    size = rng.uniform(3.0, 20.0, 3)
+    grid = voxels(*box(size, pose), 0.7)
+    local = (grid.places(np.arange(grid.solid.size)) - pose[:3, 3]) @ pose[:3, :3]
+    inside = ((local > 0.0) & (local < size)).all(axis=1)
+    assert (grid.solid.ravel() == inside).all()
+
+
+def test_bodies_that_overlap_are_one_and_a_cavity_is_left_out():
+    one, faces = box([10.0, 10.0, 10.0])
+    both = voxels(np.vstack([one, one + 4.0]), np.vstack([faces, faces + len(one)]), 0.5)
+    assert both.solid.sum() * 0.5**3 == pytest.approx(2000.0 - 6.0**3, rel=0.02)
+    hollow = voxels(np.vstack([one, 0.5 * one + 2.5]), np.vstack([faces, faces[:, ::-1] + len(one)]), 0.5)
+    assert hollow.solid.sum() * 0.5**3 == pytest.approx(1000.0 - 125.0, rel=0.02)
+
+
+def _ball(step=0.5, radius=10.0):
+    return voxels(*icosphere(radius), step)
+
+
+def test_distance_from_a_point_in_free_space():
+    grid = _ball()
+    linked = links(grid)
+    places = grid.places(linked.nodes)
+    exact = np.linalg.norm(places - [2.0, 1.0, -1.0], axis=1)
+    seeds = np.flatnonzero(exact < 2.0)
+    u = arrival(linked, grid.step, seeds, exact[seeds])
+    assert np.abs(u - exact).max() < 0.35 * grid.step
+    slope = np.linalg.norm(np.stack(np.gradient(_on(grid, linked, u)), axis=-1), axis=-1) / grid.step
+    assert np.nanquantile(np.abs(slope - 1.0), 0.99) < 0.05
+
+
+def _on(grid, linked, u):
+    field = np.full(grid.solid.size, np.nan)
+    field[linked.nodes] = u
+    return field.reshape(grid.solid.shape)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_in_a_maze_no_way_is_shorter_than_straight_or_longer_than_from_node_to_node(seed):
+    rng = np.random.default_rng(seed)
+    solid = np.zeros((24, 20, 22), dtype=bool)
+    solid[2:-2, 2:-2, 2:-2] = True
+    for _ in range(12):
+        a = rng.integers(2, 18, 3)
+        solid[tuple(slice(k, k + n) for k, n in zip(a, rng.permutation([9, 7, 2])))] = False
+    grid = Voxels(np.zeros(3), 1.0, solid)
+    linked = links(grid)
+    places = grid.places(linked.nodes)
+    start = int(np.argmin(places.sum(axis=1)))
+    u = arrival(linked, 1.0, np.array([start]), np.zeros(1))
+    pairs = np.vstack([np.stack([np.arange(len(places)), side], axis=1) for side in linked.beside])
+    pairs = pairs[pairs[:, 1] < len(places)]
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(places),) * 2)
+    steps = dijkstra(graph.tocsr(), indices=start)
+    assert (np.isfinite(u) == np.isfinite(steps)).all()
+    reached = np.isfinite(u)
+    assert (u[reached] >= np.linalg.norm(places - places[start], axis=1)[reached] - 1e-9).all()
+    assert (u[reached] <= steps[reached] + 1e-9).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_levels_are_closed_surfaces_of_the_right_area(seed):
+    middle = np.random.default_rng(seed).uniform(-0.5, 0.5, 3)
+    axis = np.arange(-14.0, 14.5, 0.7)
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    cubes = Cubes(np.linalg.norm(np.stack([x, y, z], axis=-1) - middle, axis=-1), np.full(3, -14.0), 0.7)
+    mesh = cubes.level(9.0)
+    edges = Edges(mesh.faces)
+    assert (edges.count == 2).all()
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    assert 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() == pytest.approx(4.0 * np.pi * 81.0, rel=0.01)
+    assert (np.cross(b - a, c - a) * (a - middle)).sum() / 6.0 == pytest.approx(4.0 / 3.0 * np.pi * 729.0, rel=0.01)
+
+
+def test_a_field_is_carried_on_as_it_goes():
+    grid = _ball()
+    linked = links(grid)
+    slope = np.array([0.3, -0.5, 0.8])
+    field = carried_on(grid, linked, grid.places(linked.nodes) @ slope)
+    known = np.flatnonzero(~np.isnan(field.ravel()))
+    assert len(known) > 1.3 * len(linked.nodes)
+    assert np.abs(field.ravel()[known] - grid.places(known) @ slope).max() < 1e-9
+
+
+def _sheet(wrap, width=30.0, height=20.0, edge=1.0, seed=0):
+    """A mesh of a rectangle brought onto a surface, and its picture."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(0.0, width, edge), np.arange(0.0, height, edge), indexing="ij")
+    flat = np.stack([x.ravel(), y.ravel()], axis=1) + rng.uniform(-0.3, 0.3, (x.size, 2)) * edge
+    n, m = x.shape
+    corner = (np.arange(n - 1)[:, None] * m + np.arange(m - 1)).ravel()
+    faces = np.vstack([np.stack([corner, corner + m, corner + m + 1], 1), np.stack([corner, corner + m + 1, corner + 1], 1)])
+    return Mesh(wrap(flat), faces.astype(np.intp)), flat
+
+
+def _cylinder(flat, radius=12.0):
+    return np.stack([radius * np.sin(flat[:, 0] / radius), flat[:, 1], radius * np.cos(flat[:, 0] / radius)], axis=1)
+
+
+def _sphere(flat, radius=25.0):
+    u, v = flat.T / radius
+    return radius * np.stack([np.sin(u) * np.cos(v), np.sin(v), np.cos(u) * np.cos(v)], axis=1)
+
+
+def test_what_can_be_laid_flat_is_without_distortion():
+    mesh, flat = _sheet(_cylinder)
+    found = flattened(mesh)
+    assert found.least.min() > 0.99 and found.most.max() < 1.01
+    away = np.linalg.norm(found.points[:, None] - found.points[::97], axis=2)
+    true = np.linalg.norm(flat[:, None] - flat[::97], axis=2)
+    assert np.abs(away - true).max() < 0.05
+    assert (stretched(mesh, found.points)[0] > 0.0).all()  # none turned over
+
+
+def test_what_cannot_is_stretched_no_more_than_it_must():
+    mesh, _ = _sheet(_sphere)
+    found = flattened(mesh)
+    half = 0.5 * np.hypot(30.0, 20.0) / 25.0  # angle from the middle to a corner
+    assert found.least.min() > np.sin(half) / half - 0.05 and found.most.max() < 1.05 * half / np.sin(half)
+
+
+@pytest.mark.parametrize("surface", [_cylinder, _sphere])
+def test_places_of_a_picture_come_back(surface):
+    mesh, _ = _sheet(surface)
+    chart = Chart(mesh, turned(mesh, flattened(mesh).points))
+    rng = np.random.default_rng(3)
+    share = rng.dirichlet(np.ones(3), 2000)
+    face = rng.integers(0, len(mesh.faces), 2000)
+    flat = np.einsum("nk,nkc->nc", share, chart.flat[mesh.faces[face]])
+    space = np.einsum("nk,nkc->nc", share, mesh.vertices[mesh.faces[face]])
+    assert np.abs(chart.wrap(flat) - space).max() < 1e-9
+    outside = chart.wrap(chart.flat[mesh.border_edges].mean(axis=1) + 0.0)
+    assert np.isfinite(outside).all()
+    assert np.isfinite(chart.wrap(np.array([[500.0, -300.0]]))).all()

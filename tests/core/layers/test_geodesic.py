@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Layers by the way through a solid: each within a band of the layer height of the one below, the whole solid in them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from freecad_am.core.geometry.solid_mesh import SolidMesh
+from freecad_am.core.layers.geodesic import field
+
+from .shapes import tee
+
+HEIGHT = 2.0
+
+
+@pytest.fixture(scope="module")
+def through_tee():
+    vertices, triangles = tee()
+    start = np.flatnonzero((vertices[triangles][:, :, 2] == 0.0).all(axis=1))
+    return field(SolidMesh(vertices, triangles), start, 0.8)
+
+
+@pytest.fixture(scope="module")
+def layers(through_tee):
+    """Places (n, 3) spread over each layer, and its area."""
+    found = []
+    for number in range(int(through_tee.top / HEIGHT + 0.5)):
+        places, area = [], 0.0
+        for piece in through_tee.pieces((number + 0.5) * HEIGHT):
+            for region in piece.regions:
+                area += region.area
+                ring = region.rings()[0]
+                axes = [np.arange(low + 0.15, high, 0.3) for low, high in zip(ring.min(axis=0), ring.max(axis=0))]
+                flat = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+                places.append(piece.chart.wrap(flat[region.contains(flat)]))
+        found.append((through_tee.onto(np.vstack(places), number * HEIGHT), area))
+    return found
+
+
+def _way(points):
+    """The length (n,) of the shortest way from z = 0 to points (n, 3) of the tee: up, then round a corner of the stem."""
+    x, z = points[:, 0], points[:, 2]
+    aside = np.maximum(np.maximum(-x, x - 10.0), 0.0)
+    return np.where(aside > 0.0, 20.0 + np.hypot(aside, z - 20.0), z)
+
+
+def test_points_lie_as_far_through_the_solid_as_their_layer_says(layers):
+    for number, (points, _) in enumerate(layers):
+        assert np.abs(_way(points) - number * HEIGHT).max() < 0.9, number
+
+
+def test_each_layer_lies_on_the_one_below(layers):
+    ratios = []
+    for (below, _), (points, _) in zip(layers, layers[1:]):
+        ratios.append(cKDTree(below).query(points)[0] / HEIGHT)
+    ratio = np.concatenate(ratios)
+    assert ratio.min() > 0.6 and ratio.max() < 1.2
+    assert ((ratio > 0.8) & (ratio < 1.2)).mean() > 0.95
+
+
+def test_areas_are_those_of_the_fans(layers):
+    for number, (_, area) in enumerate(layers):
+        way = (number + 0.5) * HEIGHT
+        if way < 20.0:
+            exact = 200.0
+        elif way < 30.0:
+            exact = 200.0 + 2.0 * 20.0 * 0.5 * np.pi * (way - 20.0)
+        else:
+            continue
+        assert area == pytest.approx(exact, rel=0.05), number
+    assert sum(area for _, area in layers) * HEIGHT == pytest.approx(13000.0, rel=0.03)
+
+
+def test_directions_point_from_layer_to_layer(through_tee, layers):
+    below, points = layers[13][0], layers[14][0]
+    step = points - below[cKDTree(below).query(points)[1]]
+    step /= np.linalg.norm(step, axis=1, keepdims=True)
+    cosine = (through_tee.directions(points) * step).sum(axis=1)
+    assert np.quantile(cosine, 0.05) > np.cos(np.radians(25.0))
+
+
+def test_what_no_way_leads_to_is_told():
+    vertices, triangles = tee()
+    apart = np.vstack([vertices, vertices + [100.0, 0.0, 0.0]])
+    solid = SolidMesh(apart, np.vstack([triangles, triangles + len(vertices)]))
+    start = np.flatnonzero((vertices[triangles][:, :, 2] == 0.0).all(axis=1))
+    found = field(solid, start, 1.5)
+    assert found.lost == pytest.approx(13000.0, rel=0.05)
+    with pytest.raises(ValueError):
+        field(SolidMesh(vertices, triangles), np.zeros(0, dtype=np.intp), 1.5)
