@@ -52,8 +52,7 @@ def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
         better = found < u[active] - SETTLED * step
         u[active[better]] = found[better]
         active = _around(linked, active[better], fixed)
-    sharp: Array = _sharpened(linked, step, u, fixed)[:-1]
-    return sharp
+    return _sharpened(linked, step, u, fixed)[:-1]
 
 
 def _around(linked: Links, nodes: Index, fixed: Mask) -> Index:

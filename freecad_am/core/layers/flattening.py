@@ -2,7 +2,7 @@
 """A curved piece of a surface laid flat with as little distortion as there can be.
 
 First conformally, with free borders (least squares conformal maps, Levy 2002): exact for whatever can be laid flat without
-distortion. What cannot is made as rigid as possible from there ("A local/global approach to mesh parameterization", Liu 2008).
+distortion. What cannot is made as rigid as possible from there (Liu 2008, a local/global approach to mesh parameterization).
 """
 
 from __future__ import annotations
