@@ -101,8 +101,8 @@ def _looked_at(toolpath: CoreToolpath, wall: Any, sources: Sequence[Taken], stra
     """The toolpath with whether it lies on the shapes that it was made for; nobody looks where these have no faces."""
     progress.report(LOOKED, "looking whether the deposit lies on the part")
     places = on_part.places(toolpath)
-    if isinstance(strategy, SolidParameters):  # where the part was cut, above the plane that beads of the layer lie on
-        up = strategy.share_of_cut * strategy.layer_height * wall.groups[0].base.frame[:3, 2]
+    if isinstance(strategy, SolidParameters):  # where the part was cut, above the surface that beads of the layer lie on
+        up = strategy.share_of_cut * strategy.layer_height * places.build
         places = places._replace(points=places.points + up)
     limit = on_part.allowed(toolpath, getattr(strategy, "margin", 0.0))
     if isinstance(wall, SolidsOnHub):

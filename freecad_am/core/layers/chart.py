@@ -33,10 +33,20 @@ class Chart:
 
     def wrap(self, points: Array) -> Array:
         """The places (n, 3) in the part of points (n, 2) of the picture; beside it the nearest triangle goes on."""
-        found = self.find(points)
-        corners = self.mesh.vertices[self.mesh.faces[found.triangle]]
-        wrapped: Array = np.einsum("nk,nkc->nc", found.share, corners)
+        return self.at(self.find(points))
+
+    def at(self, place: Place) -> Array:
+        """Where in the part (n, 3) places of the picture are."""
+        wrapped: Array = np.einsum("nk,nkc->nc", place.share, self.mesh.vertices[self.mesh.faces[place.triangle]])
         return wrapped
+
+    def heading(self, place: Place) -> Array:
+        """The way (n, 3) in the part that the picture's x runs there, not of unit length."""
+        corners, flat = (of[self.mesh.faces[place.triangle]] for of in (self.mesh.vertices, self.flat))
+        one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
+        way: Array = b[:, 1, None] * one - a[:, 1, None] * other
+        return way
 
     def find(self, points: Array) -> Place:
         """The triangles of points (n, 2), and where in them."""

@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Group, middle_azimuth
+from ..geometry.surroundings import Body
 from ..parameters.strategy import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.equidistant import Facets
 from ..slicing.laid_flat import cut
-from . import planes, rotary
+from . import curved, planes, rotary
 from .plane_layer import PlaneLayer
 from .surface import Array, Slice
 
@@ -25,7 +26,7 @@ class Piece(NamedTuple):
     slices: Iterator[Slice]
 
 
-def pieces(group: Group, strategy: FilledParameters) -> list[Piece]:
+def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> list[Piece]:
     """All solids of a group: on a cylinder or cone each by itself, on a plane those that are fused as one."""
     surface = group.base.surface
     if isinstance(surface, Developable):
@@ -35,6 +36,8 @@ def pieces(group: Group, strategy: FilledParameters) -> list[Piece]:
             for body in group.bodies
         ]
     assert isinstance(strategy, SolidParameters)
+    if strategy.layers != "planes":
+        return [Piece(group.bodies[0].name, 0.0, curved.slices(group.base, group.bodies, ground, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
     return [
         Piece(lot[0].name if len(lot) == 1 else f"{len(lot)} solids", 0.0, planes.slices(group.base, lot, strategy))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -42,10 +42,9 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class GeodesicField:
-    """The distance u mm through a solid from its start. cubes: u on a grid; depth: how deep inside the solid, mm, on the
-    nodes of the same; way: its gradient, smoothed; top: the largest distance; lost: volume (mm3) that no way leads to."""
+    """The distance u mm through solids from their start. cubes: u on a grid; depth: how deep inside them, mm, on the nodes of
+    the same; way: its gradient, smoothed; top: the largest distance; lost: share of the solids that no way leads to."""
 
-    solid: SolidMesh
     grid: Voxels
     cubes: Cubes
     depth: Cubes
@@ -102,43 +101,55 @@ class _Half(NamedTuple):
     inside: Array
 
 
-def field(solid: SolidMesh, start: Index, step: float) -> GeodesicField:
-    """The distance from some triangles (k,) of a solid's boundary, on a grid of `step` mm.
-
-    ValueError where no node of the grid is near the start.
-    """
-    search = Search(solid, 2.0 * step)
-    grid = _rounded_up(voxels(solid.vertices, solid.triangles, step), search)
+def field(solids: Sequence[SolidMesh], start: Array, step: float, through: bool = True) -> GeodesicField:
+    """The distance through solids, which may touch or overlap, from triangles (k, 3, 3) where they stand, on a grid of `step`
+    mm; through=False: straight from there. ValueError where no node of the grid is near the start."""
+    searches = [Search(one, 2.0 * step) for one in solids]
+    first = np.cumsum([0, *(len(one.vertices) for one in solids)])
+    whole = np.vstack([one.triangles + begin for one, begin in zip(solids, first)])
+    grid = _rounded_up(voxels(np.vstack([one.vertices for one in solids]), whole, step), searches)
     linked = links(grid)
-    places = grid.places(linked.nodes)
-    seeds, values = _seeds(solid, start, places, step)
+    seeds, values = _seeds(start, grid.places(linked.nodes), step)
     if not len(seeds):
         raise ValueError("no node of the grid is near the start")
-    u = arrival(linked, step, seeds, values)
+    u = arrival(linked, step, seeds, values) if through else _away(start, grid.places(linked.nodes), step)
     reached = np.isfinite(u)
     way = _smoothed(linked, gradients(linked, np.where(reached, u, np.nan), step))
     carried = carried_on(grid, linked, u)
+    ways = [Cubes(carried_on(grid, linked, np.where(reached, one, np.inf)), grid.origin, step) for one in way.T]
     return GeodesicField(
-        solid, grid, Cubes(carried, grid.origin, step), Cubes(_depths(grid, search, carried), grid.origin, step),
-        tuple(Cubes(carried_on(grid, linked, np.where(reached, one, np.inf)), grid.origin, step) for one in way.T),  # type: ignore[arg-type]
-        float(u[reached].max()), float((~reached).mean()) * solid.volume,
+        grid, Cubes(carried, grid.origin, step), Cubes(_depths(grid, searches, carried), grid.origin, step),
+        (ways[0], ways[1], ways[2]), float(u[reached].max()), float((~reached).mean()),
     )
 
 
-def _seeds(solid: SolidMesh, start: Index, places: Array, step: float) -> tuple[Index, Array]:
+def _seeds(start: Array, places: Array, step: float) -> tuple[Index, Array]:
     """Nodes near the start and their distances from it."""
-    chosen = SolidMesh(solid.vertices, solid.triangles[start])
-    corners = solid.vertices[chosen.triangles]
-    low, high = corners.min(axis=(0, 1)) - NEAR * step, corners.max(axis=(0, 1)) + NEAR * step
+    if not len(start):
+        return np.zeros(0, dtype=np.intp), np.zeros(0)
+    low, high = start.min(axis=(0, 1)) - NEAR * step, start.max(axis=(0, 1)) + NEAR * step
     near = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
     if not len(near):
         return near, np.zeros(0)
-    away = np.abs(Search(chosen, 2.0 * step).signed(places[near])[0])
+    away = _away(start, places[near], step)
     close = away < NEAR * step
     return near[close], away[close]
 
 
-def _rounded_up(grid: Voxels, search: Search) -> Voxels:
+def _away(start: Array, places: Array, step: float) -> Array:
+    """How far (n,) mm places are from the start."""
+    chosen = SolidMesh(start.reshape(-1, 3), np.arange(3 * len(start)).reshape(-1, 3))
+    away: Array = np.abs(Search(chosen, 2.0 * step).signed(places)[0])
+    return away
+
+
+def _outside(searches: Sequence[Search], points: Array) -> Array:
+    """How far (n,) mm points are outside of all solids, below 0 inside of one."""
+    found: Array = np.min([search.signed(points)[0] for search in searches], axis=0)
+    return found
+
+
+def _rounded_up(grid: Voxels, searches: Sequence[Search]) -> Voxels:
     """The grid with the nodes that lie less than half a step outside: corners that ways lead round are then, on the whole,
     where they are, not up to a step farther in."""
     wide = grid.solid.copy()
@@ -146,12 +157,12 @@ def _rounded_up(grid: Voxels, search: Search) -> Voxels:
         wide |= np.roll(grid.solid, 1, axis) | np.roll(grid.solid, -1, axis)
     nodes = np.flatnonzero(wide & ~grid.solid)
     solid = grid.solid.ravel().copy()
-    solid[nodes] = search.signed(grid.places(nodes))[0] < 0.5 * grid.step
+    solid[nodes] = _outside(searches, grid.places(nodes)) < 0.5 * grid.step
     return Voxels(grid.origin, grid.step, solid.reshape(grid.solid.shape))
 
 
-def _depths(grid: Voxels, search: Search, carried: Array) -> Array:
-    """How deep (nx, ny, nz) mm nodes lie in the solid, below 0 outside; no more than DEEP steps is told, nan where the field
+def _depths(grid: Voxels, searches: Sequence[Search], carried: Array) -> Array:
+    """How deep (nx, ny, nz) mm nodes lie in the solids, below 0 outside; no more than DEEP steps is told, nan where the field
     is not known."""
     depth = np.where(np.isnan(carried), np.nan, DEEP * grid.step).ravel()
     inner = grid.solid.copy()
@@ -161,7 +172,7 @@ def _depths(grid: Voxels, search: Search, carried: Array) -> Array:
             & inner[1:-1, 1:-1, :-2] & inner[1:-1, 1:-1, 2:]
         )
     asked = np.flatnonzero(~np.isnan(depth) & ~inner.ravel())
-    depth[asked] = -search.signed(grid.places(asked))[0]
+    depth[asked] = -_outside(searches, grid.places(asked))
     return depth.reshape(grid.solid.shape)
 
 

@@ -253,7 +253,9 @@ class SolidParameters(FilledParameters):
     """How any solid is cut by planes and filled. mm and rad."""
 
     layers: str = f.parameter(
-        "planes", f.CHOICE, "What the layers are: parallel planes.", choices=("planes",)
+        "planes", f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from where it "
+        "stands, so that nothing needs support (geodesic); or at equal distances straight from there (offset).",
+        choices=("planes", "geodesic", "offset"),
     )
     direction: str = f.parameter(
         "0 0 1", f.TEXT, "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "

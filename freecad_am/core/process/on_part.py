@@ -21,9 +21,10 @@ ROUNDED = 0.02  # mm that a wall may be off its faces beside the chord error: ta
 
 
 class Places(NamedTuple):
-    """points (n, 3) mm, and where they are: layer, bead, point (n,)."""
+    """points (n, 3) mm, unit build directions (n, 3), and where they are: layer, bead, point (n,)."""
 
     points: Array
+    build: Array
     layer: Index
     bead: Index
     point: Index
@@ -37,9 +38,9 @@ def places(toolpath: Toolpath) -> Places:
     step = max(1, int(np.ceil(size.sum() / MOST)))
     chosen = np.unique(np.concatenate([start, start + size // 2, start + size - 1, np.arange(0, size.sum(), step)]))
     of = np.searchsorted(start, chosen, side="right") - 1
-    points = np.concatenate([bead.points for _, _, bead in beads])[chosen]
+    points, build = (np.concatenate(every)[chosen] for every in zip(*((bead.points, bead.build) for _, _, bead in beads)))
     layer, bead = (np.array([entry[k] for entry in beads])[of] for k in (0, 1))
-    return Places(points, layer, bead, chosen - start[of])
+    return Places(points, build, layer, bead, chosen - start[of])
 
 
 def allowed(toolpath: Toolpath, margin: float = 0.0) -> float:

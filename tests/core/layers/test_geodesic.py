@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from freecad_am.core.geometry.solid_mesh import SolidMesh
 from freecad_am.core.layers.geodesic import field
 
-from .shapes import tee
+from .shapes import box, tee
 
 HEIGHT = 2.0
 
@@ -18,8 +18,12 @@ HEIGHT = 2.0
 @pytest.fixture(scope="module")
 def through_tee():
     vertices, triangles = tee()
-    start = np.flatnonzero((vertices[triangles][:, :, 2] == 0.0).all(axis=1))
-    return field(SolidMesh(vertices, triangles), start, 0.8)
+    return field([SolidMesh(vertices, triangles)], _bottom(vertices, triangles), 0.8)
+
+
+def _bottom(vertices, triangles):
+    corners = vertices[triangles]
+    return corners[(corners[:, :, 2] == 0.0).all(axis=1)]
 
 
 @pytest.fixture(scope="module")
@@ -83,10 +87,16 @@ def test_directions_point_from_layer_to_layer(through_tee, layers):
 
 def test_what_no_way_leads_to_is_told():
     vertices, triangles = tee()
-    apart = np.vstack([vertices, vertices + [100.0, 0.0, 0.0]])
-    solid = SolidMesh(apart, np.vstack([triangles, triangles + len(vertices)]))
-    start = np.flatnonzero((vertices[triangles][:, :, 2] == 0.0).all(axis=1))
-    found = field(solid, start, 1.5)
-    assert found.lost == pytest.approx(13000.0, rel=0.05)
+    solids = [SolidMesh(vertices + [x, 0.0, 0.0], triangles) for x in (0.0, 100.0)]
+    assert field(solids, _bottom(vertices, triangles), 1.5).lost == pytest.approx(0.5, abs=0.01)
     with pytest.raises(ValueError):
-        field(SolidMesh(vertices, triangles), np.zeros(0, dtype=np.intp), 1.5)
+        field(solids, np.zeros((0, 3, 3)), 1.5)
+
+
+def test_solids_that_touch_are_one():
+    low, triangles = box([20.0, 10.0, 6.0])
+    found = field([SolidMesh(low, triangles), SolidMesh(low + [0.0, 0.0, 6.0], triangles)], _bottom(low, triangles), 0.7)
+    for distance in (3.0, 6.0, 9.0):
+        pieces = list(found.pieces(distance))
+        assert len(pieces) == 1 and len(pieces[0].regions) == 1
+        assert pieces[0].regions[0].area == pytest.approx(200.0, rel=0.01)

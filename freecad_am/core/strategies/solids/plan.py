@@ -45,7 +45,7 @@ def plan(
     InputError APEX_INSIDE, TOO_FAR_ROUND, BEAD_SPACING, NOTHING_TO_DEPOSIT, NOT_FOR_FAMILY, TOO_MANY, InfeasibleError
     THIN_REGION.
     """
-    _refuse_mode(solids, build)
+    _refuse_mode(solids, strategy, build)
     strategy = spaced(strategy, process)
     width = None if strategy.bead_overlap is None else process.bead_width
     size.refuse_absurd(size.of_solids(solids, strategy, strategy.bead_spacing), strategy, width)
@@ -56,7 +56,7 @@ def plan(
     mended: list[Issue] = []
     covers: list[Cover] = []
     found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
-             for number, piece in enumerate(pieces(one, strategy))]
+             for number, piece in enumerate(pieces(one, solids.surroundings, strategy))]
     planes, at = on_planes(solids), None
     for done, (group, base, number, piece) in enumerate(found):
         for layer in piece.slices:
@@ -70,7 +70,8 @@ def plan(
             ranks = [curve.ring for curve in beads.curves]
             if planes:
                 order = island_by_island([one.bead for one in here], beads.islands, at)
-                ranks = (-number * FEWER - np.argsort(order)).tolist()
+                before = sum(one.layer == layer.layer for one in laid[-FEWER:])  # of other pieces of a curved layer
+                ranks = (-number * FEWER - before - np.argsort(order)).tolist()
                 at = here[order[-1]].bead.points[-1] if order else at
             laid += [Laid(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
     if not laid:
@@ -108,7 +109,12 @@ def _bead(
     return rolled(curve, layer.surface, base, strategy, build, process, model, lean)
 
 
-def _refuse_mode(solids: SolidsOnHub, build: BuildDirectionParameters) -> None:
+def _refuse_mode(solids: SolidsOnHub, strategy: FilledParameters, build: BuildDirectionParameters) -> None:
+    if getattr(strategy, "layers", "planes") != "planes" and build.mode != "local":
+        raise InputError(
+            "NOT_FOR_FAMILY", "build_direction.mode", f"{build.mode} is not for curved layers, which grow along their "
+            "normals; use local",
+        )
     if on_planes(solids):
         if build.mode == "symmetry-plane":
             raise InputError(
