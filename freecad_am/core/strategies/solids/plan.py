@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -59,6 +60,7 @@ def plan(
              for number, piece in enumerate(pieces(one, solids.surroundings, strategy))]
     planes, at = on_planes(solids), None
     for done, (group, base, number, piece) in enumerate(found):
+        before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
         for layer in piece.slices:
             mended += layer.issues
             progress(done / len(found), f"{piece.name} layer {layer.layer}")
@@ -70,8 +72,8 @@ def plan(
             ranks = [curve.ring for curve in beads.curves]
             if planes:
                 order = island_by_island([one.bead for one in here], beads.islands, at)
-                before = sum(one.layer == layer.layer for one in laid[-FEWER:])  # of other pieces of a curved layer
-                ranks = (-number * FEWER - before - np.argsort(order)).tolist()
+                ranks = (-number * FEWER - before[layer.layer] - np.argsort(order)).tolist()
+                before[layer.layer] += len(here)
                 at = here[order[-1]].bead.points[-1] if order else at
             laid += [Laid(group, number, layer.layer, rank, one.bead) for rank, one in zip(ranks, here, strict=True)]
     if not laid:
