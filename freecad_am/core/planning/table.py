@@ -157,8 +157,8 @@ def _bead(task: _Task, bead: Bead, before: Array | None, place: tuple[int, int])
         off = (away > task.chord_error + ROUNDING) | ((leaning > STRAY) & (task.lock is None))
         if not off.any():
             return _Run(bead, axes, _limit_findings(cell, axes, place))
-        bead = bead.halved(np.flatnonzero(off))
-    return _Run(bead, axes, [Issue(
+        looked_at, bead = bead, bead.halved(np.flatnonzero(off))
+    return _Run(looked_at, axes, [Issue(
         ERROR, "NOT_STRAIGHT", f"the axes leave the bead by {away.max():.3g} mm, its direction by "
         f"{math.degrees(leaning.max()):.3g} deg between two points however many are added: near a pole; tilt away from it",
         *place, int(np.argmax(off)) + 1,
