@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writes the parts of the examples beside this script (Chalvin 2020, eqs. 20 to 22; Chalvin 2019, eq. 1), in `walls`,
-in `thruster` and `rotor` (after Dai 2020), and a bracket.
+in `thruster` and `rotor` (after Dai 2020), a bracket and a Y.
 
 Each wall is a surface, so that the wall deposited has exactly the radius of the equation.
 Run it in any Python that finds FreeCAD: python3 resources/examples/make_examples.py
@@ -15,6 +15,7 @@ import shells_on_parts
 import step_files
 import thruster_parts
 import tubes_on_pipes
+import wye_part
 
 WALLS = step_files.HERE / "walls"
 THRUSTER = step_files.HERE / "thruster"
@@ -22,6 +23,7 @@ ROTOR = step_files.HERE / "rotor"
 PLAIN = (
     parts_of_revolution.hemisphere, parts_of_revolution.laval_nozzle, parts_of_revolution.intake_funnel,
     tubes_on_pipes.tube_on_pipe, tubes_on_pipes.pipe, bracket_part.bracket,
+    wye_part.wye,
 )
 ON_PARTS = {
     "wide-tube-on-pipe": tubes_on_pipes.wide_tube_on_pipe,

@@ -20,7 +20,7 @@ from .surface import Array, Slice
 
 FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
 MOST = 2_000_000  # nodes, where that keeps below COARSE
-STANDING = 0.25  # layer heights from the plane or the substrate; facets so near to it stand there
+STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
 LOST = 0.002  # share of a part that no way need lead to: rounding at corners
 TOLD = 0.05  # distortion of a piece that is told
 

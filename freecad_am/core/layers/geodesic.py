@@ -132,15 +132,15 @@ def _seeds(start: Array, places: Array, step: float) -> tuple[Index, Array]:
     if not len(near):
         return near, np.zeros(0)
     away = _away(start, places[near], step)
-    close = away < NEAR * step
+    close = np.abs(away) < NEAR * step
     return near[close], away[close]
 
 
 def _away(start: Array, places: Array, step: float) -> Array:
-    """How far (n,) mm places are from the start."""
+    """How far (n,) mm places are from the start; near it, less than 0 on the side that is not the solid's."""
     chosen = SolidMesh(start.reshape(-1, 3), np.arange(3 * len(start)).reshape(-1, 3))
-    away: Array = np.abs(Search(chosen, 2.0 * step).signed(places)[0])
-    return away
+    away = -Search(chosen, 2.0 * step).signed(places)[0]
+    return np.where(np.abs(away) < NEAR * step, away, np.abs(away))
 
 
 def _outside(searches: Sequence[Search], points: Array) -> Array:

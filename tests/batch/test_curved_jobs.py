@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs in curved layers: read from waypoints.csv, measured with OpenCASCADE and by distances between points alone."""
+
+import csv
+import json
+
+import FreeCAD
+import numpy as np
+import Part
+import pytest
+from scipy.spatial import cKDTree
+
+HEIGHT, SPACING = 2.5, 4.0
+JOB = """\
+version: 1
+name: part
+part: {{file: part.step}}
+strategy: {{kind: solid, layers: {layers}, layer_height: {height} mm, chord_error: 0.2 mm, bead_spacing: 4 mm{more}}}
+process: {{bead_width: 4 mm}}
+build_direction: {{clearance: none{mode}}}
+"""
+UP = FreeCAD.Vector(0, 0, 1)
+
+
+def tee():
+    """A stem under a beam that stands out by 15 mm to either side."""
+    return Part.makeBox(12, 12, 16).fuse(Part.makeBox(42, 12, 12, FreeCAD.Vector(-15, 0, 15))).removeSplitter()
+
+
+def wye():
+    arms = [Part.makeCylinder(6, 26, FreeCAD.Vector(0, 0, 12), FreeCAD.Vector(way, 0, 1)) for way in (1, -1)]
+    return Part.makeCylinder(7, 18).fuse(arms).removeSplitter()
+
+
+def mushroom():
+    cap = Part.makeSphere(16, FreeCAD.Vector(0, 0, 20), UP, 0, 90, 360)
+    return Part.makeCylinder(6, 20.5).fuse(cap).removeSplitter()
+
+
+@pytest.fixture
+def planned(workshop):
+    def run(shape, layers="geodesic", height=HEIGHT, more="", mode=""):
+        shape.exportStep(str(workshop.folder / "part.step"))
+        job = workshop.write_job(JOB.format(layers=layers, height=height, more=more, mode=mode))
+        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        if done.status:
+            return done, None, None
+        out = workshop.folder / "out"
+        with open(next(out.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+        return done, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
+
+    return run
+
+
+def column(rows, *names):
+    return np.array([[float(row[name]) for name in names] for row in rows])
+
+
+def places(rows, step=0.5):
+    """Places (n, 3) along the beads no more than `step` mm apart, their layers and build directions."""
+    points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
+    layer = np.array([int(row["layer"]) for row in rows])
+    same = np.array([row["bead"] for row in rows])
+    found = []
+    for k in range(1, len(rows)):
+        if layer[k] == layer[k - 1] and same[k] == same[k - 1]:
+            count = max(int(np.ceil(np.linalg.norm(points[k] - points[k - 1]) / step)), 1)
+            share = np.linspace(0.0, 1.0, count + 1)[:, None]
+            way = (1.0 - share) * build[k - 1] + share * build[k]
+            found.append(np.column_stack([(1.0 - share) * points[k - 1] + share * points[k],
+                                          way / np.linalg.norm(way, axis=1)[:, None], np.full(count + 1, layer[k])]))
+    whole = np.vstack(found)
+    return whole[:, :3], whole[:, 3:6], whole[:, 6].astype(int)
+
+
+@pytest.mark.parametrize("shape", [tee, wye, mushroom])
+def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(planned, shape):
+    part = shape()
+    done, report, rows = planned(part)
+    assert done.status == 0, done.err
+    assert not [issue for issue in report["issues"] if issue["code"] in ("UNSUPPORTED", "OFF_PART", "OPEN_GAP")]
+    points, build, layer = places(rows)
+    assert np.abs(points[layer == 0][:, 2]).max() < 0.01
+    for number in range(1, layer.max() + 1):
+        below = cKDTree(points[layer == number - 1])
+        away = below.query(points[layer == number] - HEIGHT * build[layer == number])[0]
+        assert away.max() < 0.6 * SPACING, number  # beads below lie a spacing apart, half a one beside at most
+    lifted = points[::7] + 0.5 * HEIGHT * build[::7]
+    solid = part.Solids[0]
+    outside = [p for p in lifted if not solid.isInside(FreeCAD.Vector(*p), 0.3, True)]
+    assert len(outside) == 0
+    volume = report["totals"]["volume_cm3"] * 1000.0
+    assert volume == pytest.approx(part.Volume, rel=0.12)  # cut in steps of a whole layer, arms of 12 mm in beads of 4
+
+
+def test_layers_are_as_far_apart_everywhere_as_asked_for(planned):
+    """Where a bead of the tee runs over one of the layer below, no farther to a side than half a layer height."""
+    _, _, rows = planned(tee(), height=2.0)
+    points, build, layer = places(rows, 0.3)
+    ratio = []
+    for number in range(1, layer.max() + 1):
+        here, below = layer == number, layer == number - 1
+        tree = cKDTree(points[below])
+        near = tree.query(points[here] - 2.0 * build[here], k=1)
+        step = points[here] - points[below][near[1]]
+        along = (step * build[below][near[1]]).sum(axis=1)
+        ratio.append(along[near[0] < 1.0] / 2.0)
+    ratio = np.concatenate(ratio)
+    assert ratio.min() > 0.6 and ratio.max() < 1.4
+    assert ((ratio > 0.8) & (ratio < 1.2)).mean() > 0.95
+
+
+def test_offset_layers_have_the_shape_of_what_they_stand_on(planned, workshop):
+    dome = Part.makeSphere(40)
+    boss = Part.makeCylinder(12, 60).cut(dome)
+    dome.exportStep(str(workshop.folder / "dome.step"))
+    done, _, rows = planned(boss, "offset", 2.0, more="}\nsubstrate: {file: dome.step")
+    assert done.status == 0, done.err
+    points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
+    assert layer.max() >= 8
+    assert np.abs(np.linalg.norm(points, axis=1) - 40.0 - 2.0 * layer).max() < 0.25
+    lean = (column(rows, "bx", "by", "bz") * points).sum(axis=1) / np.linalg.norm(points, axis=1)
+    assert np.degrees(np.arccos(np.clip(lean, -1.0, 1.0))).max() < 5.0
+
+
+@pytest.mark.parametrize(("make", "height", "mode", "code", "word"), [
+    (lambda: Part.makeCone(0, 15, 30), 2.0, "", "NOT_STANDING", "turn the part"),
+    (lambda: Part.Compound([Part.makeBox(20, 20, 10), Part.makeBox(20, 20, 10, FreeCAD.Vector(0, 0, 30))]), 2.0, "",
+     "NOT_CONNECTED", " % of it"),
+    (lambda: Part.makeBox(400, 400, 400), 1.0, "", "TOO_FINE", "give at least"),
+    (tee, 2.0, ", mode: fixed", "NOT_FOR_FAMILY", "use local"),
+    (lambda: Part.makeBox(30, 30, 0.1), 2.0, "", "", ""),
+])
+def test_what_cannot_be_cut_is_told(planned, make, height, mode, code, word):
+    done, report, _ = planned(make(), height=height, mode=mode)
+    if code:
+        assert done.status == 2 and report is None
+        assert f"error[{code}]" in done.err and word in done.err and done.err.count("\n") == 1, done.err
+    else:
+        assert done.status in (0, 2) and "INTERNAL" not in done.err, done.err
