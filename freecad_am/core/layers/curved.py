@@ -53,14 +53,14 @@ def _field(
         found = field(solids, start, step, through=strategy.layers == "geodesic")
     except ValueError:
         raise InputError(
-            "NOT_STANDING", name, "no face of it lies on the plane through its lowest place along strategy.direction, or on "
-            "the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a substrate "
-            "that it touches",
+            "NOT_STANDING", name, "no face of it lies on the plane through its lowest place along strategy.direction, or "
+            "on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a "
+            "substrate that it touches",
         ) from None
     if found.lost > LOST:
         raise InputError(
-            "NOT_CONNECTED", name, f"{100.0 * found.lost:.3g} % of it hang together with nothing that stands on the platform or "
-            "the substrate; deposit these by themselves, or set strategy.direction",
+            "NOT_CONNECTED", name, f"{100.0 * found.lost:.3g} % of it hang together with nothing that stands on the platform "
+            "or the substrate; deposit these by themselves, or set strategy.direction",
         )
     return found
 
@@ -71,8 +71,8 @@ def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     step = max(FINE * height, (volume / MOST) ** (1.0 / 3.0))
     if step > COARSE * height:
         raise InputError(
-            "TOO_FINE", "strategy.layer_height", f"{height:g} mm is too fine for curved layers of {name}, {volume / 1000.0:.4g} "
-            f"cm3; give at least {step / COARSE:.2g} mm, or layers: planes",
+            "TOO_FINE", "strategy.layer_height", f"{height:g} mm is too fine for curved layers of {name}, "
+            f"{volume / 1000.0:.4g} cm3; give at least {step / COARSE:.2g} mm, or layers: planes",
         )
     return step
 
@@ -95,6 +95,6 @@ def _standing(solid: SolidMesh, ground: Sequence[Array], near: float) -> Array:
 def _stretched(piece: Piece, layer: int) -> Issue:
     share = 100.0 * piece.stretch
     return Issue(
-        NOTE if piece.stretch <= 3.0 * TOLD else WARNING, "DISTORTED", f"a curved layer cannot be laid flat without distortion: "
-        f"beads are up to {share:.2g} % nearer together or farther apart than the bead spacing", layer,
+        NOTE if piece.stretch <= 3.0 * TOLD else WARNING, "DISTORTED", "a curved layer cannot be laid flat without "
+        f"distortion: beads are up to {share:.2g} % nearer together or farther apart than the bead spacing", layer,
     )

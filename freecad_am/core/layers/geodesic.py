@@ -42,8 +42,8 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class GeodesicField:
-    """The distance u mm through solids from their start. cubes: u on a grid; depth: how deep inside them, mm, on the nodes of
-    the same; way: its gradient, smoothed; top: the largest distance; lost: share of the solids that no way leads to."""
+    """The distance u mm through solids from their start. cubes: u on a grid; depth: how deep inside them, mm, on the nodes
+    of the same; way: its gradient, smoothed; top: the largest distance; lost: share of the solids that no way leads to."""
 
     grid: Voxels
     cubes: Cubes
@@ -102,8 +102,8 @@ class _Half(NamedTuple):
 
 
 def field(solids: Sequence[SolidMesh], start: Array, step: float, through: bool = True) -> GeodesicField:
-    """The distance through solids, which may touch or overlap, from triangles (k, 3, 3) where they stand, on a grid of `step`
-    mm; through=False: straight from there. ValueError where no node of the grid is near the start."""
+    """The distance through solids, which may touch or overlap, from triangles (k, 3, 3) where they stand, on a grid of
+    `step` mm; through=False: straight from there. ValueError where no node of the grid is near the start."""
     searches = [Search(one, 2.0 * step) for one in solids]
     first = np.cumsum([0, *(len(one.vertices) for one in solids)])
     whole = np.vstack([one.triangles + begin for one, begin in zip(solids, first)])
@@ -162,8 +162,8 @@ def _rounded_up(grid: Voxels, searches: Sequence[Search]) -> Voxels:
 
 
 def _depths(grid: Voxels, searches: Sequence[Search], carried: Array) -> Array:
-    """How deep (nx, ny, nz) mm nodes lie in the solids, below 0 outside; no more than DEEP steps is told, nan where the field
-    is not known."""
+    """How deep (nx, ny, nz) mm nodes lie in the solids, below 0 outside; no more than DEEP steps is told, nan where the
+    field is not known."""
     depth = np.where(np.isnan(carried), np.nan, DEEP * grid.step).ravel()
     inner = grid.solid.copy()
     for _ in range(DEEP):

@@ -253,8 +253,8 @@ class SolidParameters(FilledParameters):
     """How any solid is cut by planes and filled. mm and rad."""
 
     layers: str = f.parameter(
-        "planes", f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from where "
-        "it stands, so that nothing needs support (geodesic); or at equal distances straight from there (offset).",
+        "planes", f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from "
+        "where it stands, so that nothing needs support (geodesic); or at equal distances straight from there (offset).",
         choices=("planes", "geodesic", "offset"),
     )
     direction: str = f.parameter(
