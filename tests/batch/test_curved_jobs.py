@@ -136,6 +136,12 @@ def test_what_cannot_be_cut_is_told(planned, make, height, mode, code, word):
     done, report, _ = planned(make(), height=height, mode=mode)
     if code:
         assert done.status == 2 and report is None
-        assert f"error[{code}]" in done.err and word in done.err and done.err.count("\n") == 1, done.err
+        assert f"error[{code}]" in done.err and word in done.err and done.err.count("error[") == 1, done.err
     else:
         assert done.status in (0, 2) and "INTERNAL" not in done.err, done.err
+
+
+@pytest.mark.parametrize("key", ["margin: 1 mm", "solid_layers: 2"])
+def test_what_only_plane_layers_have_is_refused(planned, key):
+    done, _, _ = planned(tee(), more=f", {key}")
+    assert done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and key.split(":")[0] in done.err, done.err

@@ -28,6 +28,7 @@ TOLD = 0.05  # distortion of a piece that is told
 def slices(base: Base, bodies: Sequence[Body], ground: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """The layers of bodies outwards from the plane of the base and the `ground` that they touch; several of one number where
     a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
+    _refuse(strategy)
     solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
     found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], bodies, strategy)
     worst = 0.0
@@ -41,6 +42,18 @@ def slices(base: Base, bodies: Sequence[Body], ground: Sequence[Body], strategy:
                 issues = (_stretched(piece, layer),)
             regions = tuple(region.simple(BORDER * found.grid.step) for region in piece.regions)
             yield Slice(layer, ChartLayer(piece.chart, found, layer * height), regions, issues)
+
+
+def _refuse(strategy: SolidParameters) -> None:
+    """InputError NOT_FOR_FAMILY for what only plane layers have."""
+    for key, given, instead in (
+        ("margin", strategy.margin != 0.0, "0 mm"), ("solid_layers", strategy.solid_layers != 0, "0"),
+    ):
+        if given:
+            raise InputError(
+                "NOT_FOR_FAMILY", f"strategy.{key}", f"it is for plane layers, not for curved ones; use {instead}, or layers: "
+                "planes",
+            )
 
 
 def _field(
@@ -59,8 +72,8 @@ def _field(
         ) from None
     if found.lost > LOST:
         raise InputError(
-            "NOT_CONNECTED", name, f"{100.0 * found.lost:.3g} % of it hang together with nothing that stands on the platform "
-            "or the substrate; deposit these by themselves, or set strategy.direction",
+            "NOT_CONNECTED", name, f"{100.0 * found.lost:.3g} % of it hang together with nothing that stands on the "
+            "platform or the substrate; deposit these by themselves, or set strategy.direction",
         )
     return found
 

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
