@@ -51,8 +51,8 @@ def _refuse(strategy: SolidParameters) -> None:
     ):
         if given:
             raise InputError(
-                "NOT_FOR_FAMILY", f"strategy.{key}", f"it is for plane layers, not for curved ones; use {instead}, or layers: "
-                "planes",
+                "NOT_FOR_FAMILY", f"strategy.{key}", f"it is for plane layers, not for curved ones; use {instead}, or "
+                "layers: planes",
             )
 
 
