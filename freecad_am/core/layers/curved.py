@@ -36,7 +36,7 @@ def slices(base: Base, bodies: Sequence[Body], ground: Sequence[Body], strategy:
     number = int(np.ceil(found.top / height - cut + 1e-6))
     for layer in range(max(number, 0)):
         for piece in found.pieces((layer + cut) * height):
-            issues = ()
+            issues: tuple[Issue, ...] = ()
             if piece.stretch > max(worst, TOLD):
                 worst = piece.stretch
                 issues = (_stretched(piece, layer),)
@@ -81,7 +81,7 @@ def _field(
 def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     """Mm from node to node. InputError TOO_FINE."""
     height = strategy.layer_height
-    step = max(FINE * height, (volume / MOST) ** (1.0 / 3.0))
+    step = max(FINE * height, float(np.cbrt(volume / MOST)))
     if step > COARSE * height:
         raise InputError(
             "TOO_FINE", "strategy.layer_height", f"{height:g} mm is too fine for curved layers of {name}, "

@@ -72,7 +72,7 @@ def _root(values: Array, steps: Array) -> Array:
     """The larger root u (k,) of sum ((u - v) / h)^2 = 1 over those of three v (3, k) with steps h that are below u."""
     order = np.argsort(values, axis=0, kind="stable")
     v, h = np.take_along_axis(values, order, axis=0), np.take_along_axis(steps, order, axis=0)
-    found = v[0] + h[0]
+    found: Array = v[0] + h[0]
     weight, first, second = np.zeros(v.shape[1]), np.zeros(v.shape[1]), np.zeros(v.shape[1])
     base = np.where(np.isfinite(v[0]), v[0], 0.0)  # relative to the least: far from the seeds squares would lose digits
     for k in range(3):
