@@ -5137,6 +5137,11 @@
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <source>a curved layer cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing</source>
+        <translation>une couche courbe ne se met pas à plat sans distorsion : des cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que le pas des cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>a gap of {0} mm between faces of {1} is bridged</source>
         <translation>un jour de {0} mm entre des faces de {1} est comblé</translation>
@@ -6722,6 +6727,11 @@
         <translation>il est chiffré ; exportez des triangles simples</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <source>it is for plane layers, not for curved ones; use {0}, or layers: planes</source>
+        <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
         <source>it is neither a joint path nor a program; select one of them</source>
         <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
@@ -7355,6 +7365,11 @@
         <location filename="../../freecad_am/brep/read.py"/>
         <source>no ending</source>
         <translation>aucune extension</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <source>no face of it lies on the plane through its lowest place along strategy.direction, or on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a substrate that it touches</source>
+        <translation>aucune de ses faces ne repose sur le plan de son point le plus bas suivant strategy.direction, ni sur le substrat : rien où commencer ; tournez la pièce, donnez strategy.direction, ou un substrat qu&apos;elle touche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -9322,6 +9337,11 @@
         <translation>zigzag</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <source>{0} % of it hang together with nothing that stands on the platform or the substrate; deposit these by themselves, or set strategy.direction</source>
+        <translation>{0} % de la pièce ne tiennent à rien de ce qui repose sur le plateau ou le substrat ; déposez-les à part, ou donnez strategy.direction</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>{0} % of the length bends more than the table&apos;s beads, of {1} mm or more, and counts as bent like these; widths are only estimated there</source>
         <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
@@ -9813,6 +9833,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
+        <source>{0} is not for curved layers, which grow along their normals; use local</source>
+        <translation>{0} n&apos;est pas pour les couches courbes, qui croissent suivant leurs normales ; utilisez local</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>{0} is not for solids on a hub, which grow along its normals; use local</source>
         <translation>{0} n&apos;est pas pour les solides sur moyeu, qui croissent le long de ses normales ; utilisez local</translation>
     </message>
@@ -9985,6 +10010,11 @@
         <location filename="../../freecad_am/core/geometry/file_unit.py"/>
         <source>{0} mm is no unit; give the length of one unit of the file, as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <source>{0} mm is too fine for curved layers of {1}, {2} cm3; give at least {3} mm, or layers: planes</source>
+        <translation>{0} mm est trop fin pour des couches courbes de {1}, {2} cm3 ; donnez au moins {3} mm, ou layers: planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/planes.py"/>
