@@ -41,9 +41,9 @@ def main(pages: list[str]) -> int:
     tests = [str(path) for path in sorted(TESTS.glob("test_*.py")) if not pages or path.stem.split("_")[-1] in pages]
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "ROBOTIC_AM_PICTURES": folder}
-        run = [sys.executable, str(ROOT / "tests" / "run.py")]
+        run = [sys.executable, "-m", "tests.run"]
         # each in a window of its own, where no panel has the size that another tutorial gave it
-        status = max(subprocess.run([*run, test], env=env, check=False).returncode for test in tests)
+        status = max(subprocess.run([*run, test], cwd=ROOT, env=env, check=False).returncode for test in tests)
         if status == 0:
             PICTURES.mkdir(exist_ok=True)
             for path in sorted((Path(folder) / "tutorials").glob("*.png")):
