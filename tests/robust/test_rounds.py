@@ -34,6 +34,12 @@ def test_what_is_wrong_is_seen(tmp_path, change, told):
     assert rounds.faults(Ended(**{**SOUND, "seconds": 70.0, "err": "note[LARGE] job: x\n" + SOUND["err"]}), tmp_path) == []
 
 
+def test_a_large_job_may_be_stopped_where_it_was_told_to_be_one(tmp_path):
+    stopped = {**SOUND, "status": 1, "seconds": 90.0, "err": "error[ENDED] job.yaml: signal 24\n"}
+    assert rounds.faults(Ended(**stopped), tmp_path)
+    assert rounds.faults(Ended(**{**stopped, "err": "note[LARGE] job: x\n" + stopped["err"]}), tmp_path) == []
+
+
 def test_litter_is_seen(tmp_path):
     (tmp_path / "out" / ".unfinished-1").mkdir(parents=True)
     assert len(rounds.faults(Ended(**SOUND), tmp_path)) == 2
