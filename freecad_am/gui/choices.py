@@ -23,6 +23,8 @@ WORDS = {  # of keys that are no words by themselves; `tr` gives them in the lan
     "iso-height": marked("along the axis"),
     "constant-distance": marked("constant distance"),
     "iso-parameter": marked("lines of the surface"),
+    "geodesic": marked("through the part, without support"),
+    "offset": marked("parallel to where it stands"),
     "around-axis": marked("around the axis"),
     "symmetry-plane": marked("plane of symmetry"),
     "bead_width": marked("bead width"),

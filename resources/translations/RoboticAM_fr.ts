@@ -7682,6 +7682,11 @@
         <translation>selon</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>parallel to where it stands</source>
+        <translation>parallèles à son appui</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>part</source>
         <translation>pièce</translation>
@@ -9025,6 +9030,11 @@
         <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
         <source>three or more triangles share an edge</source>
         <translation>trois triangles ou plus partagent une arête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>through the part, without support</source>
+        <translation>à travers la pièce, sans support</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
