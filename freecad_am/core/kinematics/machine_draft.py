@@ -38,6 +38,7 @@ class Draft:
     infinite where endless or not known. `horizontal`: the range, deg, of axis 3 as it is shown against the horizontal, None
     without. `base` (4, 4): the maker's base frame in base_link. `values` (n, axes) as the controller shows them, deg and mm,
     with flange `poses` (n, 4, 4) in base_link. `notes`: what a user should know of the source; `remarks` go into the file.
+    `labels`: what the pendant calls the axes, None where it numbers them.
     """
 
     id: str
@@ -59,6 +60,7 @@ class Draft:
     poses: Array | None = None
     notes: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    labels: tuple[str, ...] | None = None
 
     @property
     def units(self) -> Array:
@@ -106,6 +108,7 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
         sources=(f"copy of {machine.id}", *machine.sources),
         horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2]) if coupled else None,
         posts=machine.posts, values=machine.to_controller(q) / machine.unit_values, poses=poses,
+        labels=None if machine.axes == machine.columns else machine.axes,
     )
 
 
@@ -168,6 +171,8 @@ def _joints(draft: Draft) -> list[dict[str, Any]]:
     found = []
     for index, name in enumerate(draft.joints):
         joint: dict[str, Any] = {"name": name}
+        if draft.labels is not None:
+            joint["label"] = draft.labels[index]
         if draft.chain.sliding[index]:
             joint["type"] = "prismatic"
         joint |= _pose(draft.chain.origins[index])

@@ -57,7 +57,7 @@ def put_in(
     for k, path in enumerate(paths):
         result += helped.get(k, [path])
         lost = k not in helped and path.margin < FITS and turns.is_spiral(path.bead)
-        if lost and turns.turning_axis(task, path.joints) is not None:
+        if lost and _would_fit_endless(task, path):
             issues.append(Issue(
                 ERROR, "SPIRAL_LIMITED",
                 "a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with "
@@ -67,6 +67,17 @@ def put_in(
     split = sorted({found[0].layer for found in helped.values() if len(found) > 1})
     issues += ([turns.seam_note(moved)] if moved else []) + ([turns.split_note(split)] if split else [])
     return _numbered(result), issues
+
+
+def _would_fit_endless(task: Task, path: BeadPath) -> bool:
+    """Whether the end of the last axis is what keeps a spiral from its limits: it turns an axis that ends, or all limits
+    would hold if the last one had none. Of the least evils the search may have taken one at another axis.
+    """
+    if turns.turning_axis(task, path.joints) is not None:
+        return True
+    free = dataclasses.replace(task, cell=dataclasses.replace(task.cell, limits=_last_endless(task.cell.limits)))
+    coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
+    return bool((search.everywhere(free, coarse, task.thresholds(coarse)).margin >= 0.0).any())
 
 
 def _fitted(task: Task, free: Task, bead: Bead, place: Place, coefficients: Array) -> list[BeadPath] | None:

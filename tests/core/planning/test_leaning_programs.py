@@ -165,8 +165,9 @@ def along_the_pole(speed, width=None, turn=math.pi, over=20.0):
     about = turn * np.clip(0.5 + 0.5 * points[:, 0] / over, 0.0, 1.0)
     sine = math.sin(math.radians(30.0))
     tool = np.column_stack([sine * np.cos(about), sine * np.sin(about), np.full(n, math.cos(math.radians(30.0)))])
-    widths = None if width is None else np.full(n, width)
-    bead = Bead(points, tool, tool, np.linspace(0.0, 2.0 * math.pi, n), np.full(n, speed), False, widths)
+    widths, heights = (None, None) if width is None else (np.full(n, width), np.full(n, 3.0))  # as a bead model predicts
+    along = np.linspace(0.0, 2.0 * math.pi, n)
+    bead = Bead(points, tool, tool, along, np.full(n, speed), False, widths, height=heights)
     return Toolpath((Layer((bead,)),), np.eye(4), 3.0, CHORD_ERROR, family="developable")
 
 
