@@ -3,7 +3,8 @@
 
 Arguments go to pytest, both times; `--long` among them adds the tests that are marked as long (docs/testing.md).
 `--with-freecad 1.0` first among them runs what depends on FreeCAD's version in that version too (tests/versions/run.sh).
-The tests are cut into parts, of which as many run at the same time as there are cores; the last lines tell what they took.
+The tests are cut into parts, of which as many run at the same time as keep the cores busy; the last lines tell what they
+took.
 """
 
 from __future__ import annotations
@@ -27,8 +28,17 @@ GUI = ROOT / "tests" / "gui"
 WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
 HEADLESS_TIMEOUT = 2400  # s for a part without a window
 LONG_TIMEOUT = 8 * 3600  # with long tests, and where tests are named
-# the folders of parts of their own, longest first; one more part has all the rest
-FOLDERS = (("batch",), ("core/planning", "core/kinematics"), ("core/strategies", "core/filling"), ("brep", "objects"))
+# folders of parts of their own, longest first, and one more part has all the rest: parts of a few minutes, which fill the
+# cores to the end
+FOLDERS = (
+    ("batch",), ("core/strategies",), ("robust", "posts"), ("brep", "objects"), ("core/planning", "core/kinematics"),
+)
+WINDOWS = (
+    ("tutorials", "test_flow.py", "test_new_machine.py", "test_docks.py"),
+    ("test_robust.py", "test_robust_events.py", "test_selected_job.py", "test_clicks.py", "test_wall_clicks.py"),
+)
+WAITING = 0.6  # of a core: what a window uses while it is looked at, clicked and waited for
+BEHIND = 5  # the niceness of the headless tests, so that no click in a window comes late for them
 # what depends on FreeCAD's version, and takes a bearable time twice: of the commands those that meet every one of its parts,
 # of the window what users do, and what may crash it
 HEADLESS_OF_VERSION = (
@@ -95,7 +105,7 @@ def counts(text: str) -> dict[str, int]:
 
 def apart(arguments: list[str]) -> tuple[list[str] | None, list[str] | None]:
     """pytest's arguments for the headless run and for that of the window; None for nothing to run there."""
-    paths = [word for word in arguments if (ROOT / word.partition("::")[0]).exists()]
+    paths = named(arguments)
     options = [word for word in arguments if word not in paths]
     places = {word: (ROOT / word.partition("::")[0]).resolve() for word in paths}
     inside = [word for word, place in places.items() if place.is_relative_to(GUI)]
@@ -116,15 +126,31 @@ def run_headless(arguments: list[str]) -> tuple[int, str]:
     limit = LONG_TIMEOUT if any(word == "--long" or "::" in word for word in arguments) else HEADLESS_TIMEOUT
     stopped = ["timeout", "-k", "5", str(limit)] if shutil.which("timeout") else []
     with tempfile.TemporaryDirectory() as folder:
-        status, text = watched([*stopped, sys.executable, "-m", "pytest", *arguments], private_home(Path(folder)))
+        command = ["nice", "-n", str(BEHIND), *stopped, sys.executable, "-m", "pytest", *arguments]
+        status, text = watched(command, private_home(Path(folder)))
     if status == TOO_LONG:
         say(f"freecad-am: the tests were stopped after {limit} s")
     return status, text
 
 
+def named(arguments: list[str]) -> list[str]:
+    """The folders, files and tests among pytest's arguments."""
+    return [word for word in arguments if (ROOT / word.partition("::")[0]).exists()]
+
+
+def cut(parts: Sequence[Sequence[str]], top: str) -> list[tuple[str, list[str]]]:
+    """Names of parts and the arguments of each: what is named, and last all the rest below the folder `top`."""
+    made, done = list[tuple[str, list[str]]](), list[str]()
+    for names in parts:
+        places = [f"{top}/{name}" for name in names]
+        done += [f"--ignore={place}" for place in places]
+        made.append((names[0].removesuffix(".py"), places))
+    return [*made, ("rest", [top, *done])]
+
+
 def headless_parts(arguments: list[str]) -> list[Part]:
     """The headless tests, in several parts where no folder or file of theirs is asked for."""
-    paths = [word for word in arguments if (ROOT / word.partition("::")[0]).exists()]
+    paths = named(arguments)
     if not os.environ.get("FREECAD_AM_VERSION") and (not paths or any("posts" in word for word in paths)):
         sys.path.insert(0, str(ROOT))
         from tests.posts import interpreters
@@ -132,12 +158,16 @@ def headless_parts(arguments: list[str]) -> list[Part]:
         interpreters.provide()
     if paths:
         return [Part("headless", lambda: run_headless(arguments))]
-    parts, done = [], []
-    for names in FOLDERS:
-        folders = [f"tests/{name}" for name in names]
-        done += [f"--ignore={folder}" for folder in folders]
-        parts.append(Part(" ".join(names), partial(run_headless, [*arguments, *folders])))
-    return [*parts, Part("rest", lambda: run_headless([*arguments, "tests", *done]))]
+    return [Part(name, partial(run_headless, [*arguments, *places])) for name, places in cut(FOLDERS, "tests")]
+
+
+def window_parts(arguments: list[str]) -> list[Part]:
+    """The tests of the window, in several FreeCADs where none of their files is asked for."""
+    if named(arguments) != ["tests/gui"]:
+        return [Part("window", partial(run_window_tests, arguments), WAITING)]
+    options = [word for word in arguments if word != "tests/gui"]
+    parts = cut(WINDOWS, "tests/gui")
+    return [Part(f"window {name}", partial(run_window_tests, [*options, *places]), WAITING) for name, places in parts]
 
 
 def run_window_tests(arguments: list[str]) -> tuple[int, str]:
@@ -203,20 +233,21 @@ def provide_version(version: str) -> None:
 
 
 def all_parts(arguments: list[str]) -> list[Part]:
-    """What is to be run, in the order in which the parts begin: what takes longest first, and the rest of all last."""
-    version, in_version = "", []
+    """What is to be run, in the order in which the parts begin: windows first, as they wait most and need something beside
+    them that does not; what takes longest before what takes less, and the rest of all last."""
+    in_version = []
     if arguments[:1] == ["--with-freecad"] and len(arguments) > 1:
         version, arguments = arguments[1], arguments[2:]
         provide_version(version)
         options = [word for word in arguments if word == LONG]
         in_version = [
-            Part(f"{version} {name}", partial(run_in_version, version, [*options, *places]))
-            for name, places in (("window", WINDOW_OF_VERSION), ("headless", HEADLESS_OF_VERSION))
+            Part(f"{version} {name}", partial(run_in_version, version, [*options, *places]), load)
+            for name, places, load in (("headless", HEADLESS_OF_VERSION, 1.0), ("window", WINDOW_OF_VERSION, WAITING))
         ]
     headless, window = apart(arguments)
-    parts = [] if window is None else [Part("window", lambda: run_window_tests(window))]
+    windows = [] if window is None else window_parts(window)
     others = [] if headless is None else headless_parts(headless)
-    return [*parts, *others[:1], *in_version, *others[1:]]
+    return [*windows, *others[:1], *in_version, *others[1:]]
 
 
 def main() -> int:

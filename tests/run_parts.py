@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of the tests: two at the same time, each with its name before its lines, and what each has taken."""
+"""Parts of the tests: as many at the same time as keep the cores busy, each with its name before its lines, and what each
+has taken."""
 
 from __future__ import annotations
 
@@ -7,22 +8,24 @@ import os
 import subprocess
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-AT_ONCE = 2  # parts; more would leave clicks in a window waiting
+MORE = 0.25  # of a core, that parts at the same time may ask for beyond those that are there
 SLOWEST = 10  # tests told of with what they took
 
 
 @dataclass
 class Part:
-    """Some of the tests, run by one command after the other. `wall`, `used`: s, and s of processor, that they took."""
+    """Some of the tests, run by one command after the other. `load`: the share of a core that they use, as those of a window
+    wait for much; `wall`, `used`: s, and s of processor, that they took."""
 
     name: str
     run: Callable[[], tuple[int, str]]
+    load: float = 1.0
     wall: float = 0.0
     used: float = 0.0
     status: int = 1
@@ -68,12 +71,21 @@ def watched(command: list[str], env: dict[str, str]) -> tuple[int, str]:
 
 
 def run_parts(parts: list[Part]) -> None:
-    """All of them, on two cores where there are as many."""
+    """All of them in their order, but for one that finds no room while a later one does."""
     global PREFIXED
     PREFIXED = len(parts) > 1
-    with ThreadPoolExecutor(min(AT_ONCE, len(os.sched_getaffinity(0)))) as pool:
+    room = len(os.sched_getaffinity(0)) + MORE
+    waiting, running = list(parts), dict[Future[Part], Part]()
+    with ThreadPoolExecutor(max(1, len(parts))) as pool:
         try:
-            list(pool.map(Part.done, parts))
+            while waiting or running:
+                for part in list(waiting):
+                    if not running or part.load + sum(one.load for one in running.values()) <= room:
+                        running[pool.submit(part.done)] = part
+                        waiting.remove(part)
+                for ended in wait(running, return_when=FIRST_COMPLETED).done:
+                    del running[ended]
+                    ended.result()
         except BaseException:  # Ctrl-C, which the tests at hand get too
             pool.shutdown(cancel_futures=True)
             raise

@@ -5,6 +5,8 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -173,14 +175,47 @@ def test_a_part_that_cannot_run_is_no_sound_end(parts):
 def test_the_parts_have_every_file_of_tests_once(monkeypatch):
     asked = []
     monkeypatch.setattr(run, "run_headless", lambda words: asked.append(words) or (0, ""))
+    monkeypatch.setattr(run, "run_window_tests", lambda words: asked.append(words) or (0, ""))
     monkeypatch.setattr("tests.posts.interpreters.provide", lambda: None)
-    headless, window = run.apart([])
-    for part in run.headless_parts(headless):
+    parts = run.all_parts(["--long"])
+    assert len({part.name for part in parts}) == len(parts) == len(run.FOLDERS) + len(run.WINDOWS) + 2
+    for part in parts:
         part.run()
-    assert len(asked) == len(run.FOLDERS) + 1 and window == ["tests/gui"]
+    assert all("--long" in words for words in asked)
     for file in (run.ROOT / "tests").rglob("test_*.py"):
         around = [file, *file.parents]
         left_out = [{run.ROOT / word.removeprefix("--ignore=") for word in words if "=" in word} for words in asked]
-        given = [{run.ROOT / word for word in words if "=" not in word} for words in asked]
+        given = [{run.ROOT / word for word in words if not word.startswith("--")} for words in asked]
         takes = [bool(some & set(around)) and not less & set(around) for some, less in zip(given, left_out)]
-        assert takes.count(True) == (run.GUI not in around), (file, takes)
+        assert takes.count(True) == 1, (file, takes)
+
+
+def test_what_is_named_is_one_part_and_so_is_a_file_of_the_window():
+    names = [part.name for part in run.all_parts(["-x", "tests/test_run.py", "tests/gui/test_flow.py"])]
+    assert names == ["window", "headless"]
+
+
+def test_parts_run_side_by_side_as_far_as_the_cores_go(monkeypatch):
+    """Two windows, which wait much, and something beside them; what finds no room lets a smaller one go first."""
+    monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
+    running, seen, order, lock = [], [], [], threading.Lock()
+
+    def one(name, seconds):
+        with lock:
+            order.append(name)
+            running.append(name)
+            seen.append(sorted(running))
+        time.sleep(seconds)
+        with lock:
+            running.remove(name)
+        return 0, ""
+
+    parts = [
+        run_parts.Part(name, lambda name=name, seconds=seconds: one(name, seconds), load)
+        for name, load, seconds in (("w1", 0.6, 0.6), ("w2", 0.6, 0.9), ("h1", 1.0, 0.3), ("h2", 1.0, 0.3), ("w3", 0.6, 0.1))
+    ]
+    run_parts.run_parts(parts)
+    loads = {part.name: part.load for part in parts}
+    assert max(sum(loads[name] for name in names) for names in seen) <= 2.0 + run_parts.MORE
+    assert ["h1", "w1", "w2"] in seen and sorted(order) == sorted(loads) and not running
+    assert all(part.status == 0 for part in parts)
