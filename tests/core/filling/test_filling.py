@@ -23,6 +23,11 @@ BEADS = Beads(S, GAP, 0.0)
 STEP = 0.05
 
 
+def distance(places, points, most):
+    """From the nearest of the places; infinite from `most` on, which spares the search of far ones."""
+    return places.query(points, distance_upper_bound=most)[0]
+
+
 def filled(name, pattern, beads=BEADS, **options):
     region, = regions(SHAPES[name])
     return fill(region, beads, pattern, **options)
@@ -39,14 +44,14 @@ def test_cover_gaps_and_nothing_outside(name, pattern):
     # no middle of a bead nearer to the border than half a bead, minus the chord error
     points = np.vstack([dense(curve.points, curve.closed, 0.3) for curve in curves])
     assert inside(loops, points).all()
-    assert border.query(points)[0].min() > 0.5 * S - 2.0 * BEADS.chord_error - 1e-3
+    assert distance(border, points, S).min() > 0.5 * S - 2.0 * BEADS.chord_error - 1e-3
     grid, within = raster(loops, PITCH)
-    away = beads.query(grid)[0]
+    away = distance(beads, grid, S)
     covered = away <= 0.5 * S
     assert (covered & ~within).sum() < 0.01 * within.sum()
     # what beads inside can reach: within half a bead of a place that is half a bead inside
-    core = within & (border.query(grid)[0] >= 0.5 * S)
-    reach = tree([(grid[core], False)], 1e9).query(grid)[0] < 0.5 * S - PITCH
+    core = within & (distance(border, grid, 0.5 * S) >= 0.5 * S)
+    reach = distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
     assert (covered & reach).sum() > 0.99 * reach.sum()
     # an open circle of the gap's diameter would have a middle that is half of it away from all beads
     assert away[reach].max() < 0.5 * S + 0.5 * gap + PITCH
