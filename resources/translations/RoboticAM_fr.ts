@@ -7317,11 +7317,6 @@
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/platform.py"/>
-        <source>move the part up, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>montez la pièce, ou mettez cell.platform_diameter à ce qui existe (0 pour aucun)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/spin_map/picture.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
@@ -9180,6 +9175,11 @@
         <location filename="../../freecad_am/core/strategies/platform.py"/>
         <source>use mount: feature, or move the part</source>
         <translation>utilisez mount: feature, ou déplacez la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/platform.py"/>
+        <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
+        <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/fit_plot.py"/>

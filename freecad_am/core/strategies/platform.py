@@ -16,6 +16,11 @@ from ..issues import WARNING, InputError, Issue
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm
 DEEP = 0.05  # mm; what reaches no farther below the platform stands on it, but for its chords
+MOVE = "move the part up in its file, or set cell.platform_diameter to what there is (0 for none)"
+MOUNT = (
+    "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set "
+    "cell.platform_diameter to what there is (0 for none)"
+)
 GRAIN = 0.05  # of the radius of the platform, between the places of solids that are looked at
 
 
@@ -70,7 +75,7 @@ def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
     )]
 
 
-def refuse_below(label: str, points: Array, frame: Array, diameter: float) -> None:
+def refuse_below(label: str, points: Array, frame: Array, diameter: float, remedy: str = MOVE) -> None:
     """InputError OFF_PLATFORM where points (n, 3) of what is deposited are below the platform, a disc about the origin of a
     frame (4, 4) in part coordinates; diameter: mm, 0 for none. Beside the disc there is room below its plane."""
     local = (points - frame[:3, 3]) @ frame[:3, :3]
@@ -78,8 +83,7 @@ def refuse_below(label: str, points: Array, frame: Array, diameter: float) -> No
     if depth.max(initial=0.0) > DEEP:
         worst = int(depth.argmax())
         raise _off(
-            f"{label} reaches {depth[worst]:.4g} mm below the platform, at {place(points[worst])}",
-            "move the part up, or set cell.platform_diameter to what there is (0 for none)",
+            f"{label} reaches {depth[worst]:.4g} mm below the platform, at {place(points[worst])}", remedy,
         )
 
 
@@ -91,7 +95,7 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
             low = ((corners - frame[:3, 3]) @ frame[:3, 2]).min(axis=1) < -DEEP
             points = np.vstack([corners[low].reshape(-1, 3), spread(corners[low], max(GRAIN * 0.5 * diameter, 1.0))[0]])
             outside = group.base.surface.distance(group.base.inside(points)) > DEEP
-            refuse_below(body.name, points[outside], frame, diameter)
+            refuse_below(body.name, points[outside], frame, diameter, MOUNT)
 
 
 def _off(what: str, remedy: str) -> InputError:

@@ -77,4 +77,5 @@ def test_solids_that_reach_below_the_platform_are_refused_with_their_depth(drop,
         return
     with pytest.raises(InputError, match=r"bar reaches 7\.5 mm below the platform, at \(") as found:
         platform.refuse_solids_below(solids, np.eye(4), diameter)
+    assert "use mount: feature" in found.value.message
     assert found.value.code == "OFF_PLATFORM" and found.value.where == "cell.platform_diameter"
