@@ -16,7 +16,7 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import clearance_knots, clearance_room, surface, wall_clearance
+from freecad_am.core.strategies import clearance_knots, clearance_room, surface, tilt_search
 from freecad_am.core.strategies.clearance_look import touched_at
 from freecad_am.core.strategies.wall_clearance import kept_clear
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -338,8 +338,8 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
     asked = dataclasses.replace(asked, layers=(*asked.layers[:-1], Layer((many,))))
     monkeypatch.setattr(clearance_knots, "MOST", 41)
     searched = []
-    cones = wall_clearance._Bench.coarse
-    monkeypatch.setattr(wall_clearance._Bench, "coarse", lambda self: searched.append(len(self.flat)) or cones(self))
+    cones = tilt_search.TiltSearch.coarse
+    monkeypatch.setattr(tilt_search.TiltSearch, "coarse", lambda self: searched.append(len(self.flat)) or cones(self))
     found = kept_clear(asked, [], NOZZLE, LOCAL)
     assert codes(found) == ["TILT_BACK"] and set(searched) == {41}
     assert deepest_in_wall(asked, 40, 8.0) > 2.0 and deepest_in_wall(found, 40, 8.0) < 0.3
@@ -380,7 +380,7 @@ def test_looking_needs_memory_that_grows_with_the_points_alone():
         known = np.zeros(count, dtype=bool)
         known[::3] = True
         tracemalloc.start()
-        wall_clearance.nearest(s[known], s, None)
+        tilt_search.nearest(s[known], s, None)
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         return most
@@ -389,6 +389,6 @@ def test_looking_needs_memory_that_grows_with_the_points_alone():
     s = np.sort(np.random.default_rng(1).uniform(0, 10, 80))
     known = s[::7]
     apart = np.abs(s[:, None] - known)
-    assert np.abs(wall_clearance.nearest(known, s, None) - apart.min(axis=1)).max() < 1e-12
+    assert np.abs(tilt_search.nearest(known, s, None) - apart.min(axis=1)).max() < 1e-12
     around = np.minimum(apart, 10.0 - apart).min(axis=1)
-    assert np.abs(wall_clearance.nearest(known, s, 10.0) - around).max() < 1e-12
+    assert np.abs(tilt_search.nearest(known, s, 10.0) - around).max() < 1e-12
