@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..core.geometry.developable import TURN, Developable
-from ..core.geometry.mesh_repair import repaired
+from ..core.geometry.mesh_repair import crossing_told, mended_issues, repaired
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
 from ..core.geometry.solid_mesh import Array, SolidMesh
 from ..core.geometry.surroundings import Body
@@ -37,9 +37,9 @@ class Bodies(NamedTuple):
     issues: tuple[Issue, ...]
 
 
-def bodies_of(source: Any, label: str, chord_error: float, touching: bool = False) -> Bodies:
+def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching: bool = False) -> Bodies:
     """The solids of a Part.Shape, or the pieces of a mesh (a Mesh.Mesh, or a Body), in part coordinates.
-    touching: a solid may touch itself along edges.
+    mend: the largest hole of a mesh that is closed, mm. touching: a solid may touch itself along edges, and cut itself.
 
     InputError NO_SOLID, SELF_CROSSING, and those of `mesh_repair.repaired`.
     """
@@ -48,15 +48,18 @@ def bodies_of(source: Any, label: str, chord_error: float, touching: bool = Fals
             points, triangles = source.vertices, source.triangles
         else:
             points, triangles = (np.array([tuple(row) for row in rows]) for rows in source.Topology)
-        found = repaired(np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label)
+        found = repaired(np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend, touching)
         return Bodies(_named(found.solids, label), found.issues)
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it has no solid; choose solids or closed meshes to deposit")
     made: list[tuple[Any, SolidMesh]] = []
+    crossing: list[str] = []
     for solid in source.Solids:
         first = next((entry for entry in made if entry[0].isPartner(solid)), None)
         made.append((solid, _meshed(solid, chord_error, label, touching) if first is None else _placed(*first, solid)))
-    return Bodies(_named([mesh for _, mesh in made], label), ())
+        if first is None and touching:
+            crossing += crossing_told(made[-1][1], CROSSED * chord_error)
+    return Bodies(_named([mesh for _, mesh in made], label), mended_issues(label, crossing))
 
 
 def _meshed(solid: Any, chord_error: float, label: str, touching: bool) -> SolidMesh:
@@ -64,7 +67,8 @@ def _meshed(solid: Any, chord_error: float, label: str, touching: bool) -> Solid
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
     mesh.refuse_unsound(label, of_shape=True, touching=touching)
-    mesh.refuse_crossing(label, CROSSED * chord_error)
+    if not touching:
+        mesh.refuse_crossing(label, CROSSED * chord_error)
     return mesh
 
 

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..core.geometry.ground import ExactGround, FacetGround, Ground
+from ..core.geometry.mesh_repair import repaired
 from ..core.geometry.solid_mesh import SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import place
-from ..core.issues import InputError
+from ..core.issues import InputError, Issue
 from .kernel import refuse_bare
 from .kernel_process import beside
 from .sheet import facing
@@ -27,12 +28,13 @@ CROSSED = 0.01  # mm; a mesh that cuts itself by no more only touches itself
 @dataclass(frozen=True)
 class Substrate:
     """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles within CHORD; then
-    face: (m,) the face of each, from 0."""
+    face: (m,) the face of each, from 0. issues: what of a mesh was mended."""
 
     label: str
     shape: Any
     solid: SolidMesh
     face: Any = None
+    issues: tuple[Issue, ...] = ()
 
     def ground(self, edge: float) -> Ground:
         """Prepared for a wall whose mesh has edges of `edge` mm."""
@@ -46,14 +48,16 @@ class Substrate:
         return ExactGround(self.solid, self.face, patches, CHORD, edge)
 
 
-def substrate_of(source: Any, label: str) -> Substrate:
-    """The substrate of a Part.Shape or of a mesh (a Body, or a Mesh.Mesh), in part coordinates.
+def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
+    """The substrate of a Part.Shape or of a mesh (a Body, or a Mesh.Mesh), in part coordinates. mend: the largest hole of a
+    mesh that is closed, mm.
 
-    Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD, SELF_CROSSING.
+    Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING.
     """
     if isinstance(source, Body) or hasattr(source, "Topology"):
         mesh = source if isinstance(source, Body) else body(source, label)
-        return Substrate(label, None, mesh_solid(mesh.vertices, mesh.triangles, label))
+        solid, issues = mesh_solid(mesh.vertices, mesh.triangles, label, mend)
+        return Substrate(label, None, solid, None, issues)
     if source is None or source.isNull() or not source.Solids:
         raise InputError("NO_SOLID", label, "it is no solid; choose a solid part or a closed mesh for the wall to grow on")
     for solid in source.Solids:
@@ -77,9 +81,10 @@ def _as_one(shape: Any) -> Any:
     return fused if fused.Solids else shape
 
 
-def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
+def mesh_solid(points: Any, triangles: Any, label: str, mend: float = 0.0) -> tuple[SolidMesh, tuple[Issue, ...]]:
     """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than SAME made one, triangles that then lack a
-    corner left out. Raises InputError NO_SOLID, OPEN_MESH, NON_MANIFOLD, INSIDE_OUT, SELF_CROSSING."""
+    corner left out; where that bounds no solid, what `mesh_repair` makes of it, and what that was. InputError NO_SOLID,
+    BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING."""
     if not len(triangles):
         raise InputError("NO_SOLID", label, "the mesh has no triangles; choose a closed mesh or a solid part")
     if not np.isfinite(points).all():
@@ -88,7 +93,13 @@ def mesh_solid(points: Any, triangles: Any, label: str) -> SolidMesh:
         np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), np.zeros(len(triangles), dtype=np.intp)
     )
     solid = SolidMesh(vertices, corners)
-    solid.refuse_unsound(label)
+    try:
+        solid.refuse_unsound(label)
+    except InputError:
+        found = repaired(np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.intp), label, mend)
+        begin = np.cumsum([0, *(len(one.vertices) for one in found.solids)])
+        corners = np.vstack([one.triangles + at for one, at in zip(found.solids, begin)])
+        return SolidMesh(np.vstack([one.vertices for one in found.solids]), corners), found.issues
     solid.refuse_crossing(label, CROSSED)
-    return solid
+    return solid, ()
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,9 +28,10 @@ OTHER_KIND = frozenset({"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL",
 
 def wall_on(
     shape: Any, faces: Sequence[str], substrate: Any, height: float, label: str = "part",
-    substrate_label: str = "substrate", start_edges: Sequence[str] = (),
+    substrate_label: str = "substrate", start_edges: Sequence[str] = (), mend: float = 0.0,
 ) -> SurfaceWall | PatchWall:
-    """The wall of a Part.Shape for layers of `height` mm, in its coordinates.
+    """The wall of a Part.Shape for layers of `height` mm, in its coordinates. mend: the largest hole of a mesh that is
+    closed, mm.
 
     substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part. A
     SurfaceWall where the faces are one surface that closes around, its end straight across, and the first layer one loop; a
@@ -37,9 +39,10 @@ def wall_on(
     BAD_SHAPE.
     """
     with told(substrate_label):
-        carrier = None if substrate is None else substrate_of(substrate, substrate_label)
+        carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
     with told(label):
-        return _wall_on(shape, faces, carrier, height, label, start_edges)
+        wall = _wall_on(shape, faces, carrier, height, label, start_edges)
+    return wall if carrier is None else replace(wall, issues=(*carrier.issues, *wall.issues))
 
 
 def _wall_on(

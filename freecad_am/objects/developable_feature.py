@@ -116,7 +116,7 @@ def found_in(
 
 
 def _solids(of: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
-    found = [_bodies(one, strategy.chord_error) for one in of.objects]
+    found = [_bodies(one, strategy) for one in of.objects]
     solid = [body for one in found for body in one.bodies]
     issues = tuple(issue for one in found for issue in one.issues)
     bases, hub = _bases(of, solid, strategy)
@@ -171,8 +171,9 @@ def _bases(of: _Given, solids: Sequence[Body], strategy: DevelopableParameters) 
     return own[hub], solids[hub]
 
 
-def _bodies(source: Taken, chord_error: float) -> Bodies:
-    return bodies_of(source.body() if source.shape is None else source.shape, source.label, chord_error)
+def _bodies(source: Taken, strategy: DevelopableParameters) -> Bodies:
+    whole = source.body() if source.shape is None else source.shape
+    return bodies_of(whole, source.label, strategy.chord_error, strategy.mend)
 
 
 def _parts(source: Taken) -> list[Any]:

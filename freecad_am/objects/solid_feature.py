@@ -53,7 +53,8 @@ class SolidFeature(Stage):
             solid: list[Body] = []
             issues: tuple[Issue, ...] = ()
             for one in objects:
-                found = bodies_of(one.body() if one.shape is None else one.shape, one.label, strategy.chord_error, True)
+                found = bodies_of(one.body() if one.shape is None else one.shape, one.label, strategy.chord_error,
+                                  strategy.mend, True)
                 solid += found.bodies
                 issues += found.issues
             solids = stacked(solid, strategy, label, issues)

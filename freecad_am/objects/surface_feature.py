@@ -58,7 +58,7 @@ class SurfaceFeature(Stage):
             solid, name = None, ""
             for substrate in substrates:
                 solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
-            wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges)
+            wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges, strategy.mend)
             large = size.judged(size.of_wall(wall, strategy), strategy)
             depths = of_faces(shape, wall.faces, label, ground[0] if ground else None)
             wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)), depths=depths)

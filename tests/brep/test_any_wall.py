@@ -193,15 +193,9 @@ def refused(*args, **more):
     return caught.value
 
 
-def reversed_mesh():
-    mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.5, AngularDeflection=0.5)
-    mesh.flipNormals()
-    return mesh
-
-
 def open_mesh():
     mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.5, AngularDeflection=0.5)
-    mesh.removeFacets([0])
+    mesh.removeFacets([k for k, facet in enumerate(mesh.Facets) if abs(facet.Normal.x) > 0.99])  # both ends
     return mesh
 
 
@@ -251,8 +245,7 @@ def blade():
     (lambda: bend(start=0, width=180), lambda: Part.makeBox(9, 9, 9, Vector(200, 0, 0)), 5.0, "NO_CONTACT", ["mm away"]),
     (lambda: bend(start=0, width=180), lambda: Part.makeSphere(300.0), 5.0, "INSIDE", ["deep"]),
     (lambda: bend(start=0, width=180), reversed_solid, 5.0, "INSIDE_OUT", ["volume"]),
-    (lambda: bend(), reversed_mesh, 5.0, "INSIDE_OUT", ["volume"]),
-    (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["3 edges"]),
+    (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["mm across"]),
     (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 30.1)), slab, 4.0, "GAP", ["0.1 mm", "0.01 mm"]),
     (lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 33)), slab, 4.0, "GAP", ["separate", "3 mm"]),
     (lambda: shell(tube(height=30), Part.makeCone(15, 25, 30, Vector(0, 0, 30)).Faces[0]), slab, 4.0, "CREASE",

@@ -107,12 +107,9 @@ def box(shift=(0.0, 0.0, 0.0)):
 
 def test_unsound_meshes_are_refused_with_a_place():
     points, corners = box()
-    beside, _ = box((20.0, 20.0, 0.0))  # meets the first box in one edge
+    flat = points[:, 2] == points[:, 2].max()
     cases = [
-        (np.vstack([points, beside]), np.vstack([corners, corners + len(points)]), "NON_MANIFOLD", "(10, 10, 0)"),
-        (points, corners[1:], "OPEN_MESH", "3 edges"),
-        (points, corners[:, ::-1], "INSIDE_OUT", "-8000"),
-        (points, np.vstack([corners[:1, ::-1], corners[1:]]), "INSIDE_OUT", "opposite ways"),
+        (points, corners[~flat[corners].all(axis=1)], "OPEN_MESH", "4 edges, 28.28 mm across, at (0, 0, 10)"),
         (points, corners[:0], "NO_SOLID", "no triangles"),
         (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "no numbers"),
     ]
@@ -122,12 +119,30 @@ def test_unsound_meshes_are_refused_with_a_place():
         assert (caught.value.code, caught.value.where) == (code, "Scan") and words in caught.value.message, code
 
 
+def test_meshes_that_can_be_mended_are():
+    points, corners = box()
+    beside, _ = box((20.0, 20.0, 0.0))  # meets the first box in one edge
+    cases = [
+        (np.vstack([points, beside]), np.vstack([corners, corners + len(points)]), 16000.0, "MENDED", "(10, 10, 0)"),
+        (points, corners[1:], 8000.0, "MESH_REPAIRED", "1 missing triangles"),
+        (points, corners[:, ::-1], 8000.0, "MESH_REPAIRED", "inside out"),
+        (points, np.vstack([corners[:1, ::-1], corners[1:]]), 8000.0, "MESH_REPAIRED", "1 triangles were turned"),
+    ]
+    for some, triangles, volume, code, words in cases:
+        solid, issues = mesh_solid(some, triangles, "Scan")
+        assert solid.volume == pytest.approx(volume)
+        assert [issue.code for issue in issues] == [code] and words in issues[0].message, issues
+        inside = solid.searched(5.0).signed(np.array([[1.0, 2.0, 3.0], [1.0, 2.0, 11.0]]))[0]
+        assert inside == pytest.approx([-7.0, 1.0])
+
+
 def test_doubled_points_and_triangles_without_area_do_no_harm():
     points, corners = box()
     loose = points[corners].reshape(-1, 3)  # each triangle with points of its own, as STL files have them
     triangles = np.arange(len(loose)).reshape(-1, 3)
     thin = np.array([[0, 0, 1], [2, 2, 2]])
-    solid = mesh_solid(loose, np.vstack([triangles, thin]), "Scan")
+    solid, issues = mesh_solid(loose, np.vstack([triangles, thin]), "Scan")
+    assert not issues
     assert len(solid.vertices) == len(points) and len(solid.triangles) == len(corners)
     assert solid.volume == pytest.approx(8000.0)
 

@@ -175,6 +175,26 @@ def test_tiny_and_huge_parts(doc, size):
         assert caught.value.code == "TOO_MANY" and caught.value.where == "strategy.layer_height"
 
 
+def test_a_damaged_mesh_is_filled_as_the_whole_one(doc):
+    """A hole closed and facets turned back: what is inside does not change."""
+    whole = mesh(doc, leaning(), 0.5)
+    points, triangles = whole.Mesh.Topology
+    places, rows = np.array([tuple(point) for point in points]), np.array(triangles)
+    size = [float(np.linalg.norm(np.ptp(places[rows[(rows == k).any(axis=1)]].reshape(-1, 3), axis=0))) for k in range(50)]
+    gone = (rows == int(np.argmin(size))).any(axis=1)
+    rows[::9] = rows[::9, ::-1]
+    damaged = doc.addObject("Mesh::Feature", "Damaged")
+    damaged.Mesh = Mesh.Mesh([[points[k] for k in row] for row in rows[~gone]])
+    made = [api.make_solid_feature(doc, obj, mend=1.01 * min(size), **FAST) for obj in (whole, damaged)]
+    assert {issue.code for issue in api.issues(made[1])} >= {"MENDED", "MESH_REPAIRED"}
+    assert f"{min(size):.3g} mm across" in " ".join(issue.message for issue in api.issues(made[1]))
+    one, other = (api.result(api.make_toolpath(doc, feature)) for feature in made)
+    assert other.length == pytest.approx(one.length, rel=2e-3)
+    with pytest.raises(InputError) as caught:
+        api.change(made[1], mend=0.9 * min(size))
+    assert caught.value.code == "OPEN_MESH" and "strategy.mend" in caught.value.message
+
+
 def test_what_has_no_inside_is_refused(doc):
     def refused(obj, code):
         with pytest.raises(InputError) as caught:

@@ -107,7 +107,8 @@ def field(solids: Sequence[SolidMesh], start: Array, step: float, through: bool 
     searches = [Search(one, 2.0 * step) for one in solids]
     first = np.cumsum([0, *(len(one.vertices) for one in solids)])
     whole = np.vstack([one.triangles + begin for one, begin in zip(solids, first)])
-    grid = _rounded_up(voxels(np.vstack([one.vertices for one in solids]), whole, step), searches)
+    inner = voxels(np.vstack([one.vertices for one in solids]), whole, step)
+    grid = _rounded_up(inner, searches)
     linked = links(grid)
     seeds, values = _seeds(start, grid.places(linked.nodes), step)
     if not len(seeds):
@@ -118,7 +119,7 @@ def field(solids: Sequence[SolidMesh], start: Array, step: float, through: bool 
     carried = carried_on(grid, linked, u)
     ways = [Cubes(carried_on(grid, linked, np.where(reached, one, np.inf)), grid.origin, step) for one in way.T]
     return GeodesicField(
-        grid, Cubes(carried, grid.origin, step), Cubes(_depths(grid, searches, carried), grid.origin, step),
+        grid, Cubes(carried, grid.origin, step), Cubes(_depths(grid, inner.solid, searches, carried), grid.origin, step),
         (ways[0], ways[1], ways[2]), float(u[reached].max()), float((~reached).mean()),
     )
 
@@ -161,9 +162,10 @@ def _rounded_up(grid: Voxels, searches: Sequence[Search]) -> Voxels:
     return Voxels(grid.origin, grid.step, solid.reshape(grid.solid.shape))
 
 
-def _depths(grid: Voxels, searches: Sequence[Search], carried: Array) -> Array:
+def _depths(grid: Voxels, wound: Mask, searches: Sequence[Search], carried: Array) -> Array:
     """How deep (nx, ny, nz) mm nodes lie in the solids, below 0 outside; no more than DEEP steps is told, nan where the
-    field is not known."""
+    field is not known. wound: nodes that the solids go round, which are inside whatever side the nearest triangle shows
+    them where a solid cuts itself."""
     depth = np.where(np.isnan(carried), np.nan, DEEP * grid.step).ravel()
     inner = grid.solid.copy()
     for _ in range(DEEP):
@@ -172,7 +174,8 @@ def _depths(grid: Voxels, searches: Sequence[Search], carried: Array) -> Array:
             & inner[1:-1, 1:-1, :-2] & inner[1:-1, 1:-1, 2:]
         )
     asked = np.flatnonzero(~np.isnan(depth) & ~inner.ravel())
-    depth[asked] = -_outside(searches, grid.places(asked))
+    found = -_outside(searches, grid.places(asked))
+    depth[asked] = np.where(wound.ravel()[asked], np.abs(found), found)
     return depth.reshape(grid.solid.shape)
 
 

@@ -10,6 +10,7 @@ from ..issues import InputError
 from . import field as f
 
 SPACINGS = ("constant-distance", "smooth", "iso-parameter")
+MEND = "Holes of meshes up to this size across are closed, which is told; larger ones are refused."
 MOST_LAYERS = 20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 
 
@@ -79,6 +80,7 @@ class SurfaceParameters(LayerParameters):
     compare: tuple[str, ...] = f.parameter(
         (), f.TEXT, "Further spacings whose joint paths are planned for the comparison of the report."
     )
+    mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
 
     def __post_init__(self) -> None:
         f.check(self, "strategy", skip=frozenset({"compare"}))
@@ -204,6 +206,7 @@ class FilledParameters(LayerParameters):
         2.0, f.LENGTH, "Beads that close gaps are made no shorter than this; others that are shorter are left out.", low=0.0,
         advanced=True,
     )
+    mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
 
     def __post_init__(self) -> None:
         if self.walls == math.inf:

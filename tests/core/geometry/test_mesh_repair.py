@@ -4,8 +4,10 @@
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
 
 from freecad_am.core.geometry.mesh_repair import repaired
+from freecad_am.core.geometry.refined import Edges
 from freecad_am.core.issues import InputError
 
 
@@ -97,6 +99,90 @@ def test_what_is_not_safe_is_refused_with_its_place():
     with pytest.raises(InputError) as caught:
         repaired(np.full((3, 3), np.nan), np.array([[0, 1, 2]]), "nothing.stl")
     assert caught.value.code == "BAD_FILE"
+
+
+def box(size=10.0, at=(0.0, 0.0, 0.0)):
+    """Points and outward triangles of a cube."""
+    points = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    faces = ConvexHull(points).simplices.copy()
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * (a + b + c - 1.5)).sum(axis=1) < 0.0
+    faces[inward] = faces[inward][:, ::-1]
+    return size * points + np.array(at), faces.astype(np.intp)
+
+
+def both(*meshes):
+    """Meshes as one."""
+    begin = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    return np.vstack([points for points, _ in meshes]), np.vstack([faces + at for (_, faces), at in zip(meshes, begin)])
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), Rotation.from_euler("xyz", [0.4, 1.2, -0.3]).as_matrix()])
+def test_boxes_that_touch_along_an_edge_are_told_apart(turn):
+    points, faces = both(box(), box(at=(10.0, 10.0, 0.0)), box(at=(20.0, 0.0, 0.0)))  # each beside the next
+    found = repaired(points @ turn, faces, "boxes")
+    assert sorted(solid.volume for solid in found.solids) == pytest.approx([1000.0] * 3)
+    for solid in found.solids:
+        assert (Edges(solid.triangles).count == 2).all()
+    assert [issue.code for issue in found.issues] == ["MENDED"] and "2 edges of more than two" in told(found)
+    where = [float(number) for number in told(found).split("(")[1].split(")")[0].split(",")]
+    assert (turn @ where)[1] == pytest.approx(10.0, abs=1e-3)
+
+
+def test_small_holes_are_closed_and_larger_ones_named():
+    points, faces = ball(count=600)
+    whole = repaired(points, faces, "ball").solids[0].volume
+    gone = np.zeros(len(faces), dtype=bool)
+    for vertex in (20, 200):
+        gone |= (faces == vertex).any(axis=1)
+    widest = max(np.linalg.norm(np.ptp(points[faces[(faces == vertex).any(axis=1)]].reshape(-1, 3), axis=0))
+                 for vertex in (20, 200))
+    found = repaired(points, faces[~gone], "ball", hole=widest + 1e-6)
+    assert len(found.solids) == 1 and found.solids[0].volume == pytest.approx(whole, rel=2e-3)
+    assert found.issues[0].code == "MENDED" and "2 holes were closed" in told(found)
+    with pytest.raises(InputError) as caught:
+        repaired(points, faces[~gone], "ball", hole=0.5)
+    assert caught.value.code == "OPEN_MESH" and f"{widest:.4g} mm across" in caught.value.message
+    assert "and 1 more" in caught.value.message and "strategy.mend, 0.5 mm" in caught.value.message
+
+
+def test_a_fin_and_triangles_that_cross_change_no_volume():
+    points, faces = ball()
+    whole = repaired(points, faces, "ball").solids[0].volume
+    a, b = faces[0, :2]
+    fin = np.vstack([points, 0.6 * (points[a] + points[b])])
+    found = repaired(fin, np.vstack([faces, [[a, b, len(points)]]]), "fin", hole=30.0)
+    assert [solid.volume for solid in found.solids] == pytest.approx([whole])
+    assert "enclose nothing" in told(found)
+    pushed = points.copy()
+    pushed[0] *= -1.2  # through the other side
+    with pytest.raises(InputError) as caught:
+        repaired(pushed, faces, "pushed")
+    assert caught.value.code == "SELF_CROSSING"
+    found = repaired(pushed, faces, "pushed", crossing=True)
+    assert "pairs of triangles cross" in told(found) and found.issues[-1].level == "warning"
+
+
+def test_what_stands_in_the_box_of_another_is_no_cavity():
+    """A ball, inside out, between the arms of a U: in its box, not in it."""
+    outline = np.array([[0, 0], [30, 0], [30, 30], [20, 30], [20, 10], [10, 10], [10, 30], [0, 30]], dtype=float)
+    low = np.column_stack([outline, np.zeros(8)])
+    points = np.vstack([low, low + [0.0, 0.0, 20.0]])
+    cap = [(0, 1, 4), (0, 4, 5), (1, 2, 4), (2, 3, 4), (0, 5, 7), (5, 6, 7)]
+    faces = [(a, c, b) for a, b, c in cap] + [(a + 8, b + 8, c + 8) for a, b, c in cap]
+    for k in range(8):
+        after = (k + 1) % 8
+        faces += [(k, after, after + 8), (k, after + 8, k + 8)]
+    inner, turned = ball(3.0, (15.0, 20.0, 10.0))
+    found = repaired(*both((points, np.array(faces)), (inner, turned[:, ::-1])), "both")
+    volumes = sorted(solid.volume for solid in found.solids)
+    assert volumes == pytest.approx([repaired(inner, turned, "ball").solids[0].volume, 700.0 * 20.0])
+
+
+def test_a_mesh_with_every_triangle_from_both_sides_is_one_solid():
+    points, faces = ball()
+    found = repaired(points, np.vstack([faces, faces[:, ::-1]]), "ball")
+    assert [solid.volume for solid in found.solids] == pytest.approx([repaired(points, faces, "ball").solids[0].volume])
 
 
 def test_a_surface_without_inside_is_refused():
