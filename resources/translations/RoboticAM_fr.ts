@@ -244,6 +244,11 @@
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Holes of meshes up to this size across are closed, which is told; larger ones are refused.</source>
+        <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How far a closed bead runs on past its seam.</source>
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
@@ -2287,6 +2292,11 @@
         <translation>Cacher la machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Holes of meshes up to this size across are closed, which is told; larger ones are refused.</source>
+        <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>How far a closed bead runs on past its seam.</source>
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
@@ -2900,6 +2910,11 @@
         <location filename="../../freecad_am/gui/inspection/inputs.py"/>
         <source>Measured points</source>
         <translation>Points mesurés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Mend</source>
+        <translation>Réparer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -6127,7 +6142,7 @@
         <translation>élément à déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>fill holes (Mesh, Close holes) or export it again</source>
         <translation>bouchez les trous (Mesh, Fermer les trous) ou exportez-le de nouveau</translation>
     </message>
@@ -7847,7 +7862,7 @@
         <translation>refuser</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>repair the mesh (Mesh, Analyze)</source>
         <translation>réparez le maillage (Mesh, Analyser)</translation>
     </message>
@@ -8422,9 +8437,29 @@
         <translation>le maillage n&apos;enferme rien ; exportez le solide de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>the mesh has a hole</source>
         <translation>le maillage a un trou</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; up to strategy.mend, {4} mm, holes are closed; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; jusqu&apos;à strategy.mend, {4} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; up to strategy.mend, {3} mm, holes are closed; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; jusqu&apos;à strategy.mend, {3} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
@@ -9022,9 +9057,14 @@
         <translation>cette paroi n&apos;a pas de paramètre fermé dont les lignes puissent guider des couches (plusieurs faces, ouvertures, un côté ou une extrémité oblique) ; utilisez constant-distance ou smooth</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>three or more triangles share an edge</source>
         <translation>trois triangles ou plus partagent une arête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>three or more triangles share an edge: {0} edges, the first at {1}; repair the mesh (Mesh, Analyze)</source>
+        <translation>trois triangles ou plus partagent une arête : {0} arêtes, la première en {1} ; réparez le maillage (Mesh, Analyser)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
@@ -10332,7 +10372,7 @@
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>{0}: {1} edges, the first at {2}; {3}</source>
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
     </message>

@@ -109,7 +109,7 @@ def _mended(
             "OPEN_MESH", label, f"the mesh has a hole: {len(large[0].loop)} edges, {large[0].size:.4g} mm across, at "
             f"{place(large[0].middle)}" + (f", and {len(large) - 1} more" if len(large) > 1 else "") + (
                 f"; up to strategy.mend, {size:g} mm, holes are closed" if size else ""
-            ) + "; fill holes (Mesh, Close holes) or export it again, or deposit a thin wall with strategy.kind surface",
+            ) + "; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one",
         )
     if found.split:
         at = place(vertices[before.ends[np.argmax(before.count > 2)]].mean(axis=0))
