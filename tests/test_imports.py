@@ -18,7 +18,7 @@ OURS = {
     "core/filling": {"core/issues", "core/geometry"},
     "core/toolpath": {"core/issues", "core/geometry"},
     "core/slicing": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
-    "core/layers": {"core/issues", "core/parameters", "core/geometry", "core/slicing"},
+    "core/layers": {"core/issues", "core/parameters", "core/geometry", "core/collision", "core/slicing"},
     "core/process": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/inspection": {"core/issues", "core/parameters", "core/geometry", "core/toolpath"},
     "core/collision": {"core/geometry"},

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.inside import inside_of
 from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ..geometry.plane import Plane
 from ..geometry.surroundings import Body
@@ -22,6 +23,8 @@ LARGEST = 12  # flat faces that the part may be laid on, beside the axes
 ALIKE = np.cos(np.radians(2.0))
 STANDING = 0.5  # layer heights above the lowest place; what is no higher stands there
 CLOSE = 0.01  # of the area of the part; areas nearer together are the same
+PLACES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
+MOST = 64  # parts of an edge of a facet between such places
 
 
 class Stacked(NamedTuple):
@@ -52,7 +55,7 @@ def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issue
 def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     """The axes and the directions out of large flat faces, the best first: the least area over nothing, then the least
     height, then in their order."""
-    vertices, normals, areas = _facets(bodies)
+    vertices, normals, areas = _facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
     ways = _candidates(normals, areas)
     steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
     found = [_judged(way, vertices, normals, areas, steep, standing) for way in ways]
@@ -60,13 +63,48 @@ def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     return sorted(found, key=lambda one: (round(one.area / total / CLOSE), round(one.height, 6)))
 
 
-def _facets(bodies: Sequence[Body]) -> tuple[Array, Array, Array]:
-    """Corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an area."""
+def _facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
+    """Corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an area; what of them another body covers,
+    within a slit of so many mm, does not count: touching bodies are one. None: each body is one by itself."""
     corners = np.concatenate([body.corners() for body in bodies])
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(normal, axis=1)
     some = doubled > 1e-12
-    return corners[some], normal[some] / doubled[some, None], 0.5 * doubled[some]
+    corners, normal, area = corners[some], normal[some] / doubled[some, None], 0.5 * doubled[some]
+    if len(bodies) > 1 and slit is not None:
+        own = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])[some]
+        area = area * _free(bodies, own, corners, normal, area, slit)
+    return corners, normal, area
+
+
+def _free(
+    bodies: Sequence[Body], own: NDArray[np.intp], corners: Array, normals: Array, areas: Array, slit: float
+) -> Array:
+    """The share (m,) of each triangle, of the body `own` (m,), a slit (mm) outside of which no other body is."""
+    parts = np.clip(np.ceil(np.sqrt(PLACES * areas / areas.sum())), 1, MOST).astype(np.intp)
+    covered = np.zeros(len(areas))
+    insides = [inside_of(body) for body in bodies]
+    for count in np.unique(parts):
+        some = np.flatnonzero(parts == count)
+        shares = _middles(int(count))
+        places = np.einsum("pk,mkc->mpc", shares, corners[some]) + slit * normals[some, None]
+        held = np.zeros(places.shape[:2], dtype=bool)
+        for number, inside in enumerate(insides):
+            others = np.flatnonzero(own[some] != number)
+            if inside is not None and len(others):
+                held[others] |= inside.holds(places[others].reshape(-1, 3)).reshape(len(others), -1)
+        covered[some] = held.mean(axis=1)
+    return 1.0 - covered
+
+
+def _middles(count: int) -> Array:
+    """Shares (count^2, 3) of the corners at the middles of the parts of a triangle whose edges are cut in so many."""
+    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    up = i + j < count
+    first = np.where(up, i + 1.0 / 3.0, count - 1 - i + 2.0 / 3.0)
+    other = np.where(up, j + 1.0 / 3.0, count - 1 - j + 2.0 / 3.0)
+    found: Array = np.stack([first, other, count - first - other], axis=1) / count
+    return found
 
 
 def _candidates(normals: Array, areas: Array) -> list[Array]:

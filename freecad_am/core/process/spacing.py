@@ -23,6 +23,7 @@ from ..toolpath import Array, Bead, Layer, Toolpath
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
+LEVEL = 1e-6  # mm; a layer whose points differ no more in height is a plane
 CORNER = np.radians(50.0)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
 SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than SUDDEN times the turns beside it
 SUDDEN = 3.0
@@ -47,11 +48,19 @@ class Curve:
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
     """Per layer but the first, (n,) mm: the distance of each of its points to the layer before, in order of deposit.
 
-    A spiral is one layer; there it is the distance of each point to the turn before. Beads that close gaps are left out, and
-    layers that nothing of the feature lies below.
+    A spiral is one layer; there it is the distance of each point to the turn before. Of plane layers that are filled it is
+    the distance of the planes: how far the nearest bead below is says how beads lie beside each other, not above. Beads that
+    close gaps are left out, and layers that nothing of the feature lies below.
     """
     if _is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
+    heights = _planes(toolpath)
+    if heights is not None:
+        return tuple(
+            np.full(count, above - below)
+            for below, above, layer in zip(heights, heights[1:], toolpath.layers[1:])
+            if not layer.first and (count := sum(len(bead) for bead in layer.beads if not bead.closing))
+        )
     above = [
         [] if layer.first else [bead.points for bead in layer.beads if not bead.closing] for layer in toolpath.layers[1:]
     ]
@@ -72,6 +81,10 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
         for mine, before in _quarters(bead):
             found[mine] = distance(bead.points[mine], before)
         return (found,)
+    heights = _planes(toolpath)
+    if heights is not None:
+        apart = np.where([layer.first for layer in toolpath.layers], np.nan, np.diff(heights, prepend=np.nan))
+        return tuple(np.full(len(bead), apart[layer]) for layer, _, bead in toolpath)
     done = [np.full(len(bead), np.nan) for bead in toolpath.layers[0].beads]
     for below, layer in zip(toolpath.layers, toolpath.layers[1:], strict=False):
         if layer.first:
@@ -93,6 +106,17 @@ def between_turns(bead: Bead) -> tuple[Array, ...]:
 def _is_spiral(toolpath: Toolpath) -> bool:
     beads = toolpath.layers[0].beads
     return len(toolpath.layers) == 1 and len(beads) == 1 and not beads[0].closed and toolpath.family == "revolution"
+
+
+def _planes(toolpath: Toolpath) -> Array | None:
+    """(layers,) mm along the Z of the frame, where layers are filled planes square to it; else None."""
+    if toolpath.family != "solid":
+        return None
+    up = toolpath.frame[:3, 2]
+    ends = np.array([
+        [(near := np.concatenate([bead.points for bead in layer.beads]) @ up).min(), near.max()] for layer in toolpath.layers
+    ])
+    return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= LEVEL).all() else None
 
 
 def _quarters(bead: Bead) -> Iterator[tuple[NDArray[np.bool_], Curve]]:

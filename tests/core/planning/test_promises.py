@@ -6,7 +6,9 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
+from freecad_am.core.issues import NOTE, WARNING, Issue
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning.motion import assemble
@@ -117,6 +119,30 @@ def test_a_nozzle_that_meets_deposit_on_rapids_though_planning_found_nothing(sou
     assert set(found) == {"The nozzle stays clear on the rapids"}
     entry, = found.values()
     assert entry.worst >= 5.0 and entry.place is not None
+
+
+def test_layers_that_are_not_one_layer_height_apart(sound):
+    """What families allow of the distance they say themselves; how far the worst is off is found from the beads alone."""
+    evidence = sound[2]
+    for share in (0.5, -0.4):
+        way = share * HEIGHT * np.array([0.0, 0.0, 1.0])
+        layers = tuple(
+            dataclasses.replace(layer, beads=tuple(
+                dataclasses.replace(bead, points=bead.points + way, tangents=None) for bead in layer.beads
+            )) if number >= 3 else layer for number, layer in enumerate(evidence.toolpath.layers)
+        )
+        issue = Issue(WARNING, "SPACING", "layers are not one layer height apart", 3)
+        found = broken(dataclasses.replace(
+            evidence, toolpath=dataclasses.replace(evidence.toolpath, layers=layers), issues=(issue,),
+        ))
+        assert set(found) == {"Layers lie one layer height apart"}
+        entry, = found.values()
+        below, above = (np.vstack([bead.points for bead in layers[k].beads]) for k in (2, 3))
+        away = cKDTree(below).query(above)[0]
+        assert entry.place[0] == 3 and entry.unit == "mm"
+        assert entry.worst == pytest.approx(away[np.argmax(np.abs(away - HEIGHT))], rel=0.02)
+    other = Issue(NOTE, "SPACING", "layers are one layer height apart where the wall allows", 3)
+    assert not broken(dataclasses.replace(evidence, issues=(other,)))
 
 
 @pytest.mark.parametrize(

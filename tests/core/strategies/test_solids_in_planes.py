@@ -16,6 +16,7 @@ from freecad_am.core.layers.stacking import stacked
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SolidParameters
+from freecad_am.core.process import spacing
 from freecad_am.core.strategies.solids.plan import plan
 
 ERROR = 0.05
@@ -120,6 +121,21 @@ def test_covers_what_beads_can_reach_and_nothing_else(fill):
         assert (covered & ~section).sum() <= 0.01 * section.sum()
 
 
+@pytest.mark.parametrize("fill", ["contours", "zigzag"])
+@pytest.mark.parametrize("way", ["0 0 1", "1 2 -3"])
+def test_plane_layers_are_as_far_apart_as_their_planes(fill, way):
+    """However far beads are from the ones below; a layer left out, as between two plates, is a distance too."""
+    made = planned(box((0, 0, 0), (40, 30, 12)), fill=fill, direction=way, layer_height=2.0)
+    values = np.concatenate(spacing.between_layers(made))
+    np.testing.assert_allclose(values, 2.0, atol=1e-9)
+    assert len(values) == sum(len(bead) for layer, _, bead in made if layer and not bead.closing)
+    local = spacing.local_distances(made)
+    for (layer, _, bead), one in zip(made, local, strict=True):
+        assert len(one) == len(bead) and (np.isnan(one).all() if layer == 0 else np.abs(one - 2.0).max() < 1e-9)
+    plates = planned(box((0, 0, 0), (40, 30, 4)), box((0, 0, 8), (40, 30, 12)), fill=fill, layer_height=2.0)
+    assert [round(float(one.max()), 9) for one in spacing.between_layers(plates)] == [2.0, 6.0, 2.0]
+
+
 def test_deposits_the_volume_of_the_part():
     made = planned(tube(RING), fill="contours")
     volume = made.length * 4.0 * 4.0
@@ -183,6 +199,28 @@ def test_the_best_direction_is_the_one_that_needs_no_support():
     np.testing.assert_allclose(solids.groups[0].base.frame[:3, 2], [0.0, 1.0, 0.0], atol=1e-12)
     (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
     assert "20 mm high" in issue.message and "1400 mm^2" in issue.message
+
+
+def test_faces_where_touching_solids_meet_lean_over_nothing():
+    """A T of a stem and a plate, drawn apart and overlapping by a millimetre: as good to lay down as the T in one piece, and
+    what leans out along Z is what the plate has beside the stem."""
+    def told(*bodies, fuse="auto"):
+        solids = stacked(bodies, SolidParameters(direction="auto", layer_height=2.0, fuse=fuse), "T")
+        (issue,) = [issue for issue in solids.issues if issue.code == "DIRECTION"]
+        return solids.groups[0].base.frame[:3, 2], issue.message
+
+    def along_z(message):
+        return float(message.split("along (0, 0, 1) it would be ")[1].split(" mm^2")[0])
+
+    plate = box((-40, -10, 30), (40, 10, 40))
+    for stem in (box((-5, -10, 0), (5, 10, 30)), box((-5, -10, 0), (5, 10, 31))):
+        way, message = told(stem, plate)
+        assert abs(way[1]) == 1.0 and "20 mm high" in message
+        assert along_z(message) == pytest.approx(1400.0, rel=0.02)
+    assert along_z(told(stem, plate, fuse="none")[1]) == pytest.approx(1600.0)
+    # a foot that the stem stands on does not count either: none of its area is over nothing
+    way, message = told(box((-5, -10, 0), (5, 10, 30)), box((-20, -10, -10), (20, 10, 0)), box((-20, -10, 30), (20, 10, 40)))
+    assert abs(way[1]) == 1.0 and along_z(message) == pytest.approx(600.0, rel=0.02)
 
 
 @pytest.mark.parametrize(
