@@ -31,10 +31,12 @@ class RoboticAMWorkbench(Gui.Workbench):
         self.appendMenu("Robotic AM", [*names, "Separator", whats_this.NAME])
 
     def Activated(self):
-        """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed."""
-        from freecad_am.gui import menus
+        """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed, and its toolbar
+        all tools."""
+        from freecad_am.gui import menus, toolbar
 
         menus.show_tooltips(self.MenuText)
+        toolbar.keep_whole(self.MenuText)
 
     def ContextMenu(self, recipient):
         """Called for a right click in the tree or the 3D view."""

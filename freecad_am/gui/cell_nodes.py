@@ -22,7 +22,7 @@ from ..core.simulation.solids import capsule
 from ..core.toolpath import Toolpath
 from ..objects.link_meshes import meshes_of
 from .lines import Array, placed, turned
-from .machine_links import Links, MachineNodes, of_solid, plain_links
+from .machine_links import Links, MachineNodes, move, of_solid, plain_links
 from .wall_nodes import unpickable
 
 _LEAST_THICKNESS = 1.0
@@ -59,7 +59,12 @@ class Scenery:
 
 def without_machine(parameters: CellParameters, tip: Array, tool: Array, mount: Array) -> Scenery:
     """The nozzle where the deposit ends: its last point (3,) and the tool axis there (3,)."""
-    return Scenery(parameters, mount, frames.pose(frames.smallest_rotation([0.0, 0.0, 1.0], tool), tip))
+    return Scenery(parameters, mount, at_end(tip, tool))
+
+
+def at_end(tip: Array, tool: Array) -> Array:
+    """(4, 4) pose of a nozzle whose tip is at a point (3,), its axis along the tool's (3,)."""
+    return frames.pose(frames.smallest_rotation([0.0, 0.0, 1.0], tool), tip)
 
 
 def at_the_end(parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]) -> Scenery:
@@ -103,6 +108,7 @@ class CellNodes:
 
     def __init__(self, ghost: bool = False) -> None:
         self.machine: MachineNodes | None = None
+        self.standing: Any = None  # the transformation of the nozzle
         self.looks: tuple[Any, ...] = ()  # what the machine's nodes were made of
         self.platform, self.nozzle, self.links = coin.SoSeparator(), coin.SoSeparator(), coin.SoSeparator()
         self.switch, root = coin.SoSwitch(), coin.SoSeparator()
@@ -120,7 +126,7 @@ class CellNodes:
         """Draw nothing."""
         for node in (self.platform, self.nozzle, self.links):
             node.removeAllChildren()
-        self.machine, self.looks = None, ()
+        self.machine, self.looks, self.standing = None, (), None
 
     def set(self, scenery: Scenery) -> None:
         """Draw a cell."""
@@ -130,10 +136,16 @@ class CellNodes:
         for child in platform_nodes(value, scenery.mount):
             self.platform.addChild(child)
         self.nozzle.removeAllChildren()
-        self.nozzle.addChild(placed(scenery.nozzle))
+        self.standing = placed(scenery.nozzle)
+        self.nozzle.addChild(self.standing)
         self.nozzle.addChild(nozzle_node(value))
         if self.machine is not None:
             self.nozzle.addChild(holder_node(value))
+
+    def move_nozzle(self, pose: Array) -> None:
+        """Move the nozzle that is drawn to a pose (4, 4)."""
+        if self.standing is not None:
+            move(self.standing.matrix, pose)
 
     def _set_machine(self, value: CellParameters, rest: Rest | None) -> None:
         """Pose the machine; its nodes are made anew only where it is to look otherwise."""

@@ -13,7 +13,7 @@ from PySide import QtCore, QtGui
 
 from ..core.issues import AmError, InputError
 from ..core.kinematics import machine as machines
-from ..core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
+from ..core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT
 from ..core.kinematics.machine import Machine
 from ..core.kinematics.proposed_cell import cell_of
 from ..core.parameters.cell import CellParameters
@@ -38,15 +38,17 @@ _OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL)
 
 
 class CellPanel(PreviewPanel):
-    """Follows the machine: one with sliding and turning axes carries the part on its table, and has no branches; a robot
-    gets a deposition point and a branch that suit it, unless others were entered."""
+    """Follows machine and set-up: a machine with sliding and turning axes carries the part on its table, and has no
+    branches; a robot gets a deposition point, or a place of the platform, and a branch that suit, unless others were
+    entered."""
 
     stage, draft = Cell, "Cell"
     lines = 4
 
     def __init__(self, obj: Any = None) -> None:
-        self.of_machine: dict[str, CellParameters] = {}  # what is proposed for machines, by what the field holds
-        self.before = ""  # the machine that was followed last
+        # what is proposed, by machine and set-up as the fields hold them, and which of these were followed last
+        self.of_machine: dict[tuple[str, str], CellParameters] = {}
+        self.before: tuple[str, str] | None = None
         self.unknown = ""  # what was wrong with its name
         self.put: dict[str, Any] = {}  # what the panel itself has entered
         self.noted: dict[str, Any] = {}  # what fields held when something was told of a proposal
@@ -117,26 +119,36 @@ class CellPanel(PreviewPanel):
 
     def _ask_proposal(self, name: str, machine: Machine) -> None:
         """Find out, beside the window, what suits the machine; nothing for one that was not chosen here."""
-        before, self.before = self.before, name
-        if name == before or (not before and self.obj is not None):
+        setup = self._widget(SETUP).currentData()
+        before, self.before = self.before, (name, setup)
+        if before == self.before or (before is None and self.obj is not None):
             return
         self.proposing.cancel()
         for place in self.noted:
             self.tell(place, "")
         self.noted.clear()
-        if machine.is_table or self._widget(SETUP).currentData() != PART_ON_ROBOT:
+        if machine.is_table or setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
             return
-        folders, known = user_machines.folders(), dict(self.of_machine)
+        folders, known, wanted, tool = user_machines.folders(), dict(self.of_machine), self.before, self._tool()
 
-        def work() -> dict[str, CellParameters]:
-            for one in filter(None, (before, name)):
+        def work() -> dict[tuple[str, str], CellParameters]:
+            for one in filter(None, (before, wanted)):
                 with contextlib.suppress(InputError):  # the one before is gone
-                    known[one] = known.get(one) or cell_of(one, folders)
+                    known[one] = known.get(one) or cell_of(one[0], folders, one[1], tool)
             return known
 
-        self.proposing.start(work, lambda worker: self._propose(worker, before, name, machine.title))
+        self.proposing.start(work, lambda worker: self._propose(worker, before, wanted, machine.title))
 
-    def _propose(self, worker: Worker, before: str, name: str, title: str) -> None:
+    def _tool(self) -> Any:
+        """The pose of the tip on the flange as it is entered, None where that cannot be read as numbers."""
+        row, held = self.places[TOOL][0].row, self._holds(TOOL)
+        with contextlib.suppress(AmError):
+            return None if held is None else row.inner(held, row.label)
+        return None
+
+    def _propose(
+        self, worker: Worker, before: tuple[str, str] | None, wanted: tuple[str, str], title: str
+    ) -> None:
         """Enter what suits the machine where nobody has entered anything else than what suited the one before."""
         try:
             self.of_machine = worker.result()
@@ -146,22 +158,23 @@ class CellPanel(PreviewPanel):
         except Exception as error:  # of nobody's making
             self._tell_of_machine(f"{type(error).__name__}: {error}")
             return
-        proposal, usual = self.of_machine.get(name), self.of_machine.get(before, CellParameters())
+        proposal = self.of_machine.get(wanted)
+        usual = (None if before is None else self.of_machine.get(before)) or CellParameters()
         if proposal is None:  # no cell can have it, which the preview tells
             return
         for place, value, was in (
             (POINT, proposal.deposition_point, usual.deposition_point), (BRANCH, proposal.branch, usual.branch),
         ):
             field = self.places[place][0]
-            wanted, holds = field.row.outer(value), self._holds(place)
-            if _alike(holds, wanted):
+            shown, holds = field.row.outer(value), self._holds(place)
+            if _alike(holds, shown):
                 continue
             if self.enabled[place] and any(_alike(holds, one) for one in (self.put.get(place), field.row.outer(was))):
-                field.show(wanted)
-                self.put[place] = wanted
+                field.show(shown)
+                self.put[place] = shown
                 told = tr("Proposed for {}; enter what yours really has.").format(title)
             else:
-                told = tr("Left as it was entered; for {} it would be {}.").format(title, _told(wanted))
+                told = tr("Left as it was entered; for {} it would be {}.").format(title, _told(shown))
             self.noted[place] = self._holds(place)
             self.tell(place, told, wrong=False)
 

@@ -12,6 +12,7 @@ from .colours import WRONG
 
 WIDEST_LABEL = 96  # pixels; longer ones go on below
 LONGEST_ROW = 2  # fields beside a label; more go below it
+WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer ones go below it
 
 
 class Note(QtGui.QLabel):
@@ -82,7 +83,7 @@ class Fold:
         column.setSpacing(1)
         column.addWidget(widget)
         column.addWidget(note)
-        if widget.layout() is not None and widget.layout().count() > LONGEST_ROW:
+        if _is_long(widget):
             self.form.addRow(name)
             self.form.addRow(both)
         else:
@@ -113,3 +114,11 @@ class Fold:
     def _show(self, unfolded: bool) -> None:
         self.body.setVisible(unfolded)
         self.heading.setArrowType(QtCore.Qt.DownArrow if unfolded else QtCore.Qt.RightArrow)
+
+
+def _is_long(widget: Any) -> bool:
+    """Whether a field needs the width of the panel to be read: of several fields, or a choice of long texts."""
+    if isinstance(widget, QtGui.QComboBox):
+        measure = widget.fontMetrics().boundingRect
+        return any(measure(widget.itemText(row)).width() > WIDEST_CHOICE for row in range(widget.count()))
+    return widget.layout() is not None and widget.layout().count() > LONGEST_ROW

@@ -250,7 +250,9 @@ class JobPanel:
             self.say(tr(CLOSED))
         else:
             self.close()
-            _tell_next([obj for obj in api.stages_of(self.document) if obj.Name not in before])
+            made = [obj for obj in api.stages_of(self.document) if obj.Name not in before]
+            _show_alone(made)
+            _tell_next(made)
             return True
         return False
 
@@ -341,6 +343,13 @@ def _tell_next(stages: list[Any]) -> None:
     Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
     App.Console.PrintMessage(text + "\n")
     _show_whole()
+
+
+def _show_alone(stages: list[Any]) -> None:
+    """Hide what earlier jobs of the document have drawn: their cells and paths would lie across those of this one."""
+    for obj in api.stages_of(stages[0].Document) if stages else []:
+        if obj not in stages and obj.ViewObject.Visibility:
+            obj.ViewObject.Visibility = False
 
 
 def _show_whole() -> None:

@@ -20,7 +20,7 @@ from ..objects.findings import issues_of
 from ..objects.progress import Cancelled
 from ..objects.rows import group_of, rows
 from ..objects.stage import Stage
-from . import fields, icons, inputs, recorded, suggestions
+from . import closing, fields, icons, inputs, recorded, suggestions
 from .colours import WRONG
 from .fold import Fold
 from .later import Later
@@ -357,6 +357,7 @@ def show(panel: Any) -> None:
         App.Console.PrintWarning(tr("Another task panel is open; close it first.") + "\n")
         return
     Gui.Control.showDialog(panel)
+    closing.with_document(panel)
 
 
 def edit(obj: Any) -> None:

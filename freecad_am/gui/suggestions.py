@@ -15,6 +15,8 @@ from ..posts import catalogue
 from .choices import machines
 from .texts import tr
 
+NO_POST = "none"
+
 
 def of(section: str, key: str) -> Callable[[], list[tuple[str, str]]] | None:
     """A function that lists the texts for a parameter and what is shown of each, None where anything goes."""
@@ -28,7 +30,7 @@ def _texts_of(section: str, key: str) -> Callable[[], list[str]] | None:
     return {
         ("cell", "limits"): lambda: ["maker", "paper"],
         ("cell", "branch"): _branches,
-        ("program", "post"): lambda: [*catalogue.NAMES, "none"],
+        ("program", "post"): lambda: [*catalogue.NAMES, NO_POST],
         ("process", "bead_model"): lambda: ["none", *bead_table.BUILT_IN],
     }.get((section, key))
 
@@ -51,7 +53,8 @@ def no_post(name: str) -> str:
 
 
 def post_for(path: Any) -> str:
-    """The post for the machine of a joint path, '' where the one by default will do or none is known."""
+    """The post for the machine of a joint path, `none` where nothing writes for its controller; '' where the one by default
+    will do, or the machine says nothing."""
     if path is None or path.Cell is None:
         return ""
     try:
@@ -59,4 +62,6 @@ def post_for(path: Any) -> str:
     except InputError:
         return ""
     wanted = preferences.post() or ProgramParameters().post
-    return posts[0] if posts and wanted not in posts else ""
+    if posts is None or wanted in posts:
+        return ""
+    return posts[0] if posts else NO_POST

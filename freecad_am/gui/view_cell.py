@@ -13,7 +13,7 @@ from ..core.kinematics.cell import mounted
 from ..objects import user_machines
 from ..objects.stage import stage_of
 from ..objects.store import Place
-from .cell_nodes import CellNodes, with_machine, without_machine
+from .cell_nodes import CellNodes, at_end, with_machine, without_machine
 from .path import path_view
 from .texts import tr
 from .view_base import StageView
@@ -29,6 +29,7 @@ class CellView(StageView):
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
         "ShowMachine": ("App::PropertyBool", False, "Show the machine at rest, the nozzle upright on the highest point."),
     }
+    end = np.zeros(3), np.array([0.0, 0.0, 1.0])  # the last point of the deposit, and the tool axis there
     stands_on = ""  # the key of the toolpath that platform and nozzle were placed by, "" for none
 
     def scene(self, root: Any) -> None:
@@ -47,7 +48,13 @@ class CellView(StageView):
             points, tools, frame, family = standing
             tip, axis = points[-1], tools[-1]
             mount = mounted(value, frame, family)
-        self.nodes.set(without_machine(value, tip, axis, mount))
+        self.end = tip, axis
+        self.nodes.set(without_machine(value, *(_reached(obj) or self.end), mount))
+
+    def follow_stretch(self, view: path_view.PathView) -> None:
+        """The nozzle goes to where a stretch of a path ends that is looked at; the machine at rest stays."""
+        if self.drawn and self.nodes.machine is None and view.obj.ViewObject.Visibility:
+            self.nodes.move_nozzle(at_end(*(view.reached() or self.end)))
 
     def follow(self) -> None:
         """Draw anew where the toolpath is another than it was."""
@@ -87,6 +94,15 @@ def _standing(obj: Any) -> Any:
     return _of_toolpath(obj, (*last, "points"), (*last, "tool"), ("frame",), ("family",))
 
 
+def _reached(obj: Any) -> Any:
+    """Where a stretch ends that is shown of a path for the cell, None where none is."""
+    for follower in obj.InList:
+        view = getattr(follower.ViewObject, "Proxy", None)
+        if isinstance(view, path_view.PathView) and follower.ViewObject.Visibility and view.shown is not None:
+            return view.reached()
+    return None
+
+
 def _of_toolpath(obj: Any, *places: Place) -> Any:
     toolpath = toolpath_of(obj)
     if toolpath is not None:
@@ -106,4 +122,11 @@ def _path_changed(view: path_view.PathView) -> None:
         cell.ViewObject.Proxy.follow()
 
 
+def _stretch_changed(view: path_view.PathView) -> None:
+    cell = view.obj.Cell
+    if cell is not None and isinstance(cell.ViewObject.Proxy, CellView):
+        cell.ViewObject.Proxy.follow_stretch(view)
+
+
 path_view.listen(_path_changed)
+path_view.listen_to_stretches(_stretch_changed)

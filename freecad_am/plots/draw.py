@@ -21,8 +21,10 @@ DPI = 100.0
 # of a frame, in pixels: what is left free at its sides, above for its title, below for its scale
 LEFT, RIGHT, ABOVE, BELOW, BARE = 66.0, 14.0, 24.0, 37.0, 6.0
 NUMBERS = 12.0  # above a frame that has the numbers of layers
+KEYS = 12.0  # of a row of names of curves, where they have no room beside the title
 TEXT, TITLE, SMALL = 7.6, 8.6, 6.4  # points
 CHARACTER = 6.0  # pixels, about, of a text
+TITLE_ROOM = 1.2  # of a title, which is larger
 MOST_BORDERS, FEW_WRONG = 80, 40
 APART = 26.0  # pixels between the numbers of layers, at least
 BORDER, FRAME, FORBIDDEN, WANTED = 0.35, 0.5, 0.13, 0.14  # opacities
@@ -60,17 +62,19 @@ def figure(
     shared = share(charts)
     across = (min(chart.across()[0] for chart in charts), max(chart.across()[1] for chart in charts)) if shared else None
     places, top = [], 0.0
-    above = [ABOVE + (NUMBERS if chart.borders is not None and (number == 0 or not shared) else 0.0)
-             for number, chart in enumerate(charts)]
+    across_pixels = max(width - LEFT - RIGHT, 20.0)
+    numbers = [chart.borders is not None and (number == 0 or not shared) for number, chart in enumerate(charts)]
+    above = [ABOVE + NUMBERS * there + KEYS * len(_rows_of_keys(chart, look, across_pixels))
+             for chart, there in zip(charts, numbers, strict=True)]
     fixed = sum(above) + sum(BELOW if _numbered(shared, number, charts) else BARE for number in range(len(charts)))
     tall = max((height - fixed) / len(charts), 12.0)
     for number, chart in enumerate(charts):
         numbered = _numbered(shared, number, charts)
         place = Place(
-            LEFT, top + above[number], max(width - LEFT - RIGHT, 20.0), tall,
+            LEFT, top + above[number], across_pixels, tall,
             window.across.get(0 if shared else number) or across or chart.across(), window.up.get(number) or chart.up(),
         )
-        _Frame(made, chart, look, place, width, height, numbered, above[number] > ABOVE).draw()
+        _Frame(made, chart, look, place, width, height, numbered, numbers[number]).draw()
         places.append(place)
         top += above[number] + tall + (BELOW if numbered else BARE)
     return made, tuple(places)
@@ -83,6 +87,34 @@ def share(charts: Sequence[Chart]) -> bool:
 
 def _numbered(shared: bool, number: int, charts: Sequence[Chart]) -> bool:
     return not shared or number == len(charts) - 1
+
+
+def _named(chart: Chart) -> list[Curve]:
+    """The curves whose names are told."""
+    return [curve for curve in chart.curves if curve.kind != DOTS]
+
+
+def _titled(chart: Chart, look: Look) -> str:
+    """The title of a chart, with how many values lie beyond its limits."""
+    count = chart.wrong_count
+    return look.words.beyond.format(chart.title, f"{count:,}") if count else chart.title
+
+
+def _rows_of_keys(chart: Chart, look: Look, width: float) -> list[list[Curve]]:
+    """The names of curves in rows between title and frame, none where they have room beside the title."""
+    named = _named(chart)
+    room = [CHARACTER * (len(curve.name) + 3.0) for curve in named]
+    if len(named) < 2 or CHARACTER * TITLE_ROOM * len(_titled(chart, look)) + sum(room) <= width:
+        return []
+    rows: list[list[Curve]] = []
+    left = 0.0
+    for curve, needed in zip(named, room, strict=True):
+        if not rows or needed > left:
+            rows.append([])
+            left = width
+        rows[-1].append(curve)
+        left -= needed
+    return rows
 
 
 @dataclass(frozen=True)
@@ -210,13 +242,12 @@ class _Frame:
                    color=colour, ha="left" if left else "right", size=SMALL)
 
     def _title(self) -> None:
-        count = self.chart.wrong_count
         words = self.look.words
-        title = words.beyond.format(self.chart.title, f"{count:,}") if count else self.chart.title
         down = self.place.top - (7.0 + NUMBERS if self.layers else 7.0)
-        self._text(self.place.left, down, title, color=self.look.bad if count else self.look.ink, size=TITLE,
-                   weight="bold")
-        named = [curve for curve in self.chart.curves if curve.kind != DOTS]
+        rows = _rows_of_keys(self.chart, self.look, self.place.width)
+        self._text(self.place.left, down - KEYS * len(rows), _titled(self.chart, self.look), size=TITLE, weight="bold",
+                   color=self.look.bad if self.chart.wrong_count else self.look.ink)
+        named = _named(self.chart)
         right = self.place.left + self.place.width
         least, most = self.chart.limits
         if len(named) < 2:
@@ -227,19 +258,18 @@ class _Frame:
             elif self.chart.unlimited:
                 self._text(right, down, self.chart.unlimited, ha="right", size=SMALL)
             return
-        if CHARACTER * (1.2 * len(title) + sum(len(curve.name) + 3.0 for curve in named)) > self.place.width:
-            self._column(named)
-            return
+        below = down - KEYS * len(rows)
+        for number, row in enumerate(rows):
+            self._keys(right, below + KEYS * (number + 1), row)
+        if not rows:
+            self._keys(right, down, named)
+
+    def _keys(self, right: float, down: float, named: Sequence[Curve]) -> None:
+        """Names of curves in one row that ends at the right."""
         for curve in reversed(named):
             right -= CHARACTER * len(curve.name) + 4.0
             self._key(right, down, curve)
             right -= 14.0
-
-    def _column(self, named: Sequence[Curve]) -> None:
-        """Names of curves one below the other in the frame, where they have no room above it."""
-        left = self.place.left + self.place.width - CHARACTER * max(len(curve.name) for curve in named)
-        for number, curve in enumerate(named):
-            self._key(left, self.place.top + 12.0 * (number + 1), curve)
 
     def _key(self, left: float, down: float, curve: Curve) -> None:
         self._text(left, down, curve.name)

@@ -75,6 +75,13 @@ class Person:
             # a test is one event to Qt, which deletes between two what is to be deleted later
             self.core.QCoreApplication.sendPostedEvents(None, self.deferred)
             time.sleep(0.002)
+        self.give_focus_back()
+
+    def give_focus_back(self):
+        """To the main window once a dialog is closed, such as that of long work: there is no window manager that would."""
+        application = self.widgets.QApplication
+        if not (application.activeWindow() or application.activeModalWidget() or application.activePopupWidget()):
+            self.window.activateWindow()
 
     def until(self, condition, what, seconds=20):
         end = time.monotonic() + seconds

@@ -51,6 +51,9 @@ def stands_as(person, parameters, toolpath):
     flange = KdlArm(cell.machine).forward([joints])[0]
     if drawn is None or len(drawn) != 9:
         return False
+    if cell.setup == "tool-on-robot":
+        tip = (drawn[2] @ flange @ cell.carried)[:3, 3]
+        return np.abs(tip - resting_point(toolpath, cell.mount)).max() < 2e-3
     part = drawn[2] @ flange @ cell.carried @ frames.inverse(cell.mount)
     return np.abs(part - np.eye(4)).max() < 2e-3 and np.abs(drawn[0] - cell.mount).max() < 1e-5
 
@@ -179,10 +182,40 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     assert (made.machine, made.branch, document.UndoCount) == ("motoman-ar1440", other.branch, steps + 1)
 
 
+def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisphere):
+    """With the torch as it is entered; what was proposed for the one before goes, what was typed stays."""
+    document = hemisphere.Document
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    note = person.field(panel, f"{POINT}Note")
+    hand.enter(panel, "Machine", "kuka-kr16-2")
+    first = cell_of("kuka-kr16-2")
+    person.until(lambda: entered_point(person, panel) == list(first.deposition_point[:3]), "what is proposed", 10)
+    person.choose(panel, "Setup", "tool-on-robot")
+    wanted = cell_of("kuka-kr16-2", setup="tool-on-robot")
+    person.until(lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]), "the platform", 10)
+    assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
+    assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
+    told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
+    person.until(lambda: stands_as(person, wanted, None), "the robot over its platform", 10)
+    person.look()
+    person.screenshot("cell_tool_on_robot")
+    person.choose(panel, "Setup", "part-on-robot")
+    person.until(lambda: entered_point(person, panel) == list(first.deposition_point[:3]), "the first again", 10)
+    hand.enter(panel, f"{POINT}Z", "900 mm")
+    person.choose(panel, "Setup", "tool-on-robot")
+    person.until(lambda: note.isVisible() and note.text().startswith("Left as it was entered"), "what is kept", 10)
+    assert entered_point(person, panel)[2] == 900.0
+    person.press("Ok")
+    person.panel_closed()
+    made = api.result(document.Cell)
+    assert (made.setup, made.branch, made.deposition_point[2]) == ("tool-on-robot", wanted.branch, 900.0)
+
+
 def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(person, planned, monkeypatch):
-    def slowly(name, folders):
+    def slowly(*asked):
         time.sleep(1.0)
-        return cell_of(name, folders)
+        return cell_of(*asked)
 
     cell = planned[0]
     monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
@@ -225,12 +258,12 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
     """The user cancels while OK waits for it, or the work ends in an error of nobody's making."""
     document = hemisphere.Document
 
-    def proposing(name, folders):
+    def proposing(*asked):
         raise RuntimeError("broken")
 
-    def slowly(name, folders):
+    def slowly(*asked):
         time.sleep(1.0)
-        return cell_of(name, folders)
+        return cell_of(*asked)
 
     def cancelled(work, title):
         raise Cancelled

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.gui.commands import GROUPS
 from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
 from freecad_am.gui.simulation import dock as simulations
@@ -89,6 +90,23 @@ def test_a_window_of_1280_by_800_holds_them_as_tabs_with_the_newest_in_front(per
         close(person, dock)
         assert opened(person, path, command) is dock
         assert [in_front(one) for one in docks] == [one is dock for one in docks]
+
+
+def test_a_window_of_1280_pixels_shows_all_tools(person, path):
+    bar = next(bar for bar in person.window.findChildren(person.widgets.QToolBar) if bar.windowTitle() == "Robotic AM")
+    person.until(lambda: bar.width() >= bar.sizeHint().width(), "room for the toolbar", 5)
+    for name in (name for group in GROUPS for name in group):
+        button = person.button(f"RoboticAM_{name}")
+        assert bar.rect().contains(button.geometry()) and button.mapTo(person.window, button.rect().topRight()).x() < WIDE
+    rows = {one.y() for one in person.window.findChildren(person.widgets.QToolBar) if one.isVisible() and one is not bar}
+    person.screenshot("toolbar-1280")
+    # where it has room beside others it stays where the user puts it
+    person.window.removeToolBarBreak(bar)
+    person.window.setGeometry(0, 0, 2400, HIGH)
+    person.idle(0.3)
+    assert bar.y() in rows and not person.window.toolBarBreak(bar)
+    person.window.setGeometry(0, 0, WIDE, HIGH)
+    person.until(lambda: person.window.toolBarBreak(bar), "its row again", 5)
 
 
 def test_where_the_user_has_put_them_they_are_again(person, path):

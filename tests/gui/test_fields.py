@@ -191,14 +191,25 @@ def test_a_panel_stays_with_its_document(person, hemisphere):
     assert doc.getObject("Cell") is not None and other.getObject("Cell") is None
 
 
-def test_use_selection_after_the_document_was_closed_says_so(person, hemisphere):
-    App.newDocument("Other")
+@pytest.mark.parametrize("tool", ["NewJob", "Cell", "Feature", "Toolpath", "Inspect"])
+def test_a_panel_goes_with_its_document_alone(person, hemisphere, tool):
+    api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
+    other = App.newDocument("Other")
     App.setActiveDocument(hemisphere.Document.Name)
-    person.click("RoboticAM_Feature")
-    panel = person.panel("RoboticAM_RevolutionFeature")
+    person.select(hemisphere)
+    person.click(f"RoboticAM_{tool}")
+    assert person.gui.Control.activeDialog()
+    App.closeDocument(other.Name)
+    person.idle(0.3)
+    assert person.gui.Control.activeDialog()
+    App.newDocument("Third")
     App.closeDocument(hemisphere.Document.Name)
-    person.field(panel, "UseSource").click()
-    person.until(lambda: "is gone" in person.panel_error(panel), "the panel to say so", 5)
+    person.panel_closed()
+    # the one that is opened next is another one
+    App.newDocument("Fourth")
+    App.closeDocument("Third")
+    person.click("RoboticAM_Cell")
+    assert person.panel("RoboticAM_Cell").isVisible()
     person.press("Cancel")
     person.panel_closed()
 

@@ -351,3 +351,29 @@ def test_of_three_hundred_thousand_points_the_foremost_near_the_mouse_is_meant()
     alone, beside = world[:1] - turn[3, :3], np.array([[20.0, 0.0], [25.0, 0.0]]) + flat[0]
     hit = [clicks.nearest(alone @ turn[:3, :3].T, 9.0, 9.0, sight, place) for place in beside]
     assert hit == [0, None]
+
+
+def test_the_nozzle_stands_where_the_stretch_ends_that_is_shown(person, joint_path):
+    cell, rows = joint_path.Cell, joint_path.ViewObject.Proxy.rows
+    cell.ViewObject.Visibility = True
+    person.click("RoboticAM_Path")
+    panel = person.panel(dock.NAME)
+    nozzle = cell.ViewObject.Proxy.nodes.nozzle
+
+    def stands():
+        """Tip and axis of the nozzle that is drawn."""
+        search = nozzle.getChild(0).matrix.getValue().getValue()
+        return np.array(search)[3, :3], np.array(search)[2, :3]
+
+    end = stands()
+    person.field(panel, "to_spin").setValue(3)
+    low, high = rows.of_layers(3, 3)
+    assert np.allclose(stands()[0], rows.points[high - 1], atol=1e-3)
+    person.field(panel, "point_slider").setValue(7)
+    bead = rows.bead(rows.bead_of(low + 7))
+    assert np.allclose(stands()[0], rows.points[low + 7], atol=1e-3)
+    assert np.allclose(stands()[1], bead.tool[7], atol=1e-5)
+    person.screenshot("nozzle-at-layer")
+    person.field(panel, "all").click()
+    assert np.allclose(stands(), end, atol=1e-6)
+    panel.close()

@@ -189,3 +189,21 @@ def test_the_point_at_the_origin_is_of_no_path(person, jobs):
     assert points.set_node.numPoints.getValue() == 0 and points.coordinates.point.getNum() == 0
     points.set([[1.0, 2.0, 3.0]])
     assert points.set_node.numPoints.getValue() == 1
+
+
+def test_a_new_job_is_seen_alone(person, hemisphere, coarse):
+    doc = hemisphere.Document
+    other = doc.addObject("Part::Sphere", "Other")
+    other.Radius, other.Angle1, other.Placement.Base.x = 40, 0, 200
+    doc.recompute()
+    made = []
+    for part in (hemisphere, other):
+        before = set(api.stages_of(doc))
+        person.select(part)
+        person.click("RoboticAM_NewJob")
+        person.press("Ok")
+        person.panel_closed()
+        made.append([stage for stage in api.stages_of(doc) if stage not in before])
+    seen = [[stage.Name for stage in stages if stage.ViewObject.Visibility] for stages in made]
+    assert seen[0] == [] and {doc.getObject(name).Proxy.kind for name in seen[1]} >= {"cell", "joint path"}
+    assert other.ViewObject.Visibility is False  # as of any job: the path lies in its surface

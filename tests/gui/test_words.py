@@ -4,6 +4,7 @@
 import pytest
 
 from freecad_am import api
+from freecad_am.core.kinematics.proposed_cell import cell_of
 
 pytestmark = pytest.mark.gui
 
@@ -105,3 +106,36 @@ def test_a_machine_without_a_post_is_told_as_it_is_chosen(person, hemisphere):
     assert not told.isVisible()
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_what_may_be_chosen_is_read_whole_in_a_narrow_panel(person, cells):
+    toolpath, robot, _ = cells
+    for stage, panel_name, names in (
+        (toolpath, "RoboticAM_Toolpath", ("Direction",)), (robot, "RoboticAM_Cell", ("Setup", "Branch")),
+    ):
+        person.double_click(stage)
+        panel = person.panel(panel_name)
+        for name in names:
+            box = person.field(panel, name)
+            style, option = box.style(), person.widgets.QStyleOptionComboBox()
+            box.initStyleOption(option)
+            room = style.subControlRect(style.CC_ComboBox, option, style.SC_ComboBoxEditField, box).width()
+            widest = max((box.itemText(row) for row in range(box.count())), key=len)
+            assert box.fontMetrics().boundingRect(widest).width() < room or "positioner" in widest, (name, widest, room)
+        person.screenshot(f"choices-{panel_name}")
+        person.press("Cancel")
+        person.panel_closed()
+
+
+def test_a_machine_without_a_post_gets_none_proposed(person, hemisphere):
+    document = hemisphere.Document
+    feature = api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5)
+    for machine, post in (("kuka-kr16-2", "none"), ("staubli-tx2-60l", "staubli"), ("fanuc-arcmate120ic", "fanuc")):
+        cell = api.make_cell(document, parameters=cell_of(machine))
+        toolpath = api.make_toolpath(document, feature, cell)
+        person.select(api.make_joint_path(document, toolpath, cell))
+        person.click("RoboticAM_Program")
+        panel = person.panel("RoboticAM_Program")
+        assert person.field(panel, "Post").currentText() == post
+        person.press("Cancel")
+        person.panel_closed()

@@ -157,3 +157,20 @@ def test_a_comma_in_a_name_does_not_make_a_column():
                                                Curve("b", np.arange(3.0), np.arange(3.0))))
     table = list(csv.reader(io.StringIO("".join(files.values(Picture("a", "A", (chart,)))))))
     assert all(len(row) == 5 for row in table) and table[1][:2] == ['so, "said"', "one, two"]
+
+
+@pytest.mark.parametrize("width", [300, 520, 1500])
+def test_names_of_curves_are_beside_or_above_their_frame_and_clear_of_each_other(width):
+    x = np.linspace(0.0, 1.0, 50)
+    curves = tuple(Curve(f"radius {5 * number} mm, measured", x, x + number, number) for number in range(7))
+    chart = Chart("Width of beads", TIME, ANGLE, curves)
+    figure, (place,) = draw.figure((chart,), LIGHT, width, 400)
+    renderer = files.FigureCanvasAgg(figure).get_renderer()
+    texts = {text.get_text(): text.get_window_extent(renderer) for text in figure.texts}
+    boxes = [texts[curve.name] for curve in curves] + [texts["Width of beads"]]
+    for number, box in enumerate(boxes):
+        assert box.y0 >= 400 - place.top  # pixels from below: above the frame
+        assert box.x0 >= 0.0 and box.x1 <= width and box.y1 <= 400
+        for other in boxes[:number]:
+            assert not box.overlaps(other)
+    assert place.height > 150

@@ -14,12 +14,13 @@ from .roundness import Round
 
 class Row(NamedTuple):
     """A figure: what it is, its value, its unit ('' for a count), and what a narrow panel calls it, '' where it has no
-    room for it."""
+    room for it; there figures of one place stand below each other under its name."""
 
     name: str
     value: float
     unit: str
     short: str = ""
+    place: str = ""
 
     @property
     def text(self) -> str:
@@ -49,12 +50,12 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
             Row("Radius of the sphere", ball.fitted.radius, "mm", "Radius"),
         ]
     for one in inspected.circles:
-        at = f"at {one.height:g} mm"
+        at, height = f"at {one.height:g} mm", f"{one.height:g} mm"
         found += [
-            Row(f"Circularity defect {at}", one.zone.zone, "mm", f"Circularity {at}"),
+            Row(f"Circularity defect {at}", one.zone.zone, "mm", "Circularity", f"At height {height}"),
             Row(f"Circularity defect {at}, least squares", one.fitted.zone, "mm"),
-            Row(f"Diameter {at}", 2.0 * one.fitted.radius, "mm", f"Diameter {at}"),
-            Row(f"Eccentricity {at}", one.eccentricity, "mm", f"Off axis {at}"),
+            Row(f"Diameter {at}", 2.0 * one.fitted.radius, "mm", "Diameter", f"At height {height}"),
+            Row(f"Eccentricity {at}", one.eccentricity, "mm", "Off axis", f"At height {height}"),
         ]
     if inspected.thickness is not None:
         wall = inspected.thickness

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The cell that a machine is given until somebody says what it really has.
 
-Of a robot that carries the part: where the deposition point may well be, and the branch to work in. Points before the
-robot are tried on a grid in the plane of its arm. At each the robot holds a ball of deposit from upright to lying, turned
+Of a robot: where the deposition point, or the fixed platform, may well be, and the branch to work in. Points before the
+robot are tried on a grid in the plane of its arm. At each the robot deposits on a ball, from upright to lying, turned
 about the tool axis however suits it; what counts is the worst of these poses: how near an axis comes to a limit, the
-wrist to being stretched and the arm to its reach. Axis 6 is left out: it turns the part, so where on the ball one looks
-decides it.
+wrist to being stretched and the arm to its reach. Where it carries the part, axis 6 is left out: it turns the part, so
+where on the ball one looks decides it. Where it carries the tool, the ball is gone round, and where no place serves
+lying deposit, one that serves less is taken.
 """
 
 from __future__ import annotations
@@ -20,63 +21,93 @@ from ..geometry import frames
 from ..parameters.cell import CellParameters, Pose
 from . import machine as machines
 from . import opw
-from .cell import PART_ON_ROBOT, ROTARY_TABLE, resolve
+from .cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell, resolve
 from .limits import margins
-from .machine import Machine
 
 Array = NDArray[np.float64]
 
 TILTS = np.radians([0.0, 30.0, 60.0, 85.0])  # of the tool axis on the part
 BALL = 50.0  # mm, radius of the deposit held
 TURNS = 36  # rotations about the tool axis that are tried
+# of a fixed ball, which is come at from so many directions
+LEANING, ROUND = np.radians([0.0, 15.0, 30.0, 45.0, 60.0, 85.0]), 12
 AHEAD = np.linspace(0.4, 0.85, 8)  # of the reach, from axis 2 on
 ABOVE = np.linspace(-0.5, 0.7, 9)
 
 
-def cell_of(machine: str, folders: Sequence[str] = ()) -> CellParameters:
-    """The parameters of a cell with a machine, '' for the default one, whose cell is that of the papers. InputError for an
-    unknown one."""
+def cell_of(
+    machine: str, folders: Sequence[str] = (), setup: str = PART_ON_ROBOT, tool: Pose | None = None
+) -> CellParameters:
+    """The parameters of a cell with a machine, '' for the default one, whose cell is that of the papers. A robot has the
+    set-up that is asked for; tool: pose of the tip on its flange, where it is known. InputError for an unknown one."""
     default = CellParameters()
     chosen = replace(default, machine=machine or default.machine)
     if machines.load(chosen.machine, tuple(folders)).is_table:
         return replace(chosen, setup=ROTARY_TABLE)
+    nozzle = chosen.nozzle if tool is None else replace(chosen.nozzle, tool=tool)
+    chosen = replace(chosen, setup=setup, nozzle=nozzle)
     return default if chosen == default else proposed(chosen, folders)
 
 
 def proposed(parameters: CellParameters, folders: Sequence[str] = ()) -> CellParameters:
-    """The cell with the deposition point, on whole mm, and the branch that serve best; as it is where none serves, or the
-    robot does not carry the part. Errors as `cell.resolve`."""
+    """The cell with the deposition point or the platform, on whole mm, and the branch that serve best; as it is where none
+    serves. Errors as `cell.resolve`."""
     machine = machines.load(parameters.machine, tuple(folders))
-    arm = machine.opw
-    if arm is None or parameters.setup != PART_ON_ROBOT:
+    if machine.opw is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
         return parameters
-    reach = arm.c2 + arm.forearm
-    axes = np.column_stack([np.sin(TILTS), np.zeros(len(TILTS)), np.cos(TILTS)])
-    phi = np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None]
     cell = resolve(parameters, np.eye(4), folders=folders)
+    if cell.setup == PART_ON_ROBOT:
+        return _best(parameters, cell, _directions(TILTS, 1)) or parameters
+    for steepest in range(len(LEANING), 0, -1):
+        found = _best(parameters, cell, _directions(LEANING[:steepest], ROUND))
+        if found is not None:
+            return found
+    return parameters
+
+
+def _directions(tilts: Array, count: int) -> Array:
+    """(n, 3) unit vectors that lean by the tilts, each in so many directions round Z; upright once."""
+    turn = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    tilt, turn = (grid.ravel() for grid in np.meshgrid(tilts, turn, indexing="ij"))
+    axes = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
+    return axes[(tilt > 0.0) | (turn == 0.0)]
+
+
+def _best(parameters: CellParameters, cell: Cell, axes: Array) -> CellParameters | None:
+    """The cell where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere."""
+    machine, arm = cell.machine, cell.machine.opw
+    assert arm is not None
+    reach = arm.c2 + arm.forearm
+    heights = arm.c1 + ABOVE * reach
+    if cell.setup == TOOL_ON_ROBOT:  # no platform in the floor
+        heights = np.unique(np.maximum(heights, 0.0))
+    phi = np.broadcast_to(np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None], (TURNS, len(axes)))
     best: tuple[float, Pose, int] | None = None
     for ahead in AHEAD:
-        for above in ABOVE:
-            x, z = np.round([arm.a1 + ahead * reach, arm.c1 + above * reach])
+        for height in heights:
+            x, z = np.round([arm.a1 + ahead * reach, height])
             point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
             there = replace(cell, station=machine.base @ frames.bryant(point))
-            poses = there.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (TURNS, len(TILTS))))
-            joints = arm.inverse(poses.reshape(-1, 4, 4)).reshape(8, TURNS, len(TILTS), 6)
-            worst = _room(machine, cell.limits.lower, cell.limits.upper, joints).max(axis=1).min(axis=1)
+            poses = there.pose_frames(BALL * axes, axes).at(phi)
+            joints = arm.inverse(poses.reshape(-1, 4, 4)).reshape(8, TURNS, len(axes), 6)
+            worst = _room(cell, joints).max(axis=1).min(axis=1)
             branch = int(np.argmax(worst))
             if worst[branch] > 0.0 and (best is None or worst[branch] > best[0]):
                 best = float(worst[branch]), point, branch
     if best is None:
-        return parameters
+        return None
     return replace(parameters, deposition_point=best[1], branch=opw.branch_name(best[2]))
 
 
-def _room(machine: Machine, lower: Array, upper: Array, joints: Array) -> Array:
-    """(8, turns, tilts) 1 in the middle of everything, 0 at a limit or where the arm or the wrist is stretched, less beyond
+def _room(cell: Cell, joints: Array) -> Array:
+    """(8, turns, n) 1 in the middle of everything, 0 at a limit or where the arm or the wrist is stretched, less beyond
     and where the robot does not reach."""
-    arm = machine.opw
+    arm, limits = cell.machine.opw, cell.limits
     assert arm is not None
-    left = margins(joints[..., :5], lower[:5], upper[:5]).min(axis=-1)
+    if cell.setup == PART_ON_ROBOT:
+        left = margins(joints[..., :5], limits.lower[:5], limits.upper[:5]).min(axis=-1)
+    else:
+        left = limits.smallest_share(joints.reshape(-1, 6)).reshape(joints.shape[:-1])
     turned = joints * np.array(arm.signs, float) - np.array(arm.offsets)
     stretched = np.minimum(np.abs(np.sin(turned[..., 4])), np.abs(np.sin(turned[..., 2] + np.arctan2(arm.a2, arm.c3))))
     room: Array = np.nan_to_num(np.minimum(left, stretched), nan=-1.0)

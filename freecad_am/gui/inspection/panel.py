@@ -22,6 +22,7 @@ from .histogram import Histogram
 from .inputs import FileChoice, PlannedChoice
 
 _LINES = 3  # pixels between the lines of the table
+_INDENT = "\u2003"  # before figures under the name of their place
 
 
 class InspectionPanel(StagePanel):
@@ -72,20 +73,32 @@ class InspectionPanel(StagePanel):
         if value is None:
             return
         found = [row for row in rows(value) if row.short]
-        self.table.setRowCount(len(found))
-        for number, row in enumerate(found):
-            for column, text in enumerate((translated(row.short), row.text, row.unit)):
-                item = QtGui.QTableWidgetItem(text)
-                item.setToolTip(translated(row.name))
-                if column == 1:
-                    item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
-                self.table.setItem(number, column, item)
-            self.table.setRowHeight(number, self.table.fontMetrics().height() + _LINES)
+        self.table.clearSpans()
+        self.table.setRowCount(0)
+        place = ""
+        for row in found:
+            if row.place not in ("", place):
+                self._add_line(translated(row.place))
+                self.table.setSpan(self.table.rowCount() - 1, 0, 1, self.table.columnCount())
+            place = row.place
+            told = translated(row.short)
+            self._add_line(f"{_INDENT}{told}" if place else told, row.text, row.unit, help=translated(row.name))
         self.table.resizeColumnsToContents()
         self.table.horizontalHeader().setSectionResizeMode(0, QtGui.QHeaderView.Stretch)
-        high = sum(self.table.rowHeight(number) for number in range(len(found)))
+        high = sum(self.table.rowHeight(number) for number in range(self.table.rowCount()))
         self.table.setFixedHeight(high + 2 * self.table.frameWidth())
         self.histogram.set(value.spread, value.tolerance)
+
+    def _add_line(self, *texts: str, help: str = "") -> None:
+        number = self.table.rowCount()
+        self.table.insertRow(number)
+        for column, text in enumerate(texts):
+            item = QtGui.QTableWidgetItem(text)
+            item.setToolTip(help)
+            if column == 1:
+                item.setTextAlignment(QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
+            self.table.setItem(number, column, item)
+        self.table.setRowHeight(number, self.table.fontMetrics().height() + _LINES)
 
     def _placed(self, error: AmError) -> tuple[str, str]:
         place, text = super()._placed(error)

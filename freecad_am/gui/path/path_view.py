@@ -167,7 +167,17 @@ class PathView(StageView):
         first, end = self.stretch()
         self.path.show(first, end)
         self.limited(first, end)
+        for listener in _followers:
+            listener(self)
 
+    def reached(self) -> tuple[Array, Array] | None:
+        """The last point (3,) that is shown of a stretch, and the tool axis (3,) there; None where all is shown, or none."""
+        first, end = self.stretch()
+        if self.rows is None or self.shown is None or end <= first:
+            return None
+        index = self.rows.bead_of(end - 1)
+        bead, row = self.rows.bead(index), end - 1 - int(self.rows.starts[index])
+        return bead.points[row], bead.tool[row]
 
     # ---- clicks
 
@@ -195,6 +205,8 @@ _choosers: list[tuple[Callable[[], bool], Callable[[PathView, int], None]]] = []
 
 _listeners: list[Callable[[PathView], None]] = []
 
+_followers: list[Callable[[PathView], None]] = []
+
 
 def listen_to_clicks(wanted: Callable[[], bool], choose: Callable[[PathView, int], None]) -> None:
     """Call `choose` with a row of a path when that is clicked in a 3D view, as long as `wanted`."""
@@ -204,6 +216,11 @@ def listen_to_clicks(wanted: Callable[[], bool], choose: Callable[[PathView, int
 def listen(listener: Callable[[PathView], None]) -> None:
     """Call this whenever a path is drawn, changed, shown or hidden."""
     _listeners.append(listener)
+
+
+def listen_to_stretches(follower: Callable[[PathView], None]) -> None:
+    """Call this whenever another stretch of a path is shown."""
+    _followers.append(follower)
 
 
 def tell(view: PathView) -> None:

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import resolve
@@ -32,12 +33,30 @@ def test_every_robot_holds_a_dome_there_within_its_limits(name):
     assert parameters.branch == opw.branch_name(cell.branch)
 
 
-def test_what_is_no_robot_with_the_part_stays_as_it_is():
-    for parameters in (
-        CellParameters(machine="table-xyzac", setup="rotary-table"),
-        CellParameters(machine="kuka-kr16-2", setup="tool-on-robot"),
-    ):
-        assert proposed(parameters) == parameters
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_robot_deposits_round_a_dome_on_the_platform_that_is_proposed(name):
+    """With a torch of 45 deg it reaches a dome of 50 mm from all sides, leaning by up to 28 deg."""
+    tool = (80.0, 0.0, 250.0, 0.0, np.radians(45.0), 0.0)
+    parameters = cell_of(name, setup="tool-on-robot", tool=tool)
+    assert parameters.setup == "tool-on-robot" and parameters.nozzle.tool == tool and parameters.deposition_point[2] >= 0.0
+    cell = resolve(parameters, np.eye(4))
+    random = np.random.default_rng(2)
+    tilt, round_about = np.radians(random.uniform(0, 28, 40)), random.uniform(-np.pi, np.pi, 40)
+    axes = np.column_stack([np.sin(tilt) * np.cos(round_about), np.sin(tilt) * np.sin(round_about), np.cos(tilt)])
+    phi = np.linspace(-np.pi, np.pi, 73)[:, None]
+    poses = cell.pose_frames(BALL * axes, axes).at(np.broadcast_to(phi, (73, 40))).reshape(-1, 4, 4)
+    joints = cell.machine.opw.inverse_branch(poses, cell.branch)
+    good = np.isfinite(joints).all(axis=1)
+    tips = cell.machine.chain.forward(joints[good]) @ frames.bryant(tool)
+    placed = np.broadcast_to(BALL * axes, (73, 40, 3)).reshape(-1, 3)[good] + parameters.deposition_point[:3]
+    assert np.abs(tips[:, :3, 3] - (placed @ cell.machine.base[:3, :3].T + cell.machine.base[:3, 3])).max() < 1e-6
+    within = (cell.limits.margin(joints) > 0.0).all(axis=1) & good
+    assert within.reshape(73, 40).any(axis=0).all()
+
+
+def test_what_is_no_robot_stays_as_it_is():
+    parameters = CellParameters(machine="table-xyzac", setup="rotary-table")
+    assert proposed(parameters) == parameters
 
 
 def test_machines_with_rotary_axes_get_their_set_up_and_none_given_is_the_default():

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The workbench's toolbar has a row of its own where it would hide tools beside others."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+
+class _Room(QtCore.QObject):
+    """Looks at the bar whenever its room changes, as with the width of the window."""
+
+    def __init__(self, bar: Any) -> None:
+        super().__init__(bar)
+        self.bar = bar
+        bar.installEventFilter(self)
+
+    def eventFilter(self, watched: Any, event: Any) -> bool:
+        """Called by Qt; nothing is dealt with here."""
+        if event.type() in (QtCore.QEvent.Resize, QtCore.QEvent.Show):
+            QtCore.QTimer.singleShot(0, self.give)  # once Qt is done with its layout
+        return False
+
+    def give(self) -> None:
+        """Begin a row with the bar where it is cut off; it stays where the user has put it where it is not."""
+        with contextlib.suppress(RuntimeError):  # the main window is gone
+            window, bar = Gui.getMainWindow(), self.bar
+            cut = bar.isVisible() and not bar.isFloating() and bar.width() < bar.sizeHint().width()
+            if cut and bar.orientation() == QtCore.Qt.Horizontal and not window.toolBarBreak(bar):
+                window.insertToolBarBreak(bar)
+
+
+def keep_whole(title: str) -> None:
+    """Watch the toolbar of a title, once FreeCAD has made it; once or more often."""
+    QtCore.QTimer.singleShot(0, lambda: _watch(title))
+
+
+def _watch(title: str) -> None:
+    with contextlib.suppress(RuntimeError):
+        for bar in Gui.getMainWindow().findChildren(QtGui.QToolBar):
+            if bar.windowTitle() == title and not bar.findChildren(_Room):
+                _Room(bar).give()
