@@ -1533,8 +1533,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>Circularity at {0} mm</source>
-        <translation>Circularité à {0} mm</translation>
+        <source>Circularity</source>
+        <translation>Circularité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -3153,8 +3153,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>Off axis at {0} mm</source>
-        <translation>Excentricité à {0} mm</translation>
+        <source>Off axis</source>
+        <translation>Excentrage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
