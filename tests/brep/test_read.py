@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Files in: the good ones whole, the bad ones with a reason, and nothing printed."""
 
-import FreeCAD  # noqa: F401
+import re
+
+import FreeCAD
 import Part
 import pytest
 
+from freecad_am import api
 from freecad_am.brep.read import read_shape
 from freecad_am.core.issues import InputError
 
@@ -23,6 +26,42 @@ def test_shapes_come_back_whole(tmp_path, cone, name):
     shape = read_shape(path)
     assert shape.Volume == pytest.approx(cone.Volume, rel=1e-9)
     assert len(shape.Faces) == 3
+
+
+def in_unit(path, cone, factor, name):
+    """Writes a cone whose coordinates are those of mm, in a file that says its unit is another one."""
+    cone.exportStep(str(path))
+    text = path.read_text()
+    number, = re.findall(r"(#\d+) ?= ?\( LENGTH_UNIT\(\) NAMED_UNIT\(\*\) SI_UNIT\(\.MILLI\.,\.METRE\.\) \);", text)
+    unit = "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT({},.METRE.) )"
+    prefix = {0.001: ".MICRO.", 10.0: ".CENTI.", 1000.0: "$"}.get(factor)
+    lines = [f"{number} = {unit.format(prefix)};"]
+    if prefix is None:
+        lines = [
+            f"{number} = ( CONVERSION_BASED_UNIT('{name}',#90001) LENGTH_UNIT() NAMED_UNIT(#90003) );",
+            f"#90001 = LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE({factor!r}),#90002);", f"#90002 = {unit.format('.MILLI.')};",
+            "#90003 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);",
+        ]
+    path.write_text(re.sub(rf"{number} ?= ?\( LENGTH_UNIT[^;]*;", "\n".join(lines), text))
+
+
+@pytest.mark.parametrize(("name", "factor"), [
+    ("METRE", 1000.0), ("CENTIMETRE", 10.0), ("MICROMETRE", 0.001), ("INCH", 25.4), ("FOOT", 304.8), ("MIL", 0.0254),
+])
+def test_step_files_are_as_large_as_their_unit_says(tmp_path, cone, name, factor):
+    """And the next one, in mm, is as large as it was: the kernel keeps no unit. Headless and from the window alike."""
+    cone.exportStep(str(tmp_path / "mm.step"))
+    in_unit(tmp_path / "other.step", cone, factor, name)
+    document = FreeCAD.newDocument("Units")
+    try:
+        for file, wanted in (("other.step", factor), ("mm.step", 1.0), ("other.step", factor)):
+            for shape in (read_shape(tmp_path / file), api.open_part(document, str(tmp_path / file)).Shape):
+                box = shape.BoundBox
+                sides = [box.XLength, box.YLength, box.ZLength]
+                assert sides == pytest.approx([40 * wanted, 40 * wanted, 30 * wanted], rel=1e-6)
+                assert shape.Volume == pytest.approx(wanted ** 3 * cone.Volume, rel=1e-9)
+    finally:
+        FreeCAD.closeDocument(document.Name)
 
 
 def test_iges_comes_back(tmp_path, cone):

@@ -15,6 +15,7 @@ from freecad_am.brep import apart, kernel_process
 from freecad_am.brep.read import read_shape
 from freecad_am.core.issues import InputError
 from freecad_am.objects.progress import Cancelled
+from tests.brep.test_read import in_unit
 from tests.robust import damage
 
 pytestmark = pytest.mark.gui
@@ -107,6 +108,8 @@ def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path
     document = App.newDocument("Files")
     assert read_shape(EXAMPLES / "hemisphere.step").exportBrepToString() == here.exportBrepToString()  # to the last digit
     assert api.open_part(document, str(EXAMPLES / "hemisphere.step")).Shape.Volume == here.Volume
+    in_unit(tmp_path / "inches.step", Part.makeCone(20, 10, 30), 25.4, "INCH")
+    assert api.open_part(document, str(tmp_path / "inches.step")).Shape.BoundBox.ZLength == pytest.approx(762.0)
     MeshPart.meshFromShape(here, 1.0).write(str(tmp_path / "bowl.stl"))
     assert api.open_part(document, str(tmp_path / "bowl.stl"), scale=2.0).Mesh.CountFacets > 10
     document.saveAs(str(tmp_path / "both.FCStd"))

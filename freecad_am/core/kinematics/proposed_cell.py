@@ -70,7 +70,8 @@ def _directions(tilts: Array, count: int) -> Array:
     turn = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     tilt, turn = (grid.ravel() for grid in np.meshgrid(tilts, turn, indexing="ij"))
     axes = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
-    return axes[(tilt > 0.0) | (turn == 0.0)]
+    once: Array = axes[(tilt > 0.0) | (turn == 0.0)]
+    return once
 
 
 def _best(parameters: CellParameters, cell: Cell, axes: Array) -> CellParameters | None:
