@@ -219,3 +219,10 @@ def test_parts_run_side_by_side_as_far_as_the_cores_go(monkeypatch):
     assert max(sum(loads[name] for name in names) for names in seen) <= 2.0 + run_parts.MORE
     assert ["h1", "w1", "w2"] in seen and sorted(order) == sorted(loads) and not running
     assert all(part.status == 0 for part in parts)
+
+
+def test_what_runs_in_another_version_exists():
+    for word in (*run.HEADLESS_OF_VERSION, *run.WINDOW_OF_VERSION):
+        file, _, name = word.removeprefix("--ignore=").partition("::")
+        assert (run.ROOT / file).exists(), word
+        assert not name or f"def {name}(" in (run.ROOT / file).read_text(encoding="utf-8"), word

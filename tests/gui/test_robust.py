@@ -187,7 +187,7 @@ def test_a_document_closed_while_a_panel_is_open(person, job, command):
     assert api.stages_of(App.getDocument("Other")) == []
 
 
-def test_closed_panels_leave_nothing_behind(person, job):
+def test_closed_panels_leave_nothing_behind(person, job, coarse):
     """Fields are gone with their panel, not when Python collects cycles, or never: they would be taken for later ones."""
 
     def dead():
@@ -215,6 +215,9 @@ def test_closed_panels_leave_nothing_behind(person, job):
                 if person.gui.Control.activeDialog():  # OK was refused
                     press("Cancel")
                 person.panel_closed()
+                for stage in api.stages_of(job):  # what was made new, for its toolpath to be quick
+                    if getattr(stage, "LayerHeight", 15) != 15:
+                        stage.LayerHeight = 15
                 for _ in range(20):  # threads may be at work that were cancelled
                     if len(dead()) <= before:
                         break

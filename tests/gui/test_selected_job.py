@@ -79,14 +79,19 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     person.idle()
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("which", [0, 1])
 @pytest.mark.parametrize("in_groups", [True, False])
-def test_a_stage_stands_for_its_job(person, stages, opened, request, in_groups, which, kind):
+def test_a_stage_stands_for_its_job(person, stages, opened, request, in_groups):
     if in_groups:
         request.getfixturevalue("jobs")
-    name = ("First", "Second")[which]
-    person.select(stages[which][kind])
+    for name, of in zip(("First", "Second"), stages):
+        for kind in KINDS:
+            opened.clear()
+            tools_take(person, of[kind], kind, name, opened)
+
+
+def tools_take(person, stage, kind, name, opened):
+    """Every tool proposes what is of the job of the stage that is selected."""
+    person.select(stage)
     person.click("RoboticAM_Simulate")
     person.click("RoboticAM_SpinMap")
     assert opened == [f"{name} joint path"] * 2
