@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs of solids on hubs: their keys, their refusals, and the thruster to a program for an 840D."""
+"""Jobs of solids on hubs: their keys and their refusals. The thruster is planned in test_thruster.py."""
 
 import csv
-import json
 import math
-import shutil
 
 import FreeCAD
 import Mesh
@@ -156,51 +154,3 @@ def test_scales_that_are_refused(read, part, code, told):
         read(START.replace("{file: blades.step}", part))
     assert (caught.value.code, "part.scale" in caught.value.where) == (code, True) and told in caught.value.message
     assert read(START.replace("{file: blades.step}", "{file: blades.stl, scale: 1/2 in}")).part.scale == 12.7
-
-
-def thruster(workshop, root, height):
-    """Report and deposit rows of the thruster at another layer height, and the text of its programs."""
-    for file in (root / "resources" / "examples" / "thruster").iterdir():
-        shutil.copy(file, workshop.folder)
-    text = (workshop.folder / "thruster.yaml").read_text(encoding="utf-8")
-    changed = text.replace("layer_height: 2.5 mm", f"layer_height: {height} mm").replace("0.05 mm", "0.1 mm")
-    assert changed.count(f"{height} mm") == 1 and "0.1 mm" in changed
-    (workshop.folder / "thruster.yaml").write_text(changed, encoding="utf-8")
-    done = workshop.run("plan", "thruster.yaml", "-o", "out")
-    assert done.status == 0, done.err
-    out = workshop.folder / "out"
-    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
-    with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
-        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-    page = (out / "report.html").read_text(encoding="utf-8")
-    assert page.count("laid flat</text>") == 6 and "Predicted width of the bead" in page
-    return report, rows, {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
-
-
-def test_the_thruster_goes_to_an_840d_around_the_axis(workshop, root):
-    height = 40.0
-    report, rows, programs = thruster(workshop, root, height)
-    assert report["joints"]["feasible"] is True and "THRUSTER.MPF" in programs
-    assert any("TRAORI" in text for text in programs.values())
-    x, y, z, speed, width = (np.array([float(row[name]) for row in rows])
-                             for name in ("x_mm", "y_mm", "z_mm", "speed_mm_s", "width_mm"))
-    layer, bead, point = (np.array([int(row[name]) for row in rows]) for name in ("layer", "bead", "point"))
-    rho = np.hypot(x, y)
-    cone = (rho - 60.0) * 200.0 / math.hypot(60.0, 200.0) + (z - 280.0) * 60.0 / math.hypot(60.0, 200.0)
-    groups = np.split(np.arange(len(rows)), np.flatnonzero(np.diff(z * 0.0 + layer) > 0) + 1)
-    tips = []
-    for base, diameter in ((rho - 75.0, 466.5), (rho - 60.0, 399.9), (cone, 384.3)):
-        mine = [group for group in groups if np.abs(np.round(base[group] / height) * height - base[group]).max() < 1e-5]
-        levels = [int(np.round(base[group].mean() / height)) for group in mine]
-        assert levels == list(range(len(levels))) and len(levels) >= 3  # on the hub, then further out by the layer height
-        tips.append(max(rho[group].max() for group in mine) <= 0.5 * diameter)
-        for group in mine[:2]:  # the outermost contours of six blades come last, and in turn
-            last = bead[group].max()
-            turn = [math.atan2(y[one].mean(), x[one].mean()) for one in (group[bead[group] == last - k] for k in range(6))]
-            np.testing.assert_allclose(np.remainder(-np.diff(turn), 2.0 * math.pi), math.pi / 3.0, atol=0.1)
-    assert all(tips)
-    moving = point > 0
-    assert speed[moving].min() * 60.0 > 410.0 and speed[moving].max() * 60.0 < 830.0
-    assert width.min() > 9.5 - 1e-6
-    assert {"BEAD_MODEL", "BEAD_HEIGHT"} <= {issue["code"] for issue in report["issues"]}
-    assert report["counts"]["beads"] == len(set(zip(layer.tolist(), bead.tolist())))

@@ -36,6 +36,7 @@ class Whole:
             rows = np.array([[row[k] for k in kept] for row in lines if row[kind] == "deposit"], dtype=np.float64)
         self.layer, self.bead, self.point = rows[:, :3].astype(int).T
         self.places, self.speed, self.tool, self.width = rows[:, 3:6], rows[:, 6], rows[:, 7:10], rows[:, 10]
+        self.page = (out / "report.html").read_text(encoding="utf-8")
         self.texts = {path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()}
 
     def away(self, places):
@@ -84,6 +85,18 @@ def check_order(whole):
         assert len(turns) % 6 == 0 and len(set(step.tolist())) == 1 and step[0] in (1, 5)
 
 
+def check_outlines(whole):
+    """In the first layers of each hub the outermost contours of six blades come last, one blade after the other."""
+    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [at for at, _ in HUBS]), axis=1)
+    for k in range(len(HUBS)):
+        for layer in np.unique(whole.layer[hub == k])[:2]:
+            mine = np.flatnonzero(whole.layer == layer)
+            last = whole.bead[mine].max()
+            means = [whole.places[mine[whole.bead[mine] == last - back], :2].mean(axis=0) for back in range(6)]
+            turn = [math.atan2(y, x) for x, y in means]
+            np.testing.assert_allclose(np.remainder(-np.diff(turn), 2.0 * math.pi), math.pi / 3.0, atol=0.1)
+
+
 def check_program(whole):
     """All deposit of the texts, in the order of the parts: the places, directions and speeds of waypoints.csv."""
     number = r"=?(-?\d+\.?\d*)"
@@ -113,7 +126,7 @@ def whole(request, tmp_path_factory, root):
         assert f"  {key}: {shipped:g} mm\n" in text
         text = text.replace(f"  {key}: {shipped:g} mm\n", f"  {key}: {asked:g} mm\n")
     job.write_text(text, encoding="utf-8")
-    words = ["plan", str(job), "-o", str(folder / "out"), "--no-page"]
+    words = ["plan", str(job), "-o", str(folder / "out")]
     done = subprocess.run(
         [str(root / "freecad-am"), *words], cwd=folder, capture_output=True, text=True, encoding="utf-8", check=False,
         stdin=subprocess.DEVNULL, env={**os.environ, "FREECAD_USER_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
@@ -131,6 +144,10 @@ def test_it_is_planned_whole(whole):
     assert 410.0 < moving.min() < 450.0 and 700.0 < moving.max() < 830.0
     assert whole.width.min() > 9.5 - 1e-6
     assert np.abs(np.linalg.norm(whole.tool, axis=1) - 1.0).max() < 2e-6
+    assert report["joints"]["feasible"] is True
+    assert "THRUSTER.MPF" in whole.texts and any("TRAORI" in text for text in whole.texts.values())
+    assert {"BEAD_MODEL", "BEAD_HEIGHT"} <= {issue["code"] for issue in report["issues"]}
+    assert whole.page.count("laid flat</text>") == 6 and "Predicted width of the bead" in whole.page
 
 
 def test_its_layers_lie_on_their_cones(whole):
@@ -139,6 +156,7 @@ def test_its_layers_lie_on_their_cones(whole):
 
 def test_it_is_laid_around_the_axis(whole):
     check_order(whole)
+    check_outlines(whole)
 
 
 def test_its_program_reads_the_same(whole):
