@@ -51,7 +51,7 @@ from .objects.program import Program
 from .objects.progress import told_to
 from .objects.revival import revive
 from .objects.settings import given
-from .objects.toolpath import Toolpath
+from .objects.toolpath import Toolpath, own_process
 from .posts import written
 
 __all__ = (
@@ -137,13 +137,22 @@ def make_solid_feature(
 
 
 def make_toolpath(
-    doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, process: ProcessParameters | None = None,
-    **values: Any,
+    doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, sequence: str = "feature",
+    processes: Sequence[ProcessParameters] = (), process: ProcessParameters | None = None, **values: Any,
 ) -> Any:
-    """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`"""
+    """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`
+
+    feature: a list of features are deposited in one go, `sequence="feature"` in this order or `sequence="height"` the lowest
+    layer first; `processes` are those of each, where they differ in what a feature has of its own.
+    """
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
-    return _make(doc, Toolpath, "Toolpath", label, {"Feature": feature, "Cell": cell}, [process], values)
+    first, *further = feature if isinstance(feature, (list, tuple)) else [feature]
+    links: dict[str, Any] = {"Feature": first, "Cell": cell}
+    if further:
+        own = [own_process(one, process or ProcessParameters()) for one in processes]
+        links = {**links, "Further": further, "Sequence": sequence, "FeatureProcess": own}
+    return _make(doc, Toolpath, "Toolpath", label, links, [process], values)
 
 
 def make_joint_path(

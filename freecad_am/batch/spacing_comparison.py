@@ -24,7 +24,7 @@ from freecad_am.core.strategies import wall_comparison
 from freecad_am.core.strategies.wall_comparison import METHODS, NORMAL, Compared, Refused
 from freecad_am.core.toolpath import Array, Toolpath
 from freecad_am.objects import user_machines
-from freecad_am.objects.toolpath import planned
+from freecad_am.objects.planned import Given, planned
 
 from . import report
 from .job import Job
@@ -110,7 +110,7 @@ def motions(wall: Any, job: Job, session: Any) -> dict[str, dict[str, Any] | str
 
 def _planned(wall: Any, job: Job, spacing: str) -> dict[str, Any]:
     strategy = replace(job.strategy, spacing=spacing, compare=())
-    toolpath = planned(wall, strategy, job.build_direction, job.process, job.cell)
+    toolpath = planned(Given(wall, strategy, job.build_direction, job.process, job.cell))
     cell = cells.resolve(job.cell, toolpath.frame, toolpath.family, user_machines.folders())
     path = plan_joints(toolpath, cell, replace(job.joints, compare=()))
     motion, _ = assemble(path, cell, job.process, toolpath.surroundings, job.joints, toolpath.layer_height)

@@ -237,12 +237,13 @@ class Layer:
     """What is deposited at one index of the slicing: one bead or more, in the order of deposit.
 
     wait: s that the machine stands before the layer, for what lies below to cool. first: nothing of the feature lies below,
-    as where another solid is begun.
+    as where another solid is begun. feature: number of the feature that it is of, where a toolpath has several.
     """
 
     beads: tuple[Bead, ...]
     wait: float = 0.0
     first: bool = False
+    feature: int = 0
 
 
 @dataclass(frozen=True)
@@ -256,7 +257,9 @@ class Toolpath:
     as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
     wire_feed: mm/s, None where it is not known. on_part: at how many places it was looked whether they lie on the part, the
     largest distance of one from it and what is allowed, mm; None where nobody looked. volumes: mm3 of a part that is filled,
-    of what beads leave of it, and of beads beside it; None where it is not known.
+    of what beads leave of it, and of beads beside it; None where it is not known. label: of the feature. features: of
+    several features that are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself then
+    speaks for the first of them.
     """
 
     layers: tuple[Layer, ...]
@@ -273,6 +276,8 @@ class Toolpath:
     wire_feed: float | None = None
     on_part: tuple[float, float, float] | None = None
     volumes: tuple[float, float, float] | None = None
+    label: str = ""
+    features: tuple[Toolpath, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))
@@ -282,6 +287,24 @@ class Toolpath:
         for i, layer in enumerate(self.layers):
             for j, bead in enumerate(layer.beads):
                 yield i, j, bead
+
+    @property
+    def parts(self) -> tuple[tuple[Toolpath, NDArray[np.intp]], ...]:
+        """The toolpath of each feature, and the numbers (n,) of its layers in this one; of one feature this one."""
+        if not self.features:
+            return ((self, np.arange(len(self.layers))),)
+        of = np.array([layer.feature for layer in self.layers])
+        numbers = [np.flatnonzero(of == k) for k in range(len(self.features))]
+        return tuple(
+            (dataclasses.replace(one, layers=tuple(self.layers[k] for k in some)), some)
+            for one, some in zip(self.features, numbers, strict=True)
+        )
+
+    @property
+    def layer_heights(self) -> Array:
+        """(layers,) mm, the height of each layer."""
+        told = [one.layer_height for one in self.features] or [self.layer_height]
+        return np.array([told[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
     def filled(self) -> bool:
@@ -302,16 +325,18 @@ class Toolpath:
     def widths(self) -> Array:
         """(n,) mm, how wide beads are at all points in the order of deposit; 0 where nothing is known of it, as in documents
         of old: they count as lines."""
+        known = [one.bead_width or 0.0 for one in self.features or (self,)]
         return np.concatenate([
-            np.full(len(bead), self.bead_width or 0.0) if bead.width is None else bead.width for _, _, bead in self
+            np.full(len(bead), known[self.layers[i].feature if self.features else 0]) if bead.width is None else bead.width
+            for i, _, bead in self
         ])
 
     @property
     def heights(self) -> Array:
         """(n,) mm, how high beads are at all points in the order of deposit: the layer height where none is predicted, 0
         where nothing is known of their width either."""
-        known = self.layer_height if self.bead_width else 0.0
-        return np.concatenate([np.full(len(bead), known) if bead.height is None else bead.height for _, _, bead in self])
+        known = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
+        return np.concatenate([np.full(len(bead), known[i]) if bead.height is None else bead.height for i, _, bead in self])
 
     @property
     def length(self) -> float:

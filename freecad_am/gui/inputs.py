@@ -256,6 +256,8 @@ def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
     found: list[Input] = []
     for link in proxy.links:
         present = None if obj is None else getattr(obj, link.name)
+        if link.kind and link.many:
+            continue
         if link.kind:
             found.append(StageChoice(link, present))
         elif link.type_name == "App::PropertyLinkList":

@@ -70,7 +70,8 @@ def _leading_to(stage: Any) -> list[Any]:
     found = [stage]
     for obj in found:
         inputs = [getattr(obj, link.name) for link in obj.Proxy.links]
-        found += [one for one in inputs if stage_of(one) is not None and one not in found]
+        every = [one for some in inputs for one in (some if isinstance(some, list) else [some])]
+        found += [one for one in every if stage_of(one) is not None and one not in found]
     return found
 
 

@@ -44,9 +44,14 @@ class Link:
     type_name: str = "App::PropertyLink"
 
     @property
+    def many(self) -> bool:
+        """Whether it links to any number of objects."""
+        return self.type_name.endswith("LinkList")
+
+    @property
     def label(self) -> str:
         """Its name in a panel: the kind of stage, or 'Start edges' for StartEdges."""
-        words = (self.kind or self.key).replace("_", " ")
+        words = (self.key if self.many else self.kind or self.key).replace("_", " ")
         return words[0].upper() + words[1:]
 
     @property
@@ -213,11 +218,13 @@ class Stage(Stored):
         texts = [type(self).__name__, str(SCHEMA_VERSION)]
         for section in self.sections:
             texts += properties.fingerprint(obj, section.cls)
-        texts += [linked.Key for linked in self.linked(obj).values() if linked is not None]
+        for linked in self.linked(obj).values():
+            texts += [one.Key for one in (linked if isinstance(linked, list) else [linked]) if one is not None]
         return hashlib.sha256("\n".join(texts + self.further_inputs(obj)).encode()).hexdigest()[:32]
 
     def linked(self, obj: Any) -> dict[str, Any]:
-        """The linked stages by property name, checked: of the right kind, and computed."""
+        """The linked stages by property name, lists of them where a link has many, checked: of the right kind, and
+        computed."""
         missing = self.missing(obj)
         if missing:
             raise InputError("NO_INPUT", obj.Label, missing)
@@ -269,7 +276,8 @@ class Stage(Stored):
                 App.Console.PrintWarning(f"{obj.Label}: cancelled\n")
 
     def _linked_stages(self, obj: Any) -> list[Any]:
-        return [linked for link in self.links if link.kind and stage_of(linked := getattr(obj, link.name)) is not None]
+        linked = [(getattr(obj, link.name) if link.many else [getattr(obj, link.name)]) for link in self.links if link.kind]
+        return [one for some in linked for one in some if stage_of(one) is not None]
 
     def mustExecute(self, obj: Any) -> bool:
         """A stale stage is due at the next recompute, whatever made it stale; a failed one is tried again."""
@@ -335,9 +343,15 @@ def _there(obj: Any) -> bool:
 
 
 def checked(obj: Any, link: Link) -> Any:
-    """The linked stage: of the right kind, and computed; None without one. InputError BAD_INPUT, INPUT_FAILED;
-    InfeasibleError INPUT_INFEASIBLE."""
+    """The linked stage, or a list of them: of the right kind, and computed; None without one. InputError BAD_INPUT,
+    INPUT_FAILED; InfeasibleError INPUT_INFEASIBLE."""
     linked = getattr(obj, link.name)
+    if link.many:
+        return [_checked(obj, link, one) for one in linked]
+    return _checked(obj, link, linked)
+
+
+def _checked(obj: Any, link: Link, linked: Any) -> Any:
     if linked is None:
         return None
     stage = stage_of(linked)

@@ -8,6 +8,11 @@ from dataclasses import dataclass
 
 from . import field as f
 
+# what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
+OF_FEATURE = (
+    "travel_speed", "seam_angle", "seam_step", "direction", "bead_width", "fill_width", "bead_model", "acceleration",
+)
+
 
 @dataclass(frozen=True)
 class SeamParameters:

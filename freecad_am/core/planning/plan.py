@@ -59,7 +59,7 @@ def plan_joints(
     if parameters.lock != "none":
         raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
                          "with four; use none")
-    joined = toolpath.family != REVOLUTION
+    joined = all(part.family != REVOLUTION for part, _ in toolpath.parts)
     wanted = cell.branch if parameters.own_branch == OF_CELL else opw.branch_index(parameters.own_branch.split("-"))
     branches = [wanted] if wanted is not None else best_branches(beads, cell, parameters, joined)
     task = Task(cell, branches[0], parameters, joined)
@@ -157,10 +157,20 @@ def _planned(
 
 def _slowed(cell: Cell, paths: Sequence[BeadPath], toolpath: Toolpath) -> tuple[list[BeadPath], list[Issue]]:
     """The paths slowed where axes cannot follow and that is usual, and what is wrong with the rest."""
-    if toolpath.filled:
-        done, told = corners_slowed(cell, paths, toolpath.layer_height, toolpath.law)
-    else:
-        done, told = rings_slowed(cell, paths, toolpath.layer_height)
+    done, told = list(paths), []
+    for part, numbers in toolpath.parts:
+        rows = [k for k, path in enumerate(paths) if path.layer in set(numbers.tolist())] if toolpath.features else (
+            list(range(len(paths))))
+        some = [paths[k] for k in rows]
+        if not some:
+            continue
+        if part.filled:
+            some, found = corners_slowed(cell, some, part.layer_height, part.law)
+        else:
+            some, found = rings_slowed(cell, some, part.layer_height)
+        told += found
+        for k, path in zip(rows, some, strict=True):
+            done[k] = path
     return done, told + too_fast(cell, done)
 
 

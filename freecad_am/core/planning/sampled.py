@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters.joints import given_polynomials
-from ..toolpath import Bead, Layer, Toolpath
+from ..toolpath import Bead, Toolpath
 
 PER_TURN = 16  # points of a turn that are kept, about
 FEWEST_PER_TURN = 5  # where beads of many turns are too few to leave some out: all sides are seen, axes still counted on
@@ -65,8 +65,7 @@ def sampled(toolpath: Toolpath, most: int) -> Sampled:
     if beads < wanted:  # there are no more beads to leave out
         points = max(points, _one_in([bead for _, _, bead in chosen], most, FEWEST_PER_TURN))
     layers = tuple(
-        Layer(tuple(bead.thinned(_kept(bead, points)) for place, _, bead in chosen if place == number), layer.wait,
-              layer.first)
+        replace(layer, beads=tuple(bead.thinned(_kept(bead, points)) for place, _, bead in chosen if place == number))
         for number, layer in enumerate(toolpath.layers)
     )
     return Sampled(

@@ -47,12 +47,12 @@ def segments(beads: Sequence[Bead]) -> Segments:
 
 
 def beads(toolpath: Toolpath) -> dict[str, Any] | None:
-    """The key `beads` of a report; None without a bead model.
+    """The key `beads` of a report; None without a bead model, and for several features.
 
     Of each layer `drift_mm` is by how much the layers of its solid up to it, as high in the mean as predicted, are off the
     layer heights.
     """
-    whole = segments([bead for _, _, bead in toolpath])
+    whole = segments([] if toolpath.features else [bead for _, _, bead in toolpath])
     if not len(whole.length):
         return None
     rows: list[dict[str, Any]] = []

@@ -50,8 +50,11 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 
     A spiral is one layer; there it is the distance of each point to the turn before. Of plane layers that are filled it is
     the distance of the planes: how far the nearest bead below is says how beads lie beside each other, not above. Beads that
-    close gaps are left out, and layers that nothing of the feature lies below.
+    close gaps are left out, and layers that nothing of the feature lies below. Of several features those of one come after those of the
+    other.
     """
+    if toolpath.features:
+        return tuple(chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers))
     if _is_spiral(toolpath):
         return between_turns(toolpath.layers[0].beads[0])
     heights = _planes(toolpath)
@@ -75,6 +78,13 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
 
     NaN where nothing of the feature lies below: in first layers, and in the first turn of a spiral.
     """
+    if toolpath.features:
+        each: list[list[Array]] = [[] for _ in toolpath.layers]
+        for part, numbers in toolpath.parts:
+            places = (number for number, layer in zip(numbers.tolist(), part.layers, strict=True) for _ in layer.beads)
+            for number, values in zip(places, local_distances(part) if part.layers else (), strict=True):
+                each[number].append(values)
+        return tuple(chain.from_iterable(each))
     if _is_spiral(toolpath):
         bead = toolpath.layers[0].beads[0]
         found = np.full(len(bead), np.nan)

@@ -56,21 +56,29 @@ class _Pieces:
         return len(self.middle)
 
 
-def carried(toolpath: Toolpath, ground: Ground, first: bool) -> tuple[float, list[Issue]]:
-    """How much of a toolpath lies over nothing, mm, and an issue for each layer with such beads, the longest ten.
+def carried(
+    toolpath: Toolpath, ground: Ground, first: bool, numbers: Index | None = None
+) -> tuple[dict[int, float], list[Issue]]:
+    """How much of the layers of a toolpath lies over nothing, mm of those with such beads, and an issue for each of these,
+    the longest ten.
 
     ground(points (n, 3), build (n, 3)): whether something other than deposit carries them. first: something carries all of
-    the first layer. Time grows little faster than the number of pieces, memory as it.
+    the first layer. numbers: (k,) rising, of the layers asked about, all where left out. Time grows little faster than the
+    number of pieces, memory as it.
     """
     pieces = _cut(toolpath)
     reach = REACH * toolpath.layer_height
-    asked = np.flatnonzero(pieces.layer > 0) if first else np.arange(len(pieces))
+    numbers = np.arange(len(toolpath.layers)) if numbers is None else numbers
+    asked = np.flatnonzero(np.isin(pieces.layer, numbers[1:] if first else numbers))
     open_ = _alone(pieces, toolpath, ground, asked)
     open_ = _without_both(pieces, toolpath, ground, open_)
     free = np.zeros(len(pieces), dtype=bool)
     free[open_] = True
     runs = list(_runs(pieces, free, toolpath))
-    return math.fsum(run.length for run in runs), _issues(runs, toolpath, reach)
+    open_by_layer: dict[int, float] = {}
+    for run in runs:
+        open_by_layer[run.layer] = open_by_layer.get(run.layer, 0.0) + run.length
+    return open_by_layer, _issues(runs, toolpath, reach)
 
 
 def _without_both(pieces: _Pieces, toolpath: Toolpath, ground: Ground, some: Index) -> Index:

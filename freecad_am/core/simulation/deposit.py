@@ -25,7 +25,8 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     width = np.where(np.isfinite(motion.width), motion.width, counted)
     # the width of a segment is the mean of those at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
-    return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * toolpath.layer_height
+    height = toolpath.layer_heights[motion.layer] if toolpath.features else toolpath.layer_height
+    return np.where(motion.deposit & motion.moves, mean_width * length, 0.0) * height
 
 
 def fed(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:

@@ -14,7 +14,7 @@ from ..issues import ERROR, Issue
 from ..parameters.cell import NozzleParameters
 from ..toolpath import Toolpath
 from .clearance_notes import place
-from .clearance_room import halfway, nozzle_of, room_of
+from .clearance_room import beads_of, halfway, nozzle_of, room_of
 
 
 @dataclass(frozen=True)
@@ -27,13 +27,16 @@ class Looked:
     place: tuple[int, int, int] | None
 
 
-def looked_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, most: int) -> Looked:
+def looked_at(
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, most: int, feature: int | None = None
+) -> Looked:
     """Whether the nozzle touches bodies, the platform one of them, or what is deposited by then, beads as wide and high as
-    they are, at so many points at most, evenly spread."""
-    room = room_of(toolpath, bodies, nozzle, np.pi, often=False)
+    they are, at so many points at most, evenly spread. feature: of several features, the one whose points are looked at."""
+    room = room_of(toolpath, bodies, nozzle, np.pi, often=False, feature=feature or 0)
     beads = list(toolpath)
     starts = np.cumsum([0, *(len(bead) for _, _, bead in beads)])
-    rows = np.unique(np.round(np.linspace(0, starts[-1] - 1, min(most, starts[-1]))).astype(np.intp))
+    mine = np.flatnonzero(np.repeat(beads_of(toolpath, feature), np.diff(starts)))
+    rows = mine[np.unique(np.round(np.linspace(0, len(mine) - 1, min(most, len(mine)))).astype(np.intp))]
     tool = np.concatenate([bead.tool for _, _, bead in beads])
     hit = rows[~room.clear(rows, tool[rows])]
     if not len(hit):

@@ -58,10 +58,11 @@ def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 
 
 
 def room_of(
-    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float, often: bool = True
+    toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, max_tilt: float, often: bool = True,
+    feature: int = 0,
 ) -> Room:
     """The room of all points of a toolpath, in order, among bodies; max_tilt: rad. Where it is asked but once it takes less
-    memory."""
+    memory. feature: of several features, the one whose points are asked about."""
     beads = [bead for _, _, bead in toolpath]
     points, build = (np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "build"))
     counts = np.array([len(bead) for bead in beads])
@@ -69,9 +70,11 @@ def room_of(
     layer = np.repeat([i for i, _, _ in toolpath], counts)
     heights = toolpath.heights
     lean, own = 0.0, np.searchsorted(layer, layer)
-    if toolpath.family == "revolution":
+    if (toolpath.features[feature] if toolpath.features else toolpath).family == "revolution":
         # directions and tools are turned as one there; a spiral is of the layer being laid for its last turn
-        lean = float(np.arccos(np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0)).max())
+        mine = np.repeat(beads_of(toolpath, feature), counts)
+        turned = np.arccos(np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0))
+        lean = float(turned[mine].max())
         own = np.concatenate([first + _turn_before(bead.parameter) for first, bead in zip(own[starts], beads, strict=True)])
     looked = nozzle_of(nozzle, float(heights.max()), lean)
     made = deposit.of_beads if often else deposit.in_parts
@@ -79,6 +82,14 @@ def room_of(
     # a bead that closes a gap overlaps those about the gap, of layers below too
     own = np.where(np.repeat([bead.closing for bead in beads], counts), 0, own)
     return Room(points, own, scene(bodies, points, looked.reach, laid), looked, max_tilt)
+
+
+def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
+    """(beads,) which beads are of a feature, where a toolpath has several; all where None is asked about."""
+    chosen: Mask = np.array([
+        feature is None or not toolpath.features or toolpath.layers[i].feature == feature for i, _, _ in toolpath
+    ])
+    return chosen
 
 
 def _turn_before(angle: Array) -> Index:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -20,6 +21,7 @@ Mask = NDArray[np.bool_]
 STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
+BY_ITSELF = "surface"  # a family whose first layer lies where it begins by its making
 
 
 def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
@@ -30,8 +32,19 @@ def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], ba
     hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
-    length, issues = support.carried(toolpath, ground, toolpath.family == "surface")
-    return replace(toolpath, unsupported=length, issues=(*toolpath.issues, *issues))
+    open_, issues = support.carried(toolpath, ground, toolpath.family == BY_ITSELF)
+    return replace(toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues))
+
+
+def of_feature(
+    toolpath: Toolpath, number: int, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
+) -> tuple[dict[int, float], list[Issue]]:
+    """How much of the layers of one of the features of a toolpath lies over nothing, mm by layer, and issues where; deposit
+    of the other features carries what comes after it. planes, bodies, bases: as of `told`."""
+    part, numbers = toolpath.parts[number]
+    ground = _Ground(part, planes, bodies, bases)
+    whole = replace(toolpath, layer_height=part.layer_height)
+    return support.carried(whole, ground, part.family == BY_ITSELF, numbers)
 
 
 class _Ground:

@@ -27,7 +27,7 @@ from ..slicing.wall_direction import limited, turn_rates
 from ..toolpath import Toolpath
 from . import clearance_knots
 from .clearance_notes import tilt_issues, turn_issues
-from .clearance_room import Room, halved, room_of, touched_between
+from .clearance_room import Room, beads_of, halved, room_of, touched_between
 from .tilt_search import SPREAD, TiltSearch
 
 Array = NDArray[np.float64]
@@ -41,16 +41,17 @@ HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 def kept_clear(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None,
+    plane: Array | None = None, feature: int | None = None,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
     bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
     tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE. Beads get points halfway between
-    those that are clear where the nozzle would touch there.
+    those that are clear where the nozzle would touch there. feature: of several features, the one whose beads are kept
+    clear, of what is deposited of the others by then too.
     """
     for last in (False,) * HALVINGS + (True,):
-        found, between = _tilted(toolpath, bodies, nozzle, build, plane, last)
+        found, between = _tilted(toolpath, bodies, nozzle, build, plane, feature, last)
         if not between.any():
             break
         toolpath = halved(toolpath, between)
@@ -59,16 +60,18 @@ def kept_clear(
 
 def _tilted(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, last: bool,
+    plane: Array | None, feature: int | None, last: bool,
 ) -> tuple[Toolpath, Mask]:
     """The toolpath tilted clear at its points, and the points (n,) after which the nozzle touches halfway to the next; none
     at the `last` try, where an issue says so. Where it touches with the axes asked for, nothing is tilted yet."""
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
     asked = np.concatenate([bead.tool for bead in beads])
-    room = room_of(toolpath, bodies, nozzle, build.max_tilt)
-    free = room.clear(np.arange(len(asked)), asked)
-    between = touched_between(room, beads, asked, free)
+    room = room_of(toolpath, bodies, nozzle, build.max_tilt, feature=feature or 0)
+    mine = np.repeat(beads_of(toolpath, feature), np.diff(begin))
+    free = ~mine
+    free[mine] = room.clear(np.flatnonzero(mine), asked[mine])
+    between = touched_between(room, beads, asked, free & mine)
     if between.any() and not last:
         return toolpath, between
     blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
@@ -81,7 +84,7 @@ def _tilted(
     lost[stuck] = True
     turned = _slowed(room, rows, closed, asked, plane, build.turn(), tool, tilt, lost)
     # no more points for beads that are lost: they are told of at those they have
-    sound = ~np.repeat(np.logical_or.reduceat(lost, begin[:-1]), np.diff(begin))
+    sound = mine & ~np.repeat(np.logical_or.reduceat(lost, begin[:-1]), np.diff(begin))
     between = touched_between(room, beads, tool, sound)
     if between.any() and not last:
         return toolpath, between

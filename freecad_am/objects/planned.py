@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How a feature of each family becomes a toolpath: layers and beads, the nozzle kept clear, what carries them.
+
+A family is imported when one of its features is planned: all of them take longer than to plan a small part.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..brep.off_part import off_faces, off_mesh, off_solids
+from ..core.geometry.surroundings import Body
+from ..core.issues import InputError
+from ..core.kinematics.cell import mounted
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.cell import CellParameters, NozzleParameters
+from ..core.parameters.process import ProcessParameters
+from ..core.process import bead_table, on_part
+from ..core.process.bead_model import BeadModel
+from ..core.process.wire import fed
+from ..core.strategies import clearance_look, platform, support
+from ..core.strategies.families import family_of
+from ..core.toolpath import Array
+from ..core.toolpath import Toolpath as CoreToolpath
+from . import progress
+from .platforms import platforms
+from .shapes import Taken
+
+STRATEGY = 0.7  # of the time goes into layers and beads, the rest into keeping the nozzle clear
+CHECKED, LOOKED = 0.92, 0.95  # and what is left into last looks
+
+
+@dataclass(frozen=True)
+class Given:
+    """What a feature is planned of: its wall or its solids, which the feature object has found, and parameters. stands:
+    (4, 4) in part coordinates, the frame that sits on the platform where an earlier feature says which; else None."""
+
+    wall: Any
+    strategy: Any
+    build: BuildDirectionParameters
+    process: ProcessParameters
+    cell: CellParameters | None
+    stands: Array | None = None
+
+    @property
+    def nozzle(self) -> NozzleParameters:
+        """Of the cell, or the usual one."""
+        return NozzleParameters() if self.cell is None else self.cell.nozzle
+
+    @property
+    def model(self) -> BeadModel | None:
+        """The bead model of the process."""
+        return None if self.process.bead_model == "none" else bead_table.load(self.process.bead_model)
+
+
+def planned(of: Given) -> CoreToolpath:
+    """The toolpath of a feature that is deposited alone; what of it lies over nothing is told."""
+    made = layers_of(of)
+    if of.build.clearance != "none":
+        progress.report(STRATEGY, "keeping the nozzle clear")
+        made = kept_clear(made, of, (*of.wall.surroundings, *platforms(of.cell, made)))
+    made = with_wire(made, of)
+    progress.report(CHECKED, "looking for beads over nothing")
+    plates = platforms(of.cell, made)
+    if made.family == "revolution":
+        stands = mounted(of.cell, made.frame, made.family) if of.cell is not None and plates else made.frame
+        return support.told(made, (stands,), made.surroundings, ())
+    return support.told(made, (), (*made.surroundings, *plates), bases_of(of))
+
+
+def layers_of(of: Given) -> CoreToolpath:
+    """Layers and beads of a feature; the nozzle is kept clear of the feature alone, and of that only where directions are
+    settled with the layers. InputError, those of the family."""
+    process = of.process
+    if process.bead_model == "none" and process.wire.feed_mode != "constant":
+        raise InputError(
+            "NOT_FOR_FAMILY", "process.wire.feed_mode", "without a bead model the travel speed does not vary, and the wire "
+            "has nothing to follow; use constant, or a process.bead_model"
+        )
+    family = family_of(of.strategy)
+    if process.bead_model != "none" and not family.filled:
+        raise InputError(
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids alone; use none"
+        )
+    return _PLANNERS[family.kind].layers(of)
+
+
+def kept_clear(
+    toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None = None
+) -> CoreToolpath:
+    """The toolpath with tools tilted clear of bodies, the platform one of them, and of deposit. feature: of several, the one
+    that `of` is and that is kept clear."""
+    return _PLANNERS[family_of(of.strategy).kind].cleared(toolpath, of, bodies, feature)
+
+
+def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
+    """The toolpath with the speed of its wire."""
+    return fed(toolpath, of.process, of.model)
+
+
+def bases_of(of: Given) -> list[Any]:
+    """The surfaces that solids stand on; none of walls."""
+    return [group.base for group in of.wall.groups] if family_of(of.strategy).filled else []
+
+
+def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> CoreToolpath:
+    """The toolpath with whether it lies on the shapes that it was made for; nobody looks where these have no faces."""
+    progress.report(LOOKED, "looking whether the deposit lies on the part")
+    places = on_part.places(toolpath)
+    if hasattr(of.strategy, "share_of_cut"):  # where the part was cut, above the surface that beads of the layer lie on
+        up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
+        places = places._replace(points=places.points + up)
+    limit = on_part.allowed(toolpath, getattr(of.strategy, "margin", 0.0))
+    if family_of(of.strategy).filled:
+        off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
+    else:
+        off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
+    return on_part.judged(toolpath, places, off, limit)
+
+
+def _off_solid(source: Taken, points: Any, limit: float) -> Any:
+    if source.shape is not None:
+        return off_solids(source.shape, points, limit)
+    body = source.body()
+    return off_mesh(body.vertices, body.triangles, points)
+
+
+def _share(fraction: float, text: str) -> None:
+    progress.report(STRATEGY * fraction, text)
+
+
+def _of_revolution(of: Given) -> CoreToolpath:
+    from ..core.strategies import revolution
+
+    stands = of.stands
+    if stands is None and of.cell is not None and of.cell.mount == "part":
+        stands = np.eye(4)
+    made = revolution.plan(
+        of.wall, of.strategy, of.build, of.process, of.nozzle, 0.0 if of.cell is None else of.cell.platform_diameter, stands,
+        _share,
+    )
+    return dataclasses.replace(made, surroundings=of.wall.surroundings)
+
+
+def _of_wall(of: Given) -> CoreToolpath:
+    from ..core.geometry.patch_wall import PatchWall
+
+    if isinstance(of.wall, PatchWall):
+        from ..core.strategies import wall_fronts as family
+    else:
+        from ..core.strategies import surface as family
+    made = family.plan(of.wall, of.strategy, of.build, of.process, _share)
+    if of.cell is not None:
+        points = np.vstack([bead.points for _, _, bead in made])
+        stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
+        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter)
+    return dataclasses.replace(made, surroundings=of.wall.surroundings)
+
+
+def _of_solids(of: Given) -> CoreToolpath:
+    from ..core.strategies.solids import plan as solids_plan
+
+    if of.stands is not None and of.cell is not None:
+        platform.refuse_solids_below(of.wall, of.stands, of.cell.platform_diameter)
+    elif of.cell is not None and of.cell.mount != "feature":  # the feature's own frame is at its lowest end
+        platform.refuse_solids_below(of.wall, np.eye(4), of.cell.platform_diameter)
+    return solids_plan.plan(of.wall, of.strategy, of.build, of.process, of.model, _share)
+
+
+def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+    """It is looked at what stands around; the rest was settled with the layers, but for what is deposited of others."""
+    if feature is None:
+        found = clearance_look.touched_at(toolpath, of.wall.surroundings, of.nozzle)
+        return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
+    own, numbers = toolpath.parts[feature]
+    count = own.point_count
+    alone = clearance_look.looked_at(own, bodies, of.nozzle, count)
+    among = clearance_look.looked_at(toolpath, bodies, of.nozzle, count, feature)
+    if among.touched <= alone.touched:
+        return toolpath
+    from ..core.strategies import wall_clearance
+
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature)
+
+
+def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+    from ..core.strategies import surface_directions, wall_clearance
+
+    plane = surface_directions.plane(of.wall, of.build)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, plane, feature)
+
+
+def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+    """On a hub the machine turns them, so that no vertical bounds the tool axes."""
+    from ..core.strategies import wall_clearance
+    from ..core.strategies.solids import plan as solids_plan
+
+    if not solids_plan.on_planes(of.wall):
+        free = solids_plan.without_axis_limits(of.build)
+        return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature)
+    if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
+        return toolpath
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature)
+
+
+@dataclass(frozen=True)
+class _Planner:
+    layers: Callable[[Given], CoreToolpath]
+    cleared: Callable[[CoreToolpath, Given, Sequence[Body], int | None], CoreToolpath]
+
+
+_SOLIDS = _Planner(_of_solids, _solids_cleared)
+_PLANNERS = {
+    "revolution": _Planner(_of_revolution, _revolution_cleared), "surface": _Planner(_of_wall, _wall_cleared),
+    "developable": _SOLIDS, "solid": _SOLIDS,
+}
