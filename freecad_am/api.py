@@ -42,7 +42,7 @@ from .core.parameters.strategy import DevelopableParameters, RevolutionParameter
 from .objects import stage as stages
 from .objects import user_machines
 from .objects.cell import Cell
-from .objects.feature import RevolutionFeature
+from .objects.feature_kinds import proxy_of
 from .objects.findings import issues_of
 from .objects.job_group import grouped
 from .objects.joint_path import JointPath
@@ -56,7 +56,7 @@ from .posts import written
 
 __all__ = (
     "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
-    "make_developable_feature", "make_feature", "make_joint_path", "make_program", "make_solid_feature",
+    "make_developable_feature", "make_feature", "make_feature_of", "make_joint_path", "make_program", "make_solid_feature",
     "make_surface_feature", "make_toolpath", "make_trajectory", "open_part", "proposed_name", "recompute", "result",
     "stages_of", "told_to",
 )
@@ -77,8 +77,25 @@ def make_feature(
     `am.make_feature(doc, doc.Revolve, ["Face1"], layer_height=1.5)`; axis: (object, "Edge1") where the shape has none.
     fixtures: objects, solids or meshes, that the nozzle must not touch.
     """
-    links = {"Source": _with_faces(source, faces), "Axis": axis, "Fixtures": list(fixtures)}
-    return _make(doc, RevolutionFeature, "Feature", label, links, [strategy, build_direction], values)
+    links = {"Axis": axis, "Fixtures": list(fixtures)}
+    return make_feature_of(doc, "revolution", source, faces, label=label, links=links,
+                           parameters=[strategy, build_direction], values=values)
+
+
+def make_feature_of(
+    doc: Any, kind: str, source: Any, faces: Sequence[str] = (), *, label: str = "Feature",
+    links: Mapping[str, Any] | None = None, parameters: Sequence[Any] = (), values: Mapping[str, Any] | None = None,
+) -> Any:
+    """A feature of any family, by its kind. links: by property name, of which those count that the family has; `StartEdges`
+    and `BaseFaces` are names alone. parameters: dataclasses of its sections; values: single ones by key."""
+    proxy = proxy_of(kind)
+    known = {link.name for link in proxy.links}
+    given_links = {"Source": _with_faces(source, faces), **(links or {})}
+    for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate"))):
+        names = list(given_links.get(name) or ())
+        given_links[name] = (owner, names) if names else None
+    chosen = {name: value for name, value in given_links.items() if name in known}
+    return _make(doc, proxy, "Feature", label, chosen, parameters, dict(values or {}))
 
 
 def make_surface_feature(
@@ -91,12 +108,9 @@ def make_surface_feature(
     `am.make_surface_feature(doc, doc.Bend, ["Face1"], doc.Pipe, layer_height=1.5)`; fixtures: objects, solids or meshes,
     that the nozzle must not touch either.
     """
-    from .objects.surface_feature import SurfaceFeature
-
-    links = {"Source": _with_faces(source, faces), "Substrate": substrate, "Fixtures": list(fixtures)}
-    if start_edges:
-        links["StartEdges"] = (source, list(start_edges))
-    return _make(doc, SurfaceFeature, "Feature", label, links, [strategy, build_direction], values)
+    links = {"Substrate": substrate, "Fixtures": list(fixtures), "StartEdges": start_edges}
+    return make_feature_of(doc, "surface", source, faces, label=label, links=links, parameters=[strategy, build_direction],
+                           values=values)
 
 
 def make_developable_feature(
@@ -110,14 +124,11 @@ def make_developable_feature(
     faces: of the source itself, where hub and solids are one. further: more objects to deposit; fixtures: objects, solids
     or meshes, that the nozzle must not touch either. `base_radius=60, base_height=200` gives the base by numbers.
     """
-    from .objects.developable_feature import DevelopableFeature
-
     links = {
-        "Source": _with_faces(source, faces), "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
+        "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures), "BaseFaces": base_faces,
     }
-    if base_faces:
-        links["BaseFaces"] = (substrate, list(base_faces))
-    return _make(doc, DevelopableFeature, "Feature", label, links, [strategy, build_direction], values)
+    return make_feature_of(doc, "developable", source, faces, label=label, links=links,
+                           parameters=[strategy, build_direction], values=values)
 
 
 def make_solid_feature(
@@ -130,10 +141,9 @@ def make_solid_feature(
     further: more objects to deposit; substrate: what they stand on, where that is no platform; fixtures: objects, solids or
     meshes, that the nozzle must not touch either.
     """
-    from .objects.solid_feature import SolidFeature
-
-    links = {"Source": _with_faces(source, ()), "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures)}
-    return _make(doc, SolidFeature, "Feature", label, links, [strategy, build_direction], values)
+    links = {"Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures)}
+    return make_feature_of(doc, "solid", source, label=label, links=links, parameters=[strategy, build_direction],
+                           values=values)
 
 
 def make_toolpath(
@@ -206,16 +216,8 @@ def make_all(
     chosen = cell_of(machine, user_machines.folders())
     with _one_step(doc, "New job"):
         made = [make_cell(doc, parameters=chosen)]
-        if kind == "surface":
-            made.append(make_surface_feature(doc, source, faces, substrate))
-        elif kind == "developable":
-            made.append(make_developable_feature(doc, source, substrate, base_faces, faces=faces, further=further))
-        elif kind == "solid":
-            made.append(make_solid_feature(doc, source, substrate, further=further))
-        elif kind == "revolution":
-            made.append(make_feature(doc, source, faces))
-        else:
-            raise InputError("BAD_VALUE", "kind", f"{kind!r} is none of revolution, surface, developable, solid")
+        links = {"Substrate": substrate, "Further": list(further), "BaseFaces": base_faces}
+        made.append(make_feature_of(doc, kind, source, faces, links=links))
         made.append(make_toolpath(doc, made[1], made[0], **(process or {})))
         made.append(make_joint_path(doc, made[2], made[0]))
         posts = machines.load(chosen.machine, user_machines.folders()).posts

@@ -11,10 +11,11 @@ import FreeCAD as App
 
 from freecad_am import api
 from freecad_am.brep.apart import apart
+from freecad_am.brep.chosen import solids_of
 from freecad_am.core.issues import InputError
 from freecad_am.objects import document_file
 
-from .job import PartSource
+from .part_source import MESHES, PartSource
 
 PATIENCE = 100.0  # times as long as reading a document may take; building a part of other values may be long work
 
@@ -24,17 +25,34 @@ def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = Fal
 
     Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
     """
-    if key == "part" and not meshes and part.file.lower().endswith((".stl", ".obj", ".3mf")):
+    if key == "part" and not meshes and part.file.lower().endswith(MESHES):
         raise InputError(
             "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part of this family needs STEP, IGES, "
             "BREP or FCStd; a mesh may be the substrate, or a fixture",
         )
     if not part.settings:
-        return api.open_part(document, part.file, part.object or "", part.scale)
+        return _only_solids(api.open_part(document, part.file, part.object or "", part.scale), part, key)
     with tempfile.TemporaryDirectory() as folder:
         changed = os.path.join(folder, os.path.basename(part.file))
         apart(lambda _: _save_changed(part, changed, key), part.file, patience=PATIENCE)
-        return api.open_part(document, changed, part.object or "")
+        return _only_solids(api.open_part(document, changed, part.object or ""), part, key)
+
+
+def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
+    """The object, with those solids alone that are named. InputError BAD_VALUE for one that there is not."""
+    if not part.solids:
+        return obj
+    solids = obj.Shape.Solids
+    numbers = [int(name.removeprefix("Solid")) for name in part.solids]
+    wrong = [name for name, number in zip(part.solids, numbers) if number > len(solids)]
+    if wrong:
+        raise InputError(
+            "BAD_VALUE", f"{key}.solids", f"{obj.Label} has {len(solids)} solid(s), and no {', '.join(wrong)}; name others"
+        )
+    obj.Shape = solids_of(obj.Shape, numbers)
+    obj.Label = f"{obj.Label} {', '.join(part.solids)}"
+    obj.purgeTouched()
+    return obj
 
 
 def _save_changed(part: PartSource, path: str, section: str) -> None:

@@ -17,10 +17,15 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.planning import comparison
 from freecad_am.core.planning.joint_path import JointPath
-from freecad_am.core.process import predicted
+from freecad_am.core.process import deposit_balance, predicted
+from freecad_am.core.process import spacing as layer_spacing
+from freecad_am.core.process.deposit_balance import Balance
 from freecad_am.core.simulation import totals
 from freecad_am.core.simulation.timeline import timeline
+from freecad_am.core.strategies.families import family_of
 from freecad_am.core.toolpath import Array, Toolpath
+
+from .job_features import JobFeature
 
 VERSION = 1
 
@@ -58,6 +63,24 @@ def build(
         "timing_s": {},
         "programs": [],
     }
+
+
+def features(
+    of_job: Sequence[JobFeature], toolpath: Toolpath, motion: Motion, balances: Sequence[Balance | None]
+) -> list[dict[str, Any]]:
+    """The key `features`: what each of several features comes to."""
+    found = []
+    for one, (part, numbers), balance in zip(of_job, toolpath.parts, balances, strict=True):
+        rows = motion.deposit & np.isin(motion.layer, numbers)
+        found.append({
+            "name": one.name, "kind": family_of(one.strategy).kind, "layers": [int(number) for number in numbers],
+            "counts": {"layers": len(part.layers), "beads": part.bead_count, "points": int(rows.sum())},
+            "length_mm": part.length, "layer_height_mm": part.layer_height, "bead_width_mm": part.bead_width,
+            "deposit_s": float(np.nan_to_num(motion.duration)[rows & motion.moves].sum()),
+            "spacing_mm": spread(layer_spacing.between_layers(part)), "unsupported_mm": part.unsupported,
+            "deposit": deposit_balance.as_dict(balance),
+        })
+    return found
 
 
 def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float) -> None:

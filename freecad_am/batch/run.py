@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,7 @@ from freecad_am.core.strategies.families import family_of
 
 from . import outputs, paths
 from .job import SECTIONS, Job
+from .job_features import in_words_of_job
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Stages:
     """The stages as far as they got: document objects and the findings about them."""
 
     document: Any
-    feature: Any = None
+    features: list[Any] = field(default_factory=list)
     toolpath: Any = None
     joint_path: Any = None
     program: Any = None
@@ -97,18 +98,6 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
         raise error from None
 
 
-# what a job calls the links of a feature, which the window picks in a document
-_KEYS = {
-    "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
-    "Feature.StartEdges": "part.start_edges",
-}
-
-
-def in_words_of_job(error: InputError) -> InputError:
-    """An error about a link of the feature as one about a key of the job."""
-    return InputError(error.code, _KEYS[error.where], error.message) if error.where in _KEYS else error
-
-
 def check(job: Job) -> Any:
     """What can be refused before the long work starts: machine, limits, set-up, post, name of the program.
 
@@ -140,24 +129,29 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
     from freecad_am.core.process.predicted import HEIGHTS
     from freecad_am.core.strategies.size import LARGE
 
-    from .part import bring
+    from .job_shapes import Shapes
 
     stages = Stages(document)
     with stages.timed("part", session):
-        part = bring(document, job.part, meshes=family_of(job.strategy).meshes)
-        substrate = None if job.substrate is None else bring(document, job.substrate, "substrate")
-        fixtures = [bring(document, fixture, f"fixtures[{number}]") for number, fixture in enumerate(job.fixtures)]
+        shapes = [Shapes(document, job, number) for number in range(len(job.features))]
     cell = None
     if job.cell is not None:
         with stages.timed("cell", session):
             cell = api.make_cell(document, parameters=job.cell)
     with stages.timed("feature", session):
-        feature = make_feature(document, job, part, substrate, fixtures)
-    stages.feature = feature
-    stages.issues += api.issues(feature)
+        for one in shapes:
+            stages.features.append(one.make_feature([other.part for other in shapes[: one.number] if other.solid]))
+    for feature in stages.features:
+        stages.issues += api.issues(feature)
     session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
     with stages.timed("toolpath", session):
-        stages.toolpath = api.make_toolpath(document, feature, cell, process=job.process)
+        if len(job.features) == 1:
+            stages.toolpath = api.make_toolpath(document, stages.features[0], cell, process=job.process)
+        else:
+            stages.toolpath = api.make_toolpath(
+                document, stages.features, cell, sequence=job.sequence, process=job.process,
+                processes=[one.process for one in job.features],
+            )
     # a toolpath repeats the findings about its wall
     stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
     if cell is None or has_errors(stages.issues):
@@ -177,22 +171,6 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
         except InfeasibleError as error:
             stages.issues += error.issues or [Issue("error", error.code, error.message)]
     return stages
-
-
-def make_feature(document: Any, job: Job, part: Any, substrate: Any, fixtures: Sequence[Any] = ()) -> Any:
-    """The feature of a job, of the family of its strategy, from the objects that it is made of."""
-    from freecad_am import api
-
-    more: dict[str, Any] = {"strategy": job.strategy, "build_direction": job.build_direction, "fixtures": fixtures}
-    kind, faces = family_of(job.strategy).kind, job.part.faces
-    if kind == "revolution":
-        return api.make_feature(document, part, faces, **more)
-    if kind == "solid":
-        return api.make_solid_feature(document, part, substrate, **more)
-    if kind == "developable":
-        bases = () if job.substrate is None else job.substrate.faces
-        return api.make_developable_feature(document, part, substrate, bases, faces=faces, **more)
-    return api.make_surface_feature(document, part, faces, substrate, start_edges=job.part.start_edges, **more)
 
 
 def _write(
@@ -227,15 +205,20 @@ def _write(
         compared = _compare_spacings(job, stages, content, toolpath, distances, planned, cell, session)
     with stages.timed("preflight", session):
         content["preflight"] = [one.as_dict() for one in _preflight(stages, distances)]
-    content["deposit"] = deposit_balance.as_dict(
-        deposit_balance.of_toolpath(api.result(stages.feature), toolpath, job.process.bead_width)
-    )
+    balances = [
+        deposit_balance.of_toolpath(api.result(feature), part, one.process.bead_width)
+        for feature, one, (part, _) in zip(stages.features, job.features, toolpath.parts, strict=True)
+    ]
+    content["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
+    if toolpath.features:
+        content["features"] = report.features(job.features, toolpath, motion, balances)
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])
     if page:
         with stages.timed("page", session):
-            solids = api.result(stages.feature) if family_of(job.strategy).filled else None
+            alone = len(job.features) == 1 and family_of(job.strategy).filled
+            solids = api.result(stages.features[0]) if alone else None
             page_text = _page(job, content, toolpath, motion, distances, planned, cell, compared, solids)
             files.write(outputs.PAGE, [page_text])
     written = files.publish(outputs.earlier_outputs(files.folder))
@@ -253,14 +236,14 @@ def _compare_spacings(
     job: Job, stages: Stages, content: dict[str, Any], toolpath: Any, distances: Any, planned: Any, cell: Any, session: Any
 ) -> Any:
     """Fill in what other spacings of a wall would be, nothing for other families; what the page draws of them."""
-    if family_of(job.strategy).kind != "surface":
+    if len(job.features) > 1 or family_of(job.strategy).kind != "surface":
         content["spacing_comparison"] = []
         return ()
     from freecad_am import api
 
     from . import spacing_comparison
 
-    wall = api.result(stages.feature)
+    wall = api.result(stages.features[0])
     compared = spacing_comparison.compare(wall, job)
     rows = spacing_comparison.rows(compared, job, toolpath, distances)
     if rows and planned is not None:
@@ -282,7 +265,7 @@ def _page(
 
     from . import page
 
-    band = getattr(job.strategy, "band", None)
+    band = getattr(job.strategy, "band", None) if len(job.features) == 1 else None
     source = Source(toolpath, motion, job.process, band=band)
     if planned is not None:
         condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))

@@ -257,9 +257,9 @@ class Toolpath:
     as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
     wire_feed: mm/s, None where it is not known. on_part: at how many places it was looked whether they lie on the part, the
     largest distance of one from it and what is allowed, mm; None where nobody looked. volumes: mm3 of a part that is filled,
-    of what beads leave of it, and of beads beside it; None where it is not known. label: of the feature. features: of
-    several features that are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself then
-    speaks for the first of them.
+    of what beads leave of it, and of beads beside it; None where it is not known. label: of the feature. features: where
+    several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself then speaks for
+    the first of them.
     """
 
     layers: tuple[Layer, ...]
@@ -336,7 +336,9 @@ class Toolpath:
         """(n,) mm, how high beads are at all points in the order of deposit: the layer height where none is predicted, 0
         where nothing is known of their width either."""
         known = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
-        return np.concatenate([np.full(len(bead), known[i]) if bead.height is None else bead.height for i, _, bead in self])
+        return np.concatenate([
+            np.full(len(bead), known[i]) if bead.height is None else bead.height for i, _, bead in self
+        ])
 
     @property
     def length(self) -> float:

@@ -34,13 +34,14 @@ ALIKE = 1e-9  # mm
 @dataclass(frozen=True)
 class Member:
     """A feature of a sequence. given: None of it needs the document. on: the substrate's own objects that are parts of other
-    features; beside: those that are not, where it has both."""
+    features; beside: those that are not, where it has both. whole: it is all of its sources, not faces of one."""
 
     label: str
     given: Given
     sources: tuple[Taken, ...]
     on: tuple[str, ...] = ()
     beside: tuple[Taken, ...] = ()
+    whole: bool = True
 
     def around(self) -> tuple[Body, ...]:
         """What stands around it from the beginning: no parts of other features, which are deposited by and by."""
@@ -59,7 +60,8 @@ def member(feature: Any, given: Given, all_features: Sequence[Any]) -> Member:
     stands_on = [] if substrate is None else _leaves(substrate)
     on = tuple(one.Name for one in stands_on if one in others)
     beside = tuple(taken(one) for one in stands_on if one not in others) if on else ()
-    return Member(feature.Label, given, tuple(taken(one) for one in own), on, beside)
+    whole = not any(feature.Source[1])
+    return Member(feature.Label, given, tuple(taken(one) for one in own), on, beside, whole)
 
 
 def _leaves(obj: Any) -> list[Any]:
@@ -141,7 +143,7 @@ def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]
     for k, one in enumerate(members):
         cut = family_of(one.given.strategy).substrate != NONE and family_of(one.given.strategy).kind != "solid"
         for j, other in enumerate(members[:k]):
-            if cut and set(names[j]) & set(one.on):
+            if not (one.whole and other.whole) or (cut and set(names[j]) & set(one.on)):
                 continue
             pairs = [(a.shape, b.shape) for a in one.sources for b in other.sources if a.shape and b.shape]
             shared = sum(common_volume(a, b) for a, b in pairs)

@@ -116,7 +116,10 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
         places = places._replace(points=places.points + up)
     limit = on_part.allowed(toolpath, getattr(of.strategy, "margin", 0.0))
-    if family_of(of.strategy).filled:
+    middle = getattr(of.strategy, "wall", "") == "middle"  # between two faces, on neither
+    if middle and not sources[0].shape.Solids:
+        return toolpath
+    if middle or family_of(of.strategy).filled:
         off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
     else:
         off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
@@ -177,7 +180,7 @@ def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body
     if feature is None:
         found = clearance_look.touched_at(toolpath, of.wall.surroundings, of.nozzle)
         return dataclasses.replace(toolpath, issues=(*toolpath.issues, *found))
-    own, numbers = toolpath.parts[feature]
+    own = toolpath.parts[feature][0]
     count = own.point_count
     alone = clearance_look.looked_at(own, bodies, of.nozzle, count)
     among = clearance_look.looked_at(toolpath, bodies, of.nozzle, count, feature)

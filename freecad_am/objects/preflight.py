@@ -29,6 +29,7 @@ from .findings import issues_of
 from .joint_path import Planned
 from .link_meshes import meshes_of
 from .platforms import platforms
+from .toolpath import features_of
 
 # at which the arm is looked at, and the nozzle depositing and on rapids: together a tenth of the time that planning takes,
 # at most
@@ -61,11 +62,12 @@ def prepared(
     """What makes the preflight of a toolpath and of its joint path (document objects), without the document, from which all
     is read now. settings: of the program that is written of it; read: how that was read back; more: its findings. Raises
     InputError 'NO_RESULT' where one has no result."""
-    feature = toolpath.Feature
-    build = feature.Proxy.parameters(feature, BuildDirectionParameters)
-    stages = [stage for stage in (feature, toolpath, path) if stage is not None]
+    features = features_of(toolpath)
+    builds = [feature.Proxy.parameters(feature, BuildDirectionParameters) for feature in features]
+    stages = [stage for stage in (*features, toolpath, path) if stage is not None]
     issues = tuple(dict.fromkeys([issue for stage in stages for issue in issues_of(stage)] + list(more)))
-    planned, shape = toolpath.Proxy.reader(toolpath), feature.Proxy.reader(feature)
+    planned, shapes = toolpath.Proxy.reader(toolpath), [feature.Proxy.reader(feature) for feature in features]
+    widths = [one.bead_width for one in toolpath.Proxy.processes(toolpath)]
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
 
     looks = None if toolpath.Cell is None else toolpath.Cell.Proxy.value(toolpath.Cell)
@@ -75,10 +77,16 @@ def prepared(
         made = planned()
         return Evidence(
             made, process, issues, distances=distances,
-            balance=deposit_balance.of_toolpath(shape(), made, process.bead_width),
-            looked=None if build.clearance == "none" else clearance_look.looked_at(
-                made, (*made.surroundings, *platforms(looks, made)), nozzle, NOZZLE_PLACES
-            ),
+            balance=deposit_balance.together([
+                deposit_balance.of_toolpath(shape(), part, width)
+                for shape, width, (part, _) in zip(shapes, widths, made.parts, strict=True)
+            ]),
+            looked=clearance_look.together([
+                clearance_look.looked_at(
+                    made, (*made.surroundings, *platforms(looks, made)), nozzle, NOZZLE_PLACES // len(builds), number
+                )
+                for number, build in enumerate(builds) if build.clearance != "none"
+            ]),
         )
 
     if path is None:

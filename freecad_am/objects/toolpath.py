@@ -129,8 +129,8 @@ def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
     shared = sorted(set(own) - set(OF_FEATURE))
     if shared:
         raise InputError(
-            "NOT_FOR_FEATURE", f"process.{shared[0]}", "it holds for the whole program, not for one of its features; give it "
-            "at the top level"
+            "NOT_FOR_FEATURE", f"process.{shared[0]}", "it holds for the whole program, not for one of its features; "
+            "give it at the top level"
         )
     return json.dumps(own) if own else ""
 

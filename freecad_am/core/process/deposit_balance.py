@@ -55,6 +55,24 @@ def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     return Balance(value.label, part, left, part - left + beside, beside, width=toolpath.bead_width or 0.0, filled=True)
 
 
+def together(balances: Sequence[Balance | None]) -> Balance | None:
+    """What the balances of several features come to; the one there is of a single feature. None where nothing is known."""
+    known = [one for one in balances if one is not None]
+    if len(balances) == 1 or not known:
+        return balances[0] if balances else None
+
+    def total(name: str) -> float | None:
+        told = [value for one in known if (value := getattr(one, name)) is not None]
+        return sum(told) if told else None
+
+    return Balance(
+        ", ".join(one.label for one in known), total("part"), total("left_out"), total("beads"), total("beside"),
+        tuple(f"{one.label} {face}" for one in known for face in one.faces),
+        tuple(solid for one in known for solid in one.solids), width=known[0].width, thick=known[0].thick,
+        filled=all(one.filled for one in known),
+    )
+
+
 def of_wall(depths: PartDepths, width: float) -> Balance:
     """Of a wall of one bead of a width, mm."""
     total = sum(depths.face_areas)

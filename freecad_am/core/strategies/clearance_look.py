@@ -45,6 +45,14 @@ def looked_at(
     return Looked(len(rows), len(hit), (*beads[bead][:2], int(hit[0] - starts[bead])))
 
 
+def together(looks: Sequence[Looked]) -> Looked | None:
+    """Several looks as one; None without any."""
+    if not looks:
+        return None
+    first = next((one.place for one in looks if one.place is not None), None)
+    return Looked(sum(one.count for one in looks), sum(one.touched for one in looks), first)
+
+
 def touched_at(toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters) -> list[Issue]:
     """An error where the nozzle would touch bodies while depositing, for toolpaths that are not tilted away from them."""
     beads = [bead for _, _, bead in toolpath]

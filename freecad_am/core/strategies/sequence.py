@@ -62,8 +62,8 @@ def with_feature(toolpath: Toolpath, number: int, feature: Toolpath, issues: Seq
 
 
 def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) -> None:
-    """Raise InputError FLOATS where nothing carries a feature: nearly all of its first layer lies over nothing. lengths: mm of
-    beads over nothing, by layer."""
+    """Raise InputError FLOATS where nothing carries a feature: nearly all of its first layer lies over nothing. lengths: mm
+    of beads over nothing, by layer."""
     part, numbers = toolpath.parts[number]
     length = sum(bead.length for bead in part.layers[0].beads)
     open_ = lengths.get(int(numbers[0]), 0.0)

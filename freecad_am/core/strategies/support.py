@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..geometry.on_hub import Base
 from ..geometry.solid_mesh import Search, SolidMesh
 from ..geometry.surroundings import Body
+from ..issues import Issue
 from ..process import support
 from ..toolpath import Array, Toolpath
 

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The features of a job: what is deposited, on what, cut how; each with keys of its own, over those of the job."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.strategies.families import KINDS, NEEDED, NONE, family_of
+
+from . import fields, quantity, tree
+from .part_source import PartSource, absolute, fixtures_of, part_of
+
+# what a job calls the links of a feature, which the window picks in a document
+_KEYS = {
+    "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
+    "Feature.StartEdges": "part.start_edges",
+}
+KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", "process")
+
+
+@dataclass(frozen=True)
+class JobFeature:
+    """What is deposited, and how. `substrate` is there as the family of the strategy has it (`core.strategies.families`), or
+    where what was deposited before may be it."""
+
+    name: str
+    part: PartSource
+    substrate: PartSource | None
+    fixtures: tuple[PartSource, ...]
+    strategy: LayerParameters
+    build_direction: BuildDirectionParameters
+    process: ProcessParameters
+
+
+def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = False) -> JobFeature:
+    """The feature of the sections of a job file `path`, or of a feature in it; earlier: others are deposited before it.
+    Raises InputError that names key and what to do."""
+    if values.get("part") is None:
+        raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
+    part_section = fields.mapping(values["part"], "part")
+    strategy = _strategy(_with_fuse(values.get("strategy") or {}, part_section))
+    process = _process(values.get("process") or {}, strategy)
+    process = _with_bead_model(process, strategy, path)
+    build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
+    _refuse_direction(strategy, build_direction)
+    part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)
+    return JobFeature(
+        name, part, _substrate(values.get("substrate"), strategy, part, path, earlier),
+        fixtures_of(values.get("fixtures"), path), strategy, build_direction, process,
+    )
+
+
+def process_of_all(section: Any, path: str) -> ProcessParameters:
+    """The process of a program of several features, which may differ from it."""
+    process = fields.build(ProcessParameters, fields.mapping(section, "process"), "process")
+    return _with_path(process, path)
+
+
+def several(values: dict[str, Any], path: str, lines: tree.Tree) -> tuple[JobFeature, ...]:
+    """The features listed in a job file. Raises InputError that names feature and key."""
+    entries = values["features"]
+    if not isinstance(entries, list) or not entries:
+        raise InputError(
+            "BAD_VALUE", "features", "features are a list; write features: [{name: hub, part: {file: hub.step}}, ...]"
+        )
+    made: list[JobFeature] = []
+    for number, entry in enumerate(entries):
+        here = f"features[{number}]"
+        own = fields.mapping(entry, here)
+        fields.known_keys(own, KEYS, here)
+        name = fields.text(own["name"], f"{here}.name").strip() if own.get("name") is not None else f"feature {number + 1}"
+        if name in [one.name for one in made]:
+            raise InputError("BAD_VALUE", f"{here}.name", f"{name!r} is the name of another feature; give each its own")
+        try:
+            made.append(one_feature(_with_defaults(own, values), name, path, number > 0))
+        except InputError as error:
+            raise about_feature(error, number, name, lines) from None
+    return tuple(made)
+
+
+def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:
+    """An error about a link of the feature with that label as one about a key of the job."""
+    where = f"Feature{error.where.removeprefix(label)}" if error.where.startswith(label) else error.where
+    return InputError(error.code, _KEYS[where], error.message) if where in _KEYS else error
+
+
+def about_feature(error: InputError, number: int, name: str, lines: tree.Tree) -> InputError:
+    """An error about a key of a feature as one about a key of the job, the top level's where that has it."""
+    error = in_words_of_job(error, name)
+    root = error.where.split(".")[0].split("[")[0]
+    if root not in KEYS:
+        return InputError(error.code, error.where, f"feature {name}: {error.message}")
+    where = f"features[{number}].{error.where}"
+    if error.where in lines.lines and where not in lines.lines:
+        where = error.where
+    return InputError(error.code, where, f"feature {name}: {error.message}")
+
+
+def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
+    """The sections of a feature over those of the top level; of these that is left out which its family does not have."""
+    found = {key: top[key] for key in KEYS[1:] if top.get(key) is not None}
+    if isinstance(own.get("part"), dict) and "file" in own["part"]:
+        found.pop("part", None)  # faces and objects are those of a file
+    if isinstance(own.get("substrate"), dict) and "file" in own["substrate"]:
+        found.pop("substrate", None)
+    mixed = {**found, **{key: _over(found.get(key), own[key]) for key in KEYS[1:] if key in own}}
+    strategy = mixed.get("strategy")
+    kind = strategy.get("kind", "revolution") if isinstance(strategy, dict) else None
+    if not isinstance(kind, str) or kind not in KINDS:
+        return mixed
+    assert isinstance(strategy, dict)
+    if kind == "solid" and strategy.get("layers") == "developable":
+        kind = "developable"
+    family = KINDS[kind]
+    given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
+    known = ("kind", *(field.name for field in dataclasses.fields(family.parameters)))
+    mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
+    if "substrate" not in own and family.substrate == NONE:
+        mixed.pop("substrate", None)
+    direction = mixed.get("build_direction")
+    if isinstance(direction, dict) and "mode" not in (own.get("build_direction") or {}) and (
+        direction.get("mode") not in family.modes
+    ):
+        mixed["build_direction"] = {key: value for key, value in direction.items() if key != "mode"}
+    process = mixed.get("process")
+    if isinstance(process, dict) and not family.filled and "bead_model" not in (own.get("process") or {}):
+        mixed["process"] = {key: value for key, value in process.items() if key != "bead_model"}
+    return mixed
+
+
+def _over(base: Any, own: Any) -> Any:
+    """A section over another, key by key."""
+    if not isinstance(base, dict) or not isinstance(own, dict):
+        return own
+    return {**base, **{key: _over(base.get(key), value) for key, value in own.items()}}
+
+
+def _process(section: Any, strategy: LayerParameters) -> ProcessParameters:
+    """The process; where solids are filled a bead width that the job gives is meant, whatever it is."""
+    given = fields.mapping(section, "process")
+    if "bead_width" in given and family_of(strategy).filled:
+        given = {"fill_width": "bead_width", **given}
+    return fields.build(ProcessParameters, given, "process")
+
+
+def _with_bead_model(process: ProcessParameters, strategy: LayerParameters, path: str) -> ProcessParameters:
+    """The process with the path of its calibration table made absolute; the table is read, so that what is wrong with it is
+    told at once."""
+    if process.bead_model == "none":
+        return process
+    if not family_of(strategy).filled:
+        raise InputError(
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind solid and "
+            "developable alone; use none",
+        )
+    return _with_path(process, path)
+
+
+def _with_path(process: ProcessParameters, path: str) -> ProcessParameters:
+    if process.bead_model == "none":
+        return process
+    from freecad_am.core.process import bead_table
+
+    if process.bead_model not in bead_table.BUILT_IN:
+        process = dataclasses.replace(process, bead_model=absolute(process.bead_model, path))
+    bead_table.load(process.bead_model)
+    return process
+
+
+def _refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
+    family = family_of(strategy)
+    if build_direction.mode not in family.modes:
+        raise InputError("NOT_FOR_FAMILY", "build_direction.mode", family.why.format(build_direction.mode))
+
+
+def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier: bool) -> PartSource | None:
+    family = family_of(strategy)
+    if part.start_edges and not family.edges:
+        raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
+        "them out")
+    if part.faces and not family.faces:
+        raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
+    if family.substrate == NEEDED:
+        if section is None and (part.start_edges or earlier):
+            return None
+        if section is None:
+            raise InputError(
+                "NO_SUBSTRATE", "substrate", "a wall of the kind surface grows on an existing part; write substrate: {file: "
+                "pipe.step}, or name the edges to start from in part.start_edges",
+            )
+        found = part_of(fields.mapping(section, "substrate"), path, "substrate")
+        if found.faces:
+            raise InputError(
+                "NOT_YET", "substrate.faces", f"{', '.join(found.faces)!r} is not supported yet; use the whole solid"
+            )
+        return found
+    if section is not None and family.substrate == NONE:
+        raise InputError("NOT_FOR_FAMILY", "substrate", "parts of revolution grow on no substrate; leave it out")
+    return None if section is None else part_of(fields.mapping(section, "substrate"), path, "substrate")
+
+
+def _strategy(section: Any) -> LayerParameters:
+    kind = fields.mapping(section, "strategy").get("kind", "revolution")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise f.unknown_choice("strategy.kind", kind, tuple(KINDS))
+    if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
+        kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
+    if kind == "developable":
+        section = _with_base(section)
+    if kind == "solid":
+        section = _with_direction(section)
+    factory: type[LayerParameters] = KINDS[kind].parameters
+    return fields.build(factory, section, "strategy", also=("kind",))
+
+
+def _with_fuse(section: Any, part: dict[str, Any]) -> Any:
+    """The section of the strategy with what the part says about solids that touch."""
+    if "fuse" not in part:
+        return section
+    if fields.mapping(section, "strategy").get("kind") != "solid":
+        raise InputError("NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; leave it out")
+    return {**section, "fuse": part["fuse"]}
+
+
+def _with_direction(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with a direction, a list of three numbers, as their text."""
+    direction = section.get("direction")
+    if not isinstance(direction, list):
+        return section
+    numbers = [quantity.read(number, f.NUMBER, "strategy.direction") for number in direction]
+    return {**section, "direction": " ".join(f"{number:.15g}" for number in numbers)}
+
+
+def _with_base(section: dict[str, Any]) -> dict[str, Any]:
+    """The section with a base of `auto` left out, and the axis, a point and a direction, as the text of six numbers."""
+    base = section.get("base")
+    if base == "auto":
+        return {key: value for key, value in section.items() if key != "base"}
+    if not isinstance(base, dict) or not isinstance(base.get("axis"), list):
+        return section
+    rows = base["axis"] if all(isinstance(row, list) for row in base["axis"]) else [base["axis"]]
+    numbers = [
+        quantity.read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, "strategy.base.axis")
+        for k, row in enumerate(rows) for number in row
+    ]
+    return {**section, "base": {**base, "axis": " ".join(f"{number:.15g}" for number in numbers)}}
+
+

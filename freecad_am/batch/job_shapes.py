@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The shapes of a feature of a job in a document, and the feature that is made of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+from freecad_am import api
+from freecad_am.brep.chosen import owners_of
+from freecad_am.brep.overlap import touching
+from freecad_am.core.issues import InputError
+from freecad_am.core.strategies.families import NONE, family_of
+
+from .job import Job
+from .job_features import about_feature
+from .part import bring
+
+TOUCHING = 0.01  # mm
+
+
+class Shapes:
+    """The part of a feature, its substrate and fixtures, as objects of a document."""
+
+    def __init__(self, document: Any, job: Job, number: int) -> None:
+        self.document, self.job, self.number = document, job, number
+        self.of = job.features[number]
+        try:
+            self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
+            self.substrate = None if self.of.substrate is None else bring(document, self.of.substrate, "substrate")
+            self.faces = self.of.part.faces
+            if len(job.features) > 1:
+                self._set_apart()
+            self.fixtures = [bring(document, one, f"fixtures[{k}]") for k, one in enumerate(self.of.fixtures)]
+        except InputError as error:
+            raise self.placed(error) from None
+
+    def placed(self, error: InputError) -> InputError:
+        """An error about this feature, naming it where there are several."""
+        if len(self.job.features) == 1:
+            return error
+        return about_feature(error, self.number, self.of.name, self.job.tree)
+
+    def make_feature(self, earlier: Sequence[Any]) -> Any:
+        """The feature, of the family of its strategy. earlier: parts that are deposited before; those that it touches are
+        substrate too. Raises InputError."""
+        several = len(self.job.features) > 1
+        substrate = self._standing(earlier)
+        bases = () if self.of.substrate is None else self.of.substrate.faces
+        links = {
+            "Substrate": substrate, "Fixtures": self.fixtures, "StartEdges": self.of.part.start_edges, "BaseFaces": bases,
+        }
+        try:
+            return api.make_feature_of(
+                self.document, family_of(self.of.strategy).kind, self.part, self.faces,
+                label=self.of.name if several else "Feature", links=links,
+                parameters=[self.of.strategy, self.of.build_direction],
+            )
+        except InputError as error:
+            raise self.placed(error) from None
+
+    def _set_apart(self) -> None:
+        """Take of the file what is this feature's, so that others may be of the same; the feature gets its name alone."""
+        self.part.Label = os.path.basename(self.of.part.file)
+        if self.faces and _has_shape(self.part):
+            self.part.Shape, self.faces = owners_of(self.part.Shape, self.faces)
+            if not self.part.Shape.Solids and len(self.faces) == len(self.part.Shape.Faces):
+                self.faces = ()
+        self.part.purgeTouched()
+
+    @property
+    def solid(self) -> bool:
+        """Whether what is deposited is known as a solid, which others may stand on: not where faces of one are chosen."""
+        return _has_shape(self.part) and bool(self.part.Shape.Solids) and not self.faces
+
+    def _standing(self, earlier: Sequence[Any]) -> Any:
+        """What it grows on: its substrate and the earlier parts that it touches, as one object; None without any."""
+        own = [] if self.substrate is None else [self.substrate]
+        if not earlier or family_of(self.of.strategy).substrate == NONE:
+            return self.substrate
+        touched = [one for one in earlier if _has_shape(self.part) and touching(self.part.Shape, one.Shape, TOUCHING)]
+        if len(own + touched) < 2:
+            return next(iter(own + touched), None)
+        whole = self.document.addObject("Part::Compound", "Standing")
+        whole.Label, whole.Links = f"What {self.of.name} stands on", own + touched
+        whole.recompute()
+        whole.purgeTouched()
+        return whole
+
+
+def _has_shape(obj: Any) -> bool:
+    shape = getattr(obj, "Shape", None)
+    return shape is not None and not shape.isNull()

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where the shapes of a job come from: files, and what of them is meant."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from freecad_am.core.geometry.file_unit import refuse_scale
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters import field as f
+
+from . import fields, quantity
+
+_EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
+_FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
+_SOLID = re.compile(r"Solid[1-9]\d*", re.ASCII)
+
+MESHES = (".stl", ".obj", ".3mf")
+
+
+@dataclass(frozen=True)
+class PartSource:
+    """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used. scale: mm
+    of one unit of a mesh file that does not tell it. solids: those of the shape that are meant, all where none is named."""
+
+    file: str
+    object: str | None = None
+    faces: tuple[str, ...] = ()
+    settings: tuple[tuple[str, str, str], ...] = ()
+    start_edges: tuple[str, ...] = ()
+    scale: float = 1.0
+    solids: tuple[str, ...] = ()
+
+
+def fixtures_of(section: Any, path: str) -> tuple[PartSource, ...]:
+    """The fixtures of a section `fixtures` of the job file `path`. InputError naming key and what to do."""
+    entries = [] if section is None else section
+    if not isinstance(entries, list):
+        raise InputError("BAD_VALUE", "fixtures", "fixtures are a list; write fixtures: [{file: clamp.step}]")
+    found = []
+    for number, entry in enumerate(entries):
+        key = f"fixtures[{number}]"
+        fixture = part_of(fields.mapping(entry, key), path, key)
+        if fixture.faces:
+            raise InputError("BAD_VALUE", f"{key}.faces", "a fixture counts as a whole; leave out its faces")
+        found.append(fixture)
+    return tuple(found)
+
+
+def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
+    """The source of a section such as `part` of the job file `path`. InputError naming key and what to do."""
+    further = ("start_edges",) if key == "part" else ()
+    fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
+    if "file" not in section:
+        raise InputError("NO_PART", f"{key}.file", f"there is no file; write {key}: {{file: shape.step}}")
+    file = absolute(fields.text(section["file"], f"{key}.file"), path)
+    is_document = file.lower().endswith(".fcstd")
+    for entry in ("object", "set"):
+        if section.get(entry) is not None and not is_document:
+            message = f"only an FCStd part has objects, {os.path.basename(file)} has none"
+            raise InputError("BAD_VALUE", f"{key}.{entry}", message)
+    if not os.path.isfile(file):
+        raise InputError("NO_FILE", f"{key}.file", f"there is no file {file}; paths are relative to the job file")
+    name, solids = section.get("object"), _names(section.get("solids"), f"{key}.solids", _SOLID)
+    if solids and (section.get("faces") or section.get("start_edges")):
+        raise InputError("BAD_VALUE", f"{key}.solids", "faces and edges are those of the whole file; name "
+                         "either solids or them")
+    if solids and file.lower().endswith(MESHES):
+        message = f"{os.path.basename(file)} is a mesh, which has no solids; leave them out"
+        raise InputError("BAD_VALUE", f"{key}.solids", message)
+    return PartSource(
+        file=file,
+        object=None if name is None else fields.text(name, f"{key}.object"),
+        faces=_names(section.get("faces"), f"{key}.faces", _FACE),
+        settings=tuple(_settings(section.get("set") or {}, key)),
+        start_edges=_names(section.get("start_edges"), f"{key}.start_edges", _EDGE),
+        scale=_scale(section.get("scale"), file, f"{key}.scale"),
+        solids=solids,
+    )
+
+
+def _scale(value: Any, file: str, key: str) -> float:
+    """mm of one unit of a file."""
+    if value is None:
+        return 1.0
+    scale = quantity.read(value, f.LENGTH, key)
+    refuse_scale(scale, file, key)
+    return scale
+
+
+def _names(value: Any, key: str, wanted: re.Pattern[str]) -> tuple[str, ...]:
+    """Names of faces, edges or solids."""
+    names = [value] if isinstance(value, str) else value or []
+    if not isinstance(names, list) or not all(isinstance(name, str) and wanted.fullmatch(name) for name in names):
+        kind = wanted.pattern.partition("[")[0]
+        raise InputError(
+            "BAD_VALUE", key, f"{quantity.shown(value)} names no {kind.lower()}s; write [{kind}1, {kind}2]"
+        )
+    return tuple(names)
+
+
+def _settings(section: Any, part: str) -> list[tuple[str, str, str]]:
+    settings = []
+    for name, properties in fields.mapping(section, f"{part}.set").items():
+        for key, value in fields.mapping(properties, f"{part}.set.{name}").items():
+            if isinstance(value, (dict, list)) or value is None:
+                raise InputError("BAD_VALUE", f"{part}.set.{name}.{key}", "give one value such as 45 mm")
+            settings.append((name, key, quantity.shown(value) if isinstance(value, bool) else str(value)))
+    return settings
+
+
+def absolute(file: str, path: str) -> str:
+    """`file` as an absolute path; relative ones start at the folder of the job file `path`."""
+    return os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(path)), os.path.expanduser(file)))
