@@ -257,9 +257,9 @@ class Toolpath:
     as wide which do not tell their own width. unsupported: mm of beads that lie over nothing, None where nobody looked.
     wire_feed: mm/s, None where it is not known. on_part: at how many places it was looked whether they lie on the part, the
     largest distance of one from it and what is allowed, mm; None where nobody looked. volumes: mm3 of a part that is filled,
-    of what beads leave of it, and of beads beside it; None where it is not known. label: of the feature. features: where
-    several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself then speaks for
-    the first of them.
+    of what beads leave of it, and of beads beside it; None where it is not known. feature_label: of one of several.
+    features: where several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself
+    then speaks for the first of them.
     """
 
     layers: tuple[Layer, ...]
@@ -276,7 +276,7 @@ class Toolpath:
     wire_feed: float | None = None
     on_part: tuple[float, float, float] | None = None
     volumes: tuple[float, float, float] | None = None
-    label: str = ""
+    feature_label: str = ""
     features: tuple[Toolpath, ...] = ()
 
     def __post_init__(self) -> None:

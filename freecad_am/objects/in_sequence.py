@@ -87,7 +87,7 @@ def planned_in_sequence(
             layers = with_wire(layers_of(given), given)
         except InputError as error:
             raise InputError(error.code, f"{one.label}: {error.where}", error.message) from None
-        made.append(dataclasses.replace(layers, label=one.label))
+        made.append(dataclasses.replace(layers, feature_label=one.label))
         if stands is None:
             stands = mounted(cell or CellParameters(), layers.frame, layers.family)
     assert stands is not None

@@ -25,7 +25,9 @@ IN_ROWS = {
     "Program": "112b574e451870c0bc54f0d48b88b99bb7533aedd47e25faf14f1fa2da69d313",
 }
 # what there was not then: derived, or None where nobody knows
-ADDED = ("role", "bead_width", "unsupported", "wire_feed", "depths", "on_part", "volumes")
+ADDED = (
+    "role", "bead_width", "unsupported", "wire_feed", "depths", "on_part", "volumes", "feature_label", "features", "feature",
+)
 
 
 def fingerprint(value):

@@ -41,7 +41,7 @@ def joined(toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequ
         layers=tuple(replace(told[k].layers[i], feature=k, first=i == 0 or told[k].layers[i].first) for k, i in order),
         chord_error=min(one.chord_error for one in toolpaths),
         issues=tuple(issue for one, some in zip(toolpaths, numbers) for issue in renumbered(one.issues, some)),
-        surroundings=tuple(bodies), law=None, unsupported=None, on_part=None, volumes=None, label="",
+        surroundings=tuple(bodies), law=None, unsupported=None, on_part=None, volumes=None, feature_label="",
         wire_feed=first.wire_feed if len(feeds) == 1 else None,
         features=tuple(replace(one, layers=(), issues=(), surroundings=()) for one in toolpaths),
     )
@@ -70,8 +70,8 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
     if open_ < FLOATS * length:
         return
     raise InputError(
-        "FLOATS", part.label, f"nothing carries it: {open_:.4g} of {length:.4g} mm of its first layer lie over nothing when "
-        "they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on"
+        "FLOATS", part.feature_label, f"nothing carries it: {open_:.4g} of {length:.4g} mm of its first layer lie over "
+        "nothing when they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on"
     )
 
 
