@@ -219,6 +219,11 @@
         <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle. (mm)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Further features, deposited after it in this order.</source>
+        <translation>Autres éléments, déposés après lui dans cet ordre.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Further methods planned for the comparison of the report.</source>
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
@@ -597,6 +602,16 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Sets the travel speed of solids on cylinders and cones so that the bead width is held: none, csw, or the path of a calibration table.</source>
         <translation>Règle la vitesse d&apos;avance des solides sur cylindres et cônes de sorte que la largeur de cordon soit tenue : none, csw, ou le chemin d&apos;un tableau d&apos;étalonnage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Several features: one after the other, or the lowest layer of all first.</source>
+        <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou la couche la plus basse de tous d&apos;abord.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Several features: what of the process differs for each, as JSON.</source>
+        <translation>Plusieurs éléments : ce qui diffère du procédé pour chacun, en JSON.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -2200,6 +2215,11 @@
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>Further</source>
         <translation>Autres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Further features, deposited after it in this order.</source>
+        <translation>Autres éléments, déposés après lui dans cet ordre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -5132,7 +5152,7 @@
         <translation>une bande de {0} % est trop étroite pour {1} points sur le tour : prenez-en davantage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <location filename="../../freecad_am/objects/planned.py"/>
         <source>a bead model sets the travel speed of solids alone; use none</source>
         <translation>un modèle de cordon ne règle que la vitesse d&apos;avance des solides ; choisissez none</translation>
     </message>
@@ -6637,6 +6657,11 @@
         <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>it holds for the whole program, not for one of its features; give it at the top level</source>
+        <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/read.py"/>
         <source>it holds no shape; export the part again</source>
         <translation>il ne contient pas de forme ; exportez la pièce de nouveau</translation>
@@ -7057,7 +7082,7 @@
         <translation>joints.given nomme des cordons qui n&apos;existent pas : {0} ; retirez-les</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <location filename="../../freecad_am/objects/in_sequence.py"/>
         <source>keeping the nozzle clear</source>
         <translation>maintien de la buse à distance</translation>
     </message>
@@ -7222,7 +7247,7 @@
         <translation>examen de la forme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <location filename="../../freecad_am/objects/in_sequence.py"/>
         <source>looking for beads over nothing</source>
         <translation>recherche de cordons au-dessus du vide</translation>
     </message>
@@ -7232,7 +7257,7 @@
         <translation>recherche de ce qui le rendrait faisable : {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <location filename="../../freecad_am/objects/planned.py"/>
         <source>looking whether the deposit lies on the part</source>
         <translation>vérification que le dépôt est sur la pièce</translation>
     </message>
@@ -7550,6 +7575,11 @@
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>note</source>
         <translation>remarque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/sequence.py"/>
+        <source>nothing carries it: {0} of {1} mm of its first layer lie over nothing when they are deposited; move it onto what is there, give its substrate, or deposit first what it stands on</source>
+        <translation>rien ne le porte : {0} des {1} mm de sa première couche sont au-dessus du vide au moment de leur dépôt ; posez-le sur ce qui existe, donnez son substrat, ou déposez d&apos;abord ce sur quoi il repose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/dock.py"/>
@@ -9347,7 +9377,7 @@
         <translation>à {0} mm près</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <location filename="../../freecad_am/objects/planned.py"/>
         <source>without a bead model the travel speed does not vary, and the wire has nothing to follow; use constant, or a process.bead_model</source>
         <translation>sans modèle de cordon la vitesse d&apos;avance ne varie pas, et le fil n&apos;a rien à suivre ; utilisez constant, ou un process.bead_model</translation>
     </message>
@@ -9500,6 +9530,11 @@
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>{0} changes no deviation: the points do not tell it</source>
         <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/in_sequence.py"/>
+        <source>{0} cm3 of it are within {1} and would be deposited twice; cut one from the other</source>
+        <translation>{0} cm3 de lui se trouvent dans {1} et seraient déposés deux fois ; découpez l&apos;un de l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
@@ -9767,9 +9802,9 @@
         <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/api.py"/>
-        <source>{0} is none of revolution, surface, developable, solid</source>
-        <translation>{0} n&apos;est ni revolution, ni surface, ni developable, ni solid</translation>
+        <location filename="../../freecad_am/objects/feature_kinds.py"/>
+        <source>{0} is none of {1}</source>
+        <translation>{0} n&apos;est aucun de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -9955,6 +9990,11 @@
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>{0} is not understood, or a second output is switched</source>
         <translation>{0} n&apos;est pas compris, ou une seconde sortie est commandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>{0} is not understood; give a JSON mapping with keys of {1}</source>
+        <translation>{0} n&apos;est pas compris ; donnez un objet JSON avec des clés parmi {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
