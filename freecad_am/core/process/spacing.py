@@ -50,8 +50,8 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 
     A spiral is one layer; there it is the distance of each point to the turn before. Of plane layers that are filled it is
     the distance of the planes: how far the nearest bead below is says how beads lie beside each other, not above. Beads that
-    close gaps are left out, and layers that nothing of the feature lies below. Of several features those of one come after those of the
-    other.
+    close gaps are left out, and layers that nothing of the feature lies below. Of several features those of one come after
+    those of the other.
     """
     if toolpath.features:
         return tuple(chain.from_iterable(between_layers(part) for part, _ in toolpath.parts if part.layers))
