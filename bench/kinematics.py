@@ -8,6 +8,7 @@ against each other before anything is timed.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from statistics import median
 from time import perf_counter
 
@@ -23,6 +24,7 @@ from rows import Row
 POSES, FEW, ROUNDS = 2000, 200, 15
 MACHINE = "fanuc-arcmate120ic"
 LENGTH = 1000.0
+OTHER_WRISTS = {"ur-ur10e": 2.0}  # machines, and us a pose
 
 
 def run() -> list[Row]:
@@ -34,6 +36,7 @@ def run() -> list[Row]:
     poses = arm.chain.forward(q)
     return [
         _all_branches(arm, poses),
+        *_other_wrists(),
         *_one_branch(arm, q, poses),
         _condition(arm, q, poses),
     ]
@@ -70,6 +73,22 @@ def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
             if not np.nanmin(off) < 1e-6:
                 raise AssertionError(f"eaik and the closed form differ at pose {index}")
     return _row(name, ours, lambda: robot.IK_batched(given, 1), POSES, POSES, required)
+
+
+def _other_wrists() -> list[Row]:
+    """All solutions of arms without a spherical wrist, against what is asked for in us a pose."""
+    rows = []
+    for name, wanted in OTHER_WRISTS.items():
+        arm = machine.load(name)
+        q = np.random.default_rng(3).uniform(-np.pi, np.pi, (POSES, 6))
+        poses = arm.chain.forward(q)
+        found = arm.arm.inverse(poses)
+        if not np.nanmin(np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2), axis=0).max() < 1e-4:
+            raise AssertionError(f"{name}: the joint angles of a pose are not among its solutions")
+        took = 1e6 * median(_time(partial(arm.arm.inverse, poses)) for _ in range(ROUNDS)) / POSES
+        title = f"inverse, all solutions of {name}, batch of {POSES}, against {wanted:g} us"
+        rows.append(Row(title, took, wanted, "us/pose", 1.0))
+    return rows
 
 
 def _one_branch(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> list[Row]:

@@ -78,7 +78,7 @@ def _configuration_issues(cell: Cell, planned: Planned, program: Program, told: 
     """The configuration of the arm and the turns of the last axis at each position; the other two turns must be none."""
     if told is None:
         return []
-    arm = cell.machine.opw
+    arm = cell.machine.arm
     if arm is None:
         return [Issue(ERROR, "VERIFY_CONFIGURATION", "the text names configurations of an arm, and the machine has none")]
     names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]

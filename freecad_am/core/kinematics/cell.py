@@ -196,11 +196,8 @@ def resolve(
         kind, wanted = ("has sliding axes", ROTARY_TABLE) if machine.is_table else ("is a robot", f"{PART_ON_ROBOT} or "
                                                                                     f"{TOOL_ON_ROBOT}")
         raise InputError("WRONG_SETUP", "cell.setup", f"{machine.title} {kind}; use {wanted}, or choose another machine")
-    if machine.opw is None and not machine.is_table:
-        raise InputError(
-            "NO_CLOSED_FORM", "cell.machine",
-            f"{machine.title} has no spherical wrist; choose a robot that has one (see `freecad-am machines`)",
-        )
+    if machine.arm is None and not machine.is_table:
+        raise InputError("NO_CLOSED_FORM", "cell.machine", f"{machine.title}: {machine.no_arm}")
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     carried = parameters.nozzle.tool if parameters.setup == TOOL_ON_ROBOT else platform_pose

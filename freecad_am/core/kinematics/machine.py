@@ -21,6 +21,8 @@ from ..geometry.frames import Array
 from ..issues import InputError
 from . import urdf_machine
 from .chain import Chain
+from .inverse import recognition
+from .inverse.serial_arm import SerialArm
 from .limits import Limits
 from .link_shape import LinkShape, link_shapes
 from .machine_file import Node, read
@@ -44,8 +46,9 @@ MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
 class Machine:
     """A machine. Joint values are serial ones, rad, and mm of joints that slide; lengths mm.
 
-    `opw` is None where there is no closed form. `base` (4, 4) is the maker's base frame in base_link, the frame of
-    the floor plate in which `chain` and `opw` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
+    `arm` is the inverse of a robot, None of a machine with rotary axes and where `no_arm` tells why it cannot be planned
+    for; `opw` that of a spherical wrist. `base` (4, 4) is the maker's base frame in base_link, the frame of
+    the floor plate in which `chain` and `arm` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
     the file does not say. `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
@@ -56,7 +59,8 @@ class Machine:
     title: str
     axes: tuple[str, ...]
     chain: Chain
-    opw: OpwArm | None
+    arm: SerialArm | None
+    no_arm: str
     base: Array
     max_speed: Array
     limit_sets: dict[str, Limits]
@@ -69,6 +73,11 @@ class Machine:
     max_acceleration: Array
     max_jerk: Array
     shapes: tuple[LinkShape | None, ...]
+
+    @property
+    def opw(self) -> OpwArm | None:
+        """The closed form of an arm with a spherical wrist."""
+        return self.arm if isinstance(self.arm, OpwArm) else None
 
     @property
     def is_table(self) -> bool:
@@ -195,17 +204,18 @@ def _parse(top: Node) -> Machine:
     # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
     names = tuple(_called(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
     controller = top["controller"].only("matrix", "offset", "remark", "posts")
+    chain = Chain(
+        np.stack([joint.pose() for joint in joints]),
+        np.stack([_unit(joint["axis"]) for joint in joints]),
+        top["flange"].only("origin", "rpy").pose(),
+        sliding,
+    )
+    arm, no_arm = (_opw(top["opw"], count), "") if top.has("opw") else _recognised(chain)
     machine = Machine(
         id=top["id"].text(),
         title=top["title"].text(),
         axes=names,
-        chain=Chain(
-            np.stack([joint.pose() for joint in joints]),
-            np.stack([_unit(joint["axis"]) for joint in joints]),
-            top["flange"].only("origin", "rpy").pose(),
-            sliding,
-        ),
-        opw=_opw(top["opw"], count) if top.has("opw") else None,
+        chain=chain, arm=arm, no_arm=no_arm,
         base=top["base"].only("origin", "rpy").pose() if top.has("base") else np.eye(4),
         max_speed=np.array([_most(joint, "max_speed", "a speed") for joint in joints]) * units,
         limit_sets={name: _limits(name, node, names, units) for name, node in top["limits"].pairs()},
@@ -243,7 +253,7 @@ def _of_urdf(meant: Reference) -> Machine:
     )
     unknown = np.full(count, math.inf)
     return Machine(
-        id=found.name, title=found.name, axes=names, chain=found.chain, opw=arm,
+        id=found.name, title=found.name, axes=names, chain=found.chain, arm=arm, no_arm="",
         base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
         sources=(f"{meant}",), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
@@ -279,6 +289,16 @@ def _most(joint: Node, key: str, what: str) -> float:
     if most <= 0.0:
         raise joint[key].bad(f"{most:g} is not {what}; give more than 0, or null where not known")
     return most
+
+
+def _recognised(chain: Chain) -> tuple[SerialArm | None, str]:
+    """The inverse of a robot whose file has no `opw`, or why there is none; that of rotary axes is in `five_axis`."""
+    if chain.sliding.any():
+        return None, ""
+    try:
+        return recognition.arm_of(chain), ""
+    except InputError as error:
+        return None, error.message
 
 
 def _opw(node: Node, count: int) -> OpwArm:

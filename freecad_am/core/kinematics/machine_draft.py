@@ -19,6 +19,7 @@ from ..issues import InputError
 from . import machine as machines
 from . import machine_file, pendant, urdf_machine
 from .chain import Chain
+from .inverse.serial_arm import SerialArm
 from .link_shape import BASE, LinkShape
 from .machine import Machine
 from .opw import OpwArm
@@ -112,8 +113,8 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
     )
 
 
-def closed_form(draft: Draft) -> OpwArm | None:
-    """The closed form of a draft, as `urdf_machine.closed_form` has it."""
+def closed_form(draft: Draft) -> SerialArm | None:
+    """The inverse of a draft, as `urdf_machine.closed_form` has it."""
     return urdf_machine.closed_form(draft.chain)
 
 
@@ -131,7 +132,7 @@ def text(draft: Draft) -> str:
     if draft.remarks:
         content["remarks"] = list(draft.remarks)
     arm = closed_form(draft)
-    if arm is not None:
+    if isinstance(arm, OpwArm):
         content["opw"] = {
             **{name: getattr(arm, name) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")},
             "offsets": _figures(np.degrees(arm.offsets)), "signs": list(arm.signs),

@@ -54,6 +54,18 @@ class OpwArm:
     offsets: tuple[float, ...]
     signs: tuple[int, ...]
 
+    followed = False  # words tell all solutions apart
+
+    @property
+    def shoulder(self) -> tuple[float, float]:
+        """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
+        return self.a1, self.c1
+
+    @property
+    def reach(self) -> float:
+        """From axis 2 to the wrist centre of the stretched arm, mm."""
+        return self.c2 + self.forearm
+
     @property
     def forearm(self) -> float:
         """Distance from the elbow to the wrist centre."""
@@ -98,6 +110,14 @@ class OpwArm:
         """Joint angles (n, 6) of one branch (an index of `branch_name`); else as `inverse`."""
         result: Array = solve(self, poses, (branch,))[0]
         return result
+
+    def bend(self, q: ArrayLike) -> Array:
+        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        turned = np.asarray(q, float) * np.array(self.signs, float) - np.array(self.offsets)
+        bent: Array = np.minimum(
+            np.abs(np.sin(turned[..., 4])), np.abs(np.sin(turned[..., 2] + np.arctan2(self.a2, self.c3)))
+        )
+        return bent
 
     def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
         """The branch index (...) that joint angles `q` (..., 6) are in."""

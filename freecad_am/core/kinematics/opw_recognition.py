@@ -19,7 +19,7 @@ from .chain import Chain, JointFrames
 from .opw import OpwArm
 
 # how far directions (rad) and lines (mm) may be off, and what the closed form may leave: those of machine files
-STRAIGHT, NEAR = 1e-8, 1e-5
+STRAIGHT, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
 FLANGE = "flange"  # where what is refused about the flange alone is
 
@@ -33,7 +33,7 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
     at_rest = chain.frames(np.zeros(chain.axes))
     axis, origin = at_rest.directions[0], at_rest.origins[0]
     foot = origin - axis * float(axis @ origin)
-    if np.hypot(axis[0], axis[1]) < STRAIGHT and np.linalg.norm(foot) < NEAR:
+    if np.hypot(axis[0], axis[1]) < STRAIGHT and np.linalg.norm(foot) < NEAR_MM:
         return chain, np.eye(4)
     up = axis if axis[2] >= 0.0 or abs(axis[2]) < STRAIGHT else -axis
     new = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), up), foot)
@@ -78,7 +78,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     """The point (3,) where the axes of the wrist meet, once the directions of all axes are those of such an arm."""
     z, p = at_rest.directions, at_rest.origins
     foot = p[0] - z[0] * float(z[0] @ p[0])
-    if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR:
+    if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR_MM:
         raise _refused("axis 1 is not the Z of the base frame")
     if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < STRAIGHT for axis in (2, 3)):
         raise _refused("the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots")
@@ -95,7 +95,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     for axis in (3, 5):
         to = centre - p[axis]
         off = float(np.linalg.norm(to - z[axis] * float(z[axis] @ to)))
-        if off > NEAR:
+        if off > NEAR_MM:
             raise _refused(f"the wrist is not spherical: axis {axis + 1} passes {off:.6g} mm beside the point where axes "
                            f"{'5 and 6' if axis == 3 else '4 and 5'} meet")
     return centre
@@ -110,12 +110,12 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     to_elbow = p[2] - shoulder
     ahead, above = float(to_elbow @ x), float(to_elbow @ up)
     upper = math.hypot(ahead, above)
-    if upper < NEAR:
+    if upper < NEAR_MM:
         raise _refused("axes 2 and 3 are the same line")
     turn2 = math.atan2(ahead, above)
     to_wrist = centre - p[2]
     length = float(to_wrist @ z[3])
-    if abs(length) < NEAR:
+    if abs(length) < NEAR_MM:
         raise _refused("the wrist centre lies above axis 3, without a forearm along axis 4")
     sign4 = 1 if length > 0.0 else -1
     forearm = z[3] * sign4
@@ -126,9 +126,9 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
         raise _refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
                        FLANGE)
     beside = flange[:3, 3] - centre
-    if np.linalg.norm(beside - out * float(beside @ out)) > NEAR:
+    if np.linalg.norm(beside - out * float(beside @ out)) > NEAR_MM:
         raise _refused("the flange's origin does not lie on axis 6", FLANGE)
-    if float(beside @ out) < -NEAR and float(out @ forearm) < 0.0:
+    if float(beside @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
         raise _refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
                        "tool0 or fanuc_flange, or turn the flange", FLANGE)
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
@@ -147,8 +147,8 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     signs = (1 if z[0, 2] > 0.0 else -1, sign2, sign2 if float(z[2] @ z[1]) > 0.0 else -sign2, sign4, sign5,
              1 if float(z[5] @ out) > 0.0 else -1)
     return OpwArm(
-        a1=_clean(float(shoulder @ x)), a2=_clean(float(to_wrist @ across)), b=_clean(side), c1=_clean(float(p[1, 2])),
-        c2=_clean(upper), c3=_clean(abs(length)), c4=_clean(float(beside @ out)),
+        a1=clean(float(shoulder @ x)), a2=clean(float(to_wrist @ across)), b=clean(side), c1=clean(float(p[1, 2])),
+        c2=clean(upper), c3=clean(abs(length)), c4=clean(float(beside @ out)),
         offsets=tuple(_offset(turn) for turn in turns), signs=signs,
     )
 
@@ -160,7 +160,7 @@ def _shoulder(z: Array, p: Array) -> tuple[float, int, Array]:
     sign = 1
     turn = math.atan2(-z[1, 0], z[1, 1])  # axis 2 is the y of the arm's plane
     ahead = float(point[0] * math.cos(turn) + point[1] * math.sin(turn))
-    turned = ahead < -NEAR or (abs(ahead) <= NEAR and not -0.5 * math.pi + STRAIGHT < turn <= 0.5 * math.pi + STRAIGHT)
+    turned = ahead < -NEAR_MM or (abs(ahead) <= NEAR_MM and not -0.5 * math.pi + STRAIGHT < turn <= 0.5 * math.pi + STRAIGHT)
     if turned:
         turn, sign = (turn + math.pi if turn <= 0.0 else turn - math.pi), -1
     return turn, sign, point
@@ -172,11 +172,11 @@ def _wrapped(angle: float) -> float:
 
 def _offset(turn: float) -> float:
     """The offset of an angle at zero, rad; a half turn is a positive one."""
-    degrees = -_clean(math.degrees(turn))
+    degrees = -clean(math.degrees(turn))
     return math.radians(degrees + 360.0 if degrees <= -180.0 else degrees + 0.0)
 
 
-def _clean(value: float) -> float:
+def clean(value: float) -> float:
     """A number without the noise of its computation."""
     rounded = round(value, 9)
     return rounded + 0.0 if abs(rounded - value) < 1e-11 else value

@@ -53,7 +53,7 @@ def proposed(parameters: CellParameters, folders: Sequence[str] = ()) -> CellPar
     """The cell with the deposition point or the platform, on whole mm, and the branch that serve best; as it is where none
     serves. Errors as `cell.resolve`."""
     machine = machines.load(parameters.machine, tuple(folders))
-    if machine.opw is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
+    if machine.arm is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
     if cell.setup == PART_ON_ROBOT:
@@ -76,21 +76,21 @@ def _directions(tilts: Array, count: int) -> Array:
 
 def _best(parameters: CellParameters, cell: Cell, axes: Array) -> CellParameters | None:
     """The cell where deposit on a ball along the axes (n, 3) has most room, None where it has none anywhere."""
-    machine, arm = cell.machine, cell.machine.opw
+    machine, arm = cell.machine, cell.machine.arm
     assert arm is not None
-    reach = arm.c2 + arm.forearm
-    heights = arm.c1 + ABOVE * reach
+    shoulder, height = arm.shoulder
+    heights = height + ABOVE * arm.reach
     if cell.setup == TOOL_ON_ROBOT:  # no platform in the floor
         heights = np.unique(np.maximum(heights, 0.0))
     phi = np.broadcast_to(np.linspace(-np.pi, np.pi, TURNS, endpoint=False)[:, None], (TURNS, len(axes)))
     best: tuple[float, Pose, int] | None = None
     for ahead in AHEAD:
         for height in heights:
-            x, z = np.round([arm.a1 + ahead * reach, height])
+            x, z = np.round([shoulder + ahead * arm.reach, height])
             point = (float(x), 0.0, float(z), 0.0, 0.0, 0.0)
             there = replace(cell, station=machine.base @ frames.bryant(point))
             poses = there.pose_frames(BALL * axes, axes).at(phi)
-            joints = arm.inverse(poses.reshape(-1, 4, 4)).reshape(8, TURNS, len(axes), 6)
+            joints = arm.inverse(poses.reshape(-1, 4, 4)).reshape(-1, TURNS, len(axes), 6)[:8]
             worst = _room(cell, joints).max(axis=1).min(axis=1)
             branch = int(np.argmax(worst))
             if worst[branch] > 0.0 and (best is None or worst[branch] > best[0]):
@@ -103,13 +103,11 @@ def _best(parameters: CellParameters, cell: Cell, axes: Array) -> CellParameters
 def _room(cell: Cell, joints: Array) -> Array:
     """(8, turns, n) 1 in the middle of everything, 0 at a limit or where the arm or the wrist is stretched, less beyond
     and where the robot does not reach."""
-    arm, limits = cell.machine.opw, cell.limits
+    arm, limits = cell.machine.arm, cell.limits
     assert arm is not None
     if cell.setup == PART_ON_ROBOT:
         left = margins(joints[..., :5], limits.lower[:5], limits.upper[:5]).min(axis=-1)
     else:
         left = limits.smallest_share(joints.reshape(-1, 6)).reshape(joints.shape[:-1])
-    turned = joints * np.array(arm.signs, float) - np.array(arm.offsets)
-    stretched = np.minimum(np.abs(np.sin(turned[..., 4])), np.abs(np.sin(turned[..., 2] + np.arctan2(arm.a2, arm.c3))))
-    room: Array = np.nan_to_num(np.minimum(left, stretched), nan=-1.0)
+    room: Array = np.nan_to_num(np.minimum(left, arm.bend(joints)), nan=-1.0)
     return room

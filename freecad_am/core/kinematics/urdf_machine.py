@@ -12,15 +12,16 @@ from ..geometry.frames import Array
 from ..issues import InputError
 from . import opw_recognition
 from .chain import Chain
-from .opw import OpwArm
+from .inverse import recognition
+from .inverse.serial_arm import SerialArm
 from .urdf import Description, Urdf
 from .urdf_reference import Reference
 
 TABLE = (3, 2)  # sliding and turning axes of the only machines that are no robots
 
 
-def described(meant: Reference) -> tuple[Description, OpwArm | None]:
-    """The chain of a machine, grounded, with its closed form; None of one with three sliding and two turning axes.
+def described(meant: Reference) -> tuple[Description, SerialArm | None]:
+    """The chain of a machine, grounded, with its inverse; None of one with three sliding and two turning axes.
 
     Raises InputError: UNKNOWN_MACHINE without the file, BAD_URDF naming file and line, NO_CLOSED_FORM with the reason.
     """
@@ -46,13 +47,13 @@ def described(meant: Reference) -> tuple[Description, OpwArm | None]:
         ) from None
 
 
-def closed_form(chain: Chain) -> OpwArm | None:
-    """The closed form of a robot, None of a machine with three sliding and two turning axes. InputError NO_CLOSED_FORM, with
+def closed_form(chain: Chain) -> SerialArm | None:
+    """The inverse of a robot, None of a machine with three sliding and two turning axes. InputError NO_CLOSED_FORM, with
     the reason, for any other."""
     sliding = int(chain.sliding.sum())
     if (sliding, chain.axes - sliding) == TABLE:
         return None
-    return opw_recognition.recognise(chain)
+    return recognition.arm_of(chain)
 
 
 def grounded(found: Description) -> Description:

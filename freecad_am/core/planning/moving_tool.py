@@ -106,7 +106,7 @@ def _turned(motion: Motion, cell: Cell, start: Rows, end: Rows, share: Array, po
 
 def _joints(motion: Motion, cell: Cell, flange: Array, near: Array) -> Array:
     """Joints (n, axes) of the flange poses in the branch of the motion and in the turns of `near`."""
-    arm = cell.machine.opw
+    arm = cell.machine.arm
     assert arm is not None
     branch = int(np.bincount(arm.branch_of(motion.joints[motion.reachable])).argmax())
     joints = arm.inverse_branch(flange, branch)

@@ -227,7 +227,7 @@ def _moves(
         tip = cell.machine.chain.forward(motion.joints[rows]) @ carried
         seen = frames.inverse(tip) @ station if cell.setup == PART_ON_ROBOT else frames.inverse(station) @ tip
         position, rotation = seen[:, :3, 3], seen[:, :3, :3]
-        arm = cell.machine.opw
+        arm = cell.machine.arm
         assert arm is not None
         configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(motion.joints[rows]))
     wire = motion.wire[rows]

@@ -206,12 +206,12 @@ def _beside(point: Pose) -> list[Pose]:
 def _before(job: Tried) -> list[Pose]:
     """Places of a platform before a robot that carries the tool, level."""
     cell = cells.resolve(job.settings, np.eye(4), folders=job.folders)
-    arm = cell.machine.opw
+    arm = cell.machine.arm
     if arm is None:
         return []
-    reach = arm.c2 + arm.forearm
+    shoulder, height = arm.shoulder
     return [
-        (float(round(arm.a1 + ahead * reach)), 0.0, float(round(arm.c1 + above * reach)), 0.0, 0.0, 0.0)
+        (float(round(shoulder + ahead * arm.reach)), 0.0, float(round(height + above * arm.reach)), 0.0, 0.0, 0.0)
         for ahead, above in ((0.6, -0.3), (0.6, -0.5), (0.75, -0.3), (0.5, -0.2))
     ]
 

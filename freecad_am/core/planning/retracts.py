@@ -208,7 +208,7 @@ class Retracts:
             above, _ = self.cell.on_flange(tip.reshape(-1, 3), tools)
             return five.placed(np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station).reshape(
                 shape), tip
-        arm = self.cell.machine.opw
+        arm = self.cell.machine.arm
         assert arm is not None
         phi = self.ends.phi[ways.end, None] + share * ways.turn[:, None]
         raw = arm.inverse_branch(self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel()), self.branch).reshape(shape)

@@ -141,9 +141,9 @@ def spin_map(
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, at.points.tool, values[:, None], axis)
-    arm = task.cell.machine.opw
+    arm = task.cell.machine.arm
     assert arm is not None  # resolve() refuses other machines
-    joints = arm.inverse(at.points.frames.at(phi).reshape(-1, 4, 4))
+    joints = arm.inverse(at.points.frames.at(phi).reshape(-1, 4, 4))[:8]
     margin = _margin(task, task.given_rows, joints).reshape(-1, *phi.shape)
     low, high = task.parameters.rotation_range
     outside = np.zeros(phi.shape, dtype=bool)
@@ -212,9 +212,9 @@ def in_turns(values: Array, starts: Mask) -> Array:
 
 def joints_at(task: Task, at: Columns, column: int, phi: float) -> Array:
     """(8, axes) joints of all branches at one cell, in the turn that the map counts with; NaN out of reach."""
-    arm = task.cell.machine.opw
+    arm = task.cell.machine.arm
     assert arm is not None
-    joints = arm.inverse(at.points.each(np.array([column])).frames.at(np.array([phi])))[:, 0]
+    joints = arm.inverse(at.points.each(np.array([column])).frames.at(np.array([phi])))[:8, 0]
     turns = np.where(task.endless, 0.0, np.round((task.middle - joints) / TURN))
     return np.asarray(joints + TURN * turns)
 

@@ -137,7 +137,7 @@ class Task:
 
     def inverse(self, flange: Array) -> Array:
         """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable."""
-        arm = self.cell.machine.opw
+        arm = self.cell.machine.arm
         assert arm is not None  # resolve() refuses other machines
         joints: Array = arm.inverse_branch(flange, self.branch)
         return joints

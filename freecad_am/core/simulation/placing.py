@@ -62,7 +62,7 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
         ways = np.stack([_seen(cell, np.eye(chain.axes)[axis], place) - _seen(cell, zero, place) for axis in slides], axis=1)
         zero[slides] = np.linalg.lstsq(ways, away, rcond=None)[0]
         return zero
-    arm = cell.machine.opw
+    arm = cell.machine.arm
     assert arm is not None  # a cell has no other robots
     spins = np.linspace(0.0, 2.0 * np.pi, _SPINS, endpoint=False)
     flange = cell.flange_poses(np.tile(place, (_SPINS, 1)), np.tile(cell.mount[:3, 2], (_SPINS, 1)), spins)

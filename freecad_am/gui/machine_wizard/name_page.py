@@ -11,6 +11,7 @@ from PySide import QtGui
 
 from ...core.issues import InputError
 from ...core.kinematics import machine_draft
+from ...core.kinematics.opw import OpwArm
 from ...objects import user_machines
 from ...posts import catalogue
 from ...posts.names import plain
@@ -75,6 +76,9 @@ class NamePage(Page):
         arm = machine_draft.closed_form(self.owner.draft)
         if arm is None:
             self.summary.setText(tr("Three axes that slide and two that turn."))
+            return
+        if not isinstance(arm, OpwArm):
+            self.summary.setText(tr("Six axes that turn, without a spherical wrist."))
             return
         lengths = "   ".join(f"{name} {getattr(arm, name):.6g}" for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4"))
         self.summary.setText(tr("Closed form (mm): {}").format(lengths))

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Closed-form kinematics of arms whose axes 2, 3 and 4 are parallel, such as those of Universal Robots.
+
+After Hawkins, "Analytic inverse kinematics for the Universal Robots", 2013, for any lengths and zeros: the point where
+axes 5 and 6 meet keeps its distance from the arm's plane, which gives axis 1; axis 6 against the normal of that plane
+gives axis 5; axes 2 to 4 are a triangle. An array holds one component of all poses.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...geometry import frames
+from ...geometry.columns import columns
+from ...geometry.frames import Array
+
+CHUNK = 2048
+# how far rounding may take a pose that is reached past a stretched arm (as 1 - cos^2 of the elbow), and past `beside` (mm)
+STRETCH, TOUCH = 4e-12, 1e-9
+# added where a direction may vanish: gives an angle and is lost in any other number
+HINT = 1e-150
+PARALLEL = 1e-10  # rad: nearer to the normal of the arm's plane, the direction of axis 6 says nothing of axis 5
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class ParallelAxesArm:
+    """Lengths (mm) of the arm, and `signs` and `zeros` (rad) of its joints: theta = sign * q + zero.
+
+    At all theta 0 the arm's plane is XZ of base_link, upper arm, forearm and axis 5 point up, axis 6 along Y. Axis 2 is
+    `ahead` and `above`, axes 3 and 4 `upper` and `fore` further on, and the point where axes 5 and 6 meet is at `wrist`
+    (x, z) from axis 4 and `beside` the plane of axis 1. `tip` (4, 4) is the flange seen from that point, with X along axis 5
+    and Z along axis 6.
+
+    A configuration is front when the point where axes 5 and 6 meet lies on the side of axis 1 to which the arm reaches at
+    all q 0; up when the elbow lies above the line from shoulder to axis 4, as of arms with a spherical wrist; flip when
+    q5 < 0, counted from where axis 6 is parallel to axis 4.
+    """
+
+    ahead: float
+    above: float
+    upper: float
+    fore: float
+    wrist: tuple[float, float]
+    beside: float
+    tip: Array
+    signs: tuple[int, ...]
+    zeros: tuple[float, ...]
+
+    followed = False
+
+    @property
+    def shoulder(self) -> tuple[float, float]:
+        """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
+        return self.ahead, self.above
+
+    @property
+    def reach(self) -> float:
+        """From axis 2 to axis 4 of the stretched arm, mm."""
+        return self.upper + self.fore
+
+    def inverse(self, poses: ArrayLike) -> Array:
+        """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi] rad.
+
+        All six of one that does not reach are NaN. Where axis 6 is parallel to axis 4, axes 4 and 6 share their turn such
+        that the elbow is square, as near as it can be; where axis 1 is free it takes theta 0.
+        """
+        return self._solved(poses, tuple(range(8)))
+
+    def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
+        """Joint angles (n, 6) of one configuration; else as `inverse`."""
+        result: Array = self._solved(poses, (branch,))[0]
+        return result
+
+    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+        """The configuration (...) that joint angles `q` (..., 6) are in."""
+        angles = np.asarray(q, float)
+        theta = columns(angles * np.array(self.signs, float) + np.array(self.zeros))
+        four = theta[1] + theta[2] + theta[3]
+        ahead = self.ahead + self.upper * np.sin(theta[1]) + self.fore * np.sin(theta[1] + theta[2])
+        ahead = ahead + self.wrist[0] * np.cos(four) + self.wrist[1] * np.sin(four)
+        back = ahead < 0.0
+        down = (np.sin(theta[2]) < 0.0) != back
+        bent = np.sin(theta[4]) * self.signs[4] < 0.0
+        result: NDArray[np.intp] = 4 * back + 2 * down + bent
+        return result
+
+    def bend(self, q: ArrayLike) -> Array:
+        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        theta = np.asarray(q, float) * np.array(self.signs, float) + np.array(self.zeros)
+        bent: Array = np.minimum(np.abs(np.sin(theta[..., 4])), np.abs(np.sin(theta[..., 2])))
+        return bent
+
+    def _solved(self, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
+        given = np.asarray(poses, float)
+        count = len(given)
+        tip = frames.inverse(self.tip)
+        result = np.empty((len(branches), 6, count))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            for start in range(0, count, CHUNK):
+                piece = slice(start, start + CHUNK)
+                rows = np.moveaxis(given[piece, :3] @ tip, 0, -1).copy()
+                self._solve_piece(rows, branches, result[:, :, piece])
+        return result.transpose(0, 2, 1)
+
+    def _solve_piece(self, rows: Array, branches: tuple[int, ...], out: Array) -> None:
+        """Write the angles `out` (branches, 6, m) of frames on axis 6 given by their upper three `rows` (3, 4, m)."""
+        centre = rows[:, 3]
+        squared = (centre[0] + HINT) ** 2 + centre[1] ** 2
+        along = squared - self.beside**2
+        lost = along < -2.0 * max(abs(self.beside), TOUCH) * TOUCH
+        along = np.sqrt(np.maximum(along, 0.0))
+        along[lost] = np.nan
+        for back in (0, 1):
+            of_side = {index & 3: out[slot] for slot, index in enumerate(branches) if index >> 2 == back}
+            if not of_side:
+                continue
+            signed = -along if back else along
+            sine = (centre[1] * signed - (centre[0] + HINT) * self.beside) / squared
+            cosine = ((centre[0] + HINT) * signed + centre[1] * self.beside) / squared
+            one = self._settled(0, np.arctan2(sine, cosine))
+            # axis 6 in the arm's frame: ahead, along its normal, up
+            six = rows[0, 2] * cosine + rows[1, 2] * sine, rows[1, 2] * cosine - rows[0, 2] * sine, rows[2, 2]
+            off = np.hypot(six[0], six[2])
+            # axis 5 is square to the normal and to axis 6; where these are parallel, it is free
+            five_x, five_z = six[2] / off, -six[0] / off
+            free = off < PARALLEL
+            if free.any():
+                away = signed[free] - self.ahead, centre[2, free] - self.above
+                five_x[free], five_z[free] = self._chosen(*away)
+            bent = np.arctan2(off, six[1])
+            five = [(rows[0, k] * cosine + rows[1, k] * sine) * five_x + rows[2, k] * five_z for k in (0, 1)]
+            last = np.arctan2(-five[1], five[0])
+            for turned in (0, 1):
+                # the solution with theta 5 > 0 has axis 5 the way found
+                flip = turned if self.signs[4] > 0 else 1 - turned
+                pair = [(down, of_side[2 * down + flip]) for down in (0, 1) if 2 * down + flip in of_side]
+                if not pair:
+                    continue
+                side = -1.0 if turned else 1.0
+                fifth = self._settled(4, -bent if turned else bent)
+                sixth = self._settled(5, last - np.copysign(math.pi, last) if turned else last)
+                x, z = side * five_x, side * five_z
+                ahead = signed - self.ahead - self.wrist[0] * z - self.wrist[1] * x
+                above = centre[2] - self.above + self.wrist[0] * x - self.wrist[1] * z
+                four = np.arctan2(x, z)
+                bend, towards, across = self._triangle(ahead, above)
+                for down, angles in pair:
+                    left = back == down
+                    elbow = bend if left else -bend
+                    turn = across if left else -across
+                    two = np.arctan2(ahead * towards - above * turn, above * towards + ahead * turn)
+                    angles[0], angles[4], angles[5] = one, fifth, sixth
+                    angles[1] = self._settled(1, two)
+                    angles[2] = self._settled(2, elbow)
+                    angles[3] = self._settled(3, four - two - elbow)
+                    angles[:, np.isnan(two) | np.isnan(one)] = np.nan
+
+    def _chosen(self, ahead: Array, above: Array) -> tuple[Array, Array]:
+        """The direction (x, z) of axis 5, where it is free, with which the elbow is as square as it can be."""
+        length = math.hypot(*self.wrist)
+        far = np.hypot(ahead, above) + HINT
+        wanted = np.clip(math.hypot(self.upper, self.fore), np.abs(far - length), far + length)
+        # from the point of axes 5 and 6 back to axis 4, by the angle at that point towards the shoulder
+        cosine = np.clip((far**2 + length**2 - wanted**2) / (2.0 * far * max(length, TOUCH)), -1.0, 1.0)
+        turn = np.arctan2(-ahead, -above) + np.arccos(cosine) - math.atan2(-self.wrist[0], -self.wrist[1])
+        return np.sin(turn), np.cos(turn)
+
+    def _triangle(self, ahead: Array, above: Array) -> tuple[Array, Array, Array]:
+        """Of shoulder, elbow and axis 4: the angle at the elbow for the elbow on the left, and axis 4 from the shoulder
+        along the upper arm and across it; NaN where it does not close."""
+        upper, fore = self.upper, self.fore
+        squared = ahead * ahead + above * above
+        scale = 1.0 / (2.0 * upper * fore)
+        cosine = (squared - (upper**2 + fore**2)) * scale
+        sine = (squared - (upper - fore) ** 2) * scale * (((upper + fore) ** 2 - squared) * scale)
+        lost = sine < -STRETCH
+        if abs(upper - fore) < TOUCH:
+            lost |= squared < TOUCH  # folded back on the shoulder, where axis 2 is free
+        sine = np.sqrt(np.maximum(sine, 0.0))
+        sine[lost] = np.nan
+        return np.arctan2(sine, cosine), upper + fore * cosine, fore * sine
+
+    def _settled(self, axis: int, theta: Array) -> Array:
+        """The machine's angle in [-pi, pi] of the arm's."""
+        angle = theta - self.zeros[axis] if self.zeros[axis] else theta
+        turns = np.rint(angle * (1.0 / TURN))
+        turns *= TURN
+        result: Array = angle - turns
+        return -result if self.signs[axis] < 0 else result

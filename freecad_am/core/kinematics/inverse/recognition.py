@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The inverse kinematics of a chain of joint frames, found from where its axes are."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...geometry import frames
+from ...geometry.frames import Array
+from ...issues import InputError
+from .. import opw_recognition
+from ..chain import Chain
+from ..opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
+from .parallel_axes import ParallelAxesArm
+from .serial_arm import SerialArm
+
+
+def arm_of(chain: Chain) -> SerialArm:
+    """The inverse of a chain seen from a base_link whose Z is axis 1, as `opw_recognition.rooted` has it.
+
+    Raises InputError NO_CLOSED_FORM telling what of the geometry stands in the way, and by how much.
+    """
+    try:
+        return opw_recognition.recognise(chain)
+    except InputError as error:
+        if chain.axes != 6 or chain.sliding.any() or error.where == opw_recognition.FLANGE:
+            raise
+        found = parallel_axes(chain)
+        if found is None:
+            raise error
+        return found
+
+
+def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
+    """The closed form of a chain of six revolute joints whose axes 2, 3 and 4 are parallel; None where they are not, or
+    other axes are not as that asks for."""
+    at_rest = chain.frames(np.zeros(6))
+    z, p = at_rest.directions, at_rest.origins
+    if not _upright(z, p) or not (_parallel(z[1], z[2]) and _parallel(z[1], z[3])):
+        return None
+    if not all(_square(z[first], z[second]) for first, second in ((0, 1), (3, 4), (4, 5))):
+        return None
+    meeting = _meeting(p[4], z[4], p[5], z[5])
+    if meeting is None:
+        return None
+    normal = _normal(z[1], meeting)
+    ahead = np.cross(normal, (0.0, 0.0, 1.0))
+    plane = np.stack([ahead, (0.0, 0.0, 1.0)])
+    shoulder, elbow, four, centre = (plane @ point for point in (p[1], p[2], p[3], meeting))
+    upper, fore = elbow - shoulder, four - elbow
+    if min(np.hypot(*upper), np.hypot(*fore)) < NEAR_MM:
+        return None
+    turn1 = math.atan2(ahead[1], ahead[0] + 0.0)
+    turn2, turn23, turn234 = (math.atan2(*way) for way in (upper, fore, plane @ z[4]))
+    sine, cosine = math.sin(turn234), math.cos(turn234)
+    away = centre - four
+    six = z[5] if float(z[5] @ normal) > -STRAIGHT else -z[5]
+    bent = math.atan2(float(six @ np.cross(z[4], normal)), float(six @ normal))
+    last = np.eye(4)
+    last[:3, :3] = np.stack([z[4], np.cross(six, z[4]), six], axis=1)
+    last[:3, 3] = meeting
+    arm = ParallelAxesArm(
+        ahead=float(shoulder[0]), above=float(shoulder[1]), upper=float(np.hypot(*upper)), fore=float(np.hypot(*fore)),
+        wrist=(float(away[0] * cosine - away[1] * sine), float(away[0] * sine + away[1] * cosine)),
+        beside=float(normal @ meeting), tip=frames.inverse(last) @ at_rest.flange,
+        signs=(1 if z[0, 2] > 0.0 else -1, *(1 if float(axis @ normal) > 0.0 else -1 for axis in z[1:4]), 1,
+               1 if float(six @ z[5]) > 0.0 else -1),
+        zeros=tuple(clean(turn) for turn in (turn1, turn2, turn23 - turn2, turn234 - turn23, bent, 0.0)),
+    )
+    return arm if _agrees(arm, chain) else None
+
+
+def _agrees(arm: SerialArm, chain: Chain) -> bool:
+    """Whether the arm gives back joint angles of the chain; a slip of signs or zeros shows."""
+    q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
+    poses = chain.forward(q)
+    found = arm.inverse(poses)
+    there = chain.forward(np.nan_to_num(found))
+    known = np.isfinite(found).all(axis=2)
+    off = np.where(known[..., None, None], np.abs(there - poses), 0.0)
+    given = np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2)
+    return bool(off[..., :3, 3].max() < POSITION and off[..., :3, :3].max() < ROTATION * 10.0
+                and (np.nanmin(given, axis=0) < 1e-5).all())
+
+
+def _upright(z: Array, p: Array) -> bool:
+    """Whether axis 1 is the Z of base_link."""
+    foot = p[0] - z[0] * float(z[0] @ p[0])
+    return bool(np.hypot(z[0, 0], z[0, 1]) < STRAIGHT and np.linalg.norm(foot) < NEAR_MM)
+
+
+def _normal(axis: Array, wrist: Array) -> Array:
+    """The normal of the arm's plane along an axis, turned such that the wrist is ahead; as the axis where it is neither."""
+    flat: Array = np.array([axis[0], axis[1], 0.0]) / np.hypot(axis[0], axis[1])
+    ahead = float(np.cross(flat, (0.0, 0.0, 1.0)) @ wrist)
+    return -flat if ahead < -NEAR_MM else flat
+
+
+def _parallel(one: Array, other: Array) -> bool:
+    return float(np.linalg.norm(np.cross(one, other))) < STRAIGHT
+
+
+def _square(one: Array, other: Array) -> bool:
+    return abs(float(one @ other)) < STRAIGHT
+
+
+def _meeting(p: Array, z: Array, q: Array, w: Array) -> Array | None:
+    """The point (3,) where two lines that are not parallel meet, None where they pass each other."""
+    across = np.cross(z, w)
+    size = float(across @ across)
+    if size < STRAIGHT or abs(float((q - p) @ across)) / math.sqrt(size) > NEAR_MM:
+        return None
+    at: Array = p + z * (float(np.cross(q - p, w) @ across) / size)
+    return at

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs on arms without a spherical wrist: planned from end to end, and where PyKDL says the nozzle is."""
+
+import json
+
+import numpy as np
+import pytest
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.kinematics import machine
+from freecad_am.kdl.chain import KdlArm
+from tests.batch.test_plan_command import deposit
+
+pytest.importorskip("PyKDL")
+
+JOB = """\
+part: {{file: cup.step}}
+strategy: {{layer_height: 5 mm, chord_error: 0.1 mm}}
+cell: {{machine: {machine}, platform_diameter: 100 mm, {cell}}}
+joints: {{method: layer-by-layer}}
+program: {{post: {post}}}
+"""
+POINTS = {"ur-ur10e": (700.0, 0.0, 300.0)}
+CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]")]
+
+
+@pytest.mark.parametrize(("name", "branch"), CELLS, ids=[f"{name} {branch.split(',')[0]}" for name, branch in CELLS])
+def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branch):
+    point = POINTS[name]
+    cell = f"deposition_point: [{', '.join(map(str, point))}, 0, 0, 0], branch: {branch}"
+    workshop.write_job(JOB.format(machine=name, cell=cell, post="none"))
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 0, done.err
+    files = workshop.files()
+    rows, points = deposit(files["waypoints.csv"].decode())
+    report = json.loads(files["report.json"])
+    assert report["status"] == "ok" and report["joints"]["feasible"] is True
+    assert len(report["joints"]["branch"]) == 3
+    assert branch == "auto" or report["joints"]["branch"] == ["front", "up", "flip"]
+    q = np.radians([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
+    arm = machine.load(name)
+    limits = arm.limits("maker")
+    assert (q >= limits.lower).all() and (q <= limits.upper).all()
+    platform = KdlArm(arm).forward(q) @ frames.pose(np.eye(3), (0.0, 0.0, 5.0))
+    station = arm.base @ frames.pose(np.eye(3), point)
+    seen = frames.inverse(platform) @ station
+    # the hemisphere's rim is its first layer, on the platform
+    np.testing.assert_allclose(seen[:, :3, 3], points, atol=1e-4)
+    layers = np.array([int(row["layer"]) for row in rows])
+    for layer in range(layers.max() + 1):
+        step = np.abs(np.diff(q[layers == layer], axis=0))
+        assert step.max() < np.radians(15.0)
+
+
+def test_cartesian_programs_are_refused(workshop):
+    cell = "deposition_point: [700, 0, 300, 0, 0, 0], branch: auto"
+    workshop.write_job(JOB.format(machine="ur-ur10e", cell=cell, post="fanuc"))
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 2 and "error[WRONG_CONTROLLER]" in done.err and "no post for it yet" in done.err

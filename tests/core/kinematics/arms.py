@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Arms without a spherical wrist, as their makers describe them, and what their poses come from that is not ours."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from freecad_am.core.geometry import frames
+from freecad_am.core.kinematics.chain import Chain
+from freecad_am.kdl.chain import KdlArm
+
+# joints: origin mm, rpy deg, axis; then the flange
+UR5E = (
+    ((0, 0, 162.5), (0, 0, 0), (0, 0, 1)), ((0, 0, 0), (90, 0, 0), (0, 0, 1)), ((-425, 0, 0), (0, 0, 0), (0, 0, 1)),
+    ((-392.2, 0, 133.3), (0, 0, 0), (0, 0, 1)), ((0, -99.7, 0), (90, 0, 0), (0, 0, 1)),
+    ((0, 99.6, 0), (90, 180, 180), (0, 0, 1)), ((0, 0, 0), (0, 0, 0)),
+)
+UR10E = (
+    ((0, 0, 180.7), (0, 0, 180), (0, 0, 1)), ((0, 0, 0), (90, 0, 0), (0, 0, 1)), ((-612.7, 0, 0), (0, 0, 0), (0, 0, 1)),
+    ((-571.55, 0, 174.15), (0, 0, 0), (0, 0, 1)), ((0, -119.85, 0), (90, 0, 0), (0, 0, 1)),
+    ((0, 116.55, 0), (-90, 0, 0), (0, 0, 1)), ((0, 0, 0), (0, 0, 0)),
+)
+# of no maker: axis 2 before axis 1, a forearm at an angle, axis 5 beside axis 4, the flange beside axis 6 and turned
+CROOKED_UR = (
+    ((0, 0, 200), (180, 0, 30), (0, 0, 1)), ((60, 15, -10), (90, 25, 0), (0, 0, -1)), ((300, 90, 20), (0, 0, 0), (0, 0, 1)),
+    ((-250, 60, 100), (180, 0, 40), (0, 0, 1)), ((35, -90, 40), (90, 0, 20), (0, 0, -1)),
+    ((0, 0, 80), (90, 0, 0), (0, 0, 1)), ((10, 20, 60), (30, 40, 50)),
+)
+
+
+def chain(arm):
+    """The chain of one of these arms."""
+    *joints, (origin, rpy) = arm
+    return Chain(
+        np.stack([_pose(origin, rpy) for origin, rpy, _ in joints]), np.array([axis for *_, axis in joints], float),
+        _pose(origin, rpy),
+    )
+
+
+def _pose(origin, rpy):
+    roll, pitch, yaw = np.radians(rpy)
+    return frames.pose(frames.about_z(yaw) @ frames.about_y(pitch) @ frames.about_x(roll), np.array(origin, float))
+
+
+def second_opinion(of):
+    """PyKDL on a chain alone."""
+    return KdlArm(SimpleNamespace(axes=range(6), chain=of))
+
+
+def numeric(of, pose, rng, starts):
+    """Joint angles (k, 6) in [-pi, pi] that differ, to each of which PyKDL's solver came from some random start."""
+    scale = np.ones((4, 4))
+    scale[:3, 3] = 1e-3  # its weights are made for metres
+    kdl = second_opinion(Chain(of.origins * scale, of.directions, of.flange * scale))
+    seeds = rng.uniform(-np.pi, np.pi, (starts, 6))
+    q = kdl.inverse(np.broadcast_to(pose * scale, (starts, 4, 4)), seeds, "lma", 1e-9)
+    q = q[np.isfinite(q).all(axis=1)]
+    q = q[np.abs(kdl.forward(q) - pose * scale).max(axis=(1, 2), initial=0.0) < 1e-7]
+    q -= 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    found = []
+    for one in q:
+        if all(apart(one, other) > 1e-3 for other in found):
+            found.append(one)
+    return np.array(found).reshape(-1, 6)
+
+
+def apart(one, other):
+    """The largest difference of two joint vectors along leading axes, whole turns aside."""
+    return np.abs(np.exp(1j * np.asarray(one)) - np.exp(1j * np.asarray(other))).max(axis=-1)
