@@ -3892,6 +3892,11 @@
         <translation>Simulation de {title}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/machine_wizard/name_page.py"/>
+        <source>Six axes that turn, without a spherical wrist.</source>
+        <translation>Six axes rotatifs, sans poignet sphérique.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Smallest condition allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
         <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
@@ -9610,11 +9615,6 @@
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>{0} has no number</source>
         <translation>{0} n&apos;a pas de numéro</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0} has no spherical wrist; choose a robot that has one (see `freecad-am machines`)</source>
-        <translation>{0} n&apos;a pas de poignet sphérique ; choisissez un robot qui en a un (voir `freecad-am machines`)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/view_joint_path.py"/>
