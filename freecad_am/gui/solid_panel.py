@@ -3,10 +3,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
-from ..core.layers.stacking import stacked
+import numpy as np
+from PySide import QtCore, QtGui
+
+from ..core.layers.leaning import Leaning, leaning
+from ..core.layers.stacking import STANDING, stacked
 from ..core.parameters.strategy import SolidParameters
 from ..core.strategies import size
 from ..objects.shapes import FIXTURES
@@ -15,10 +20,15 @@ from ..objects.stage import Link, Outcome
 from . import picking, recorded
 from .guess import COARSE
 from .hub_nodes import NOTHING, Drawing, HubNodes, drawing
+from .lines import Array, Faces
 from .pick_field import PickField
 from .pick_panel import PickPanel
 from .preview import Draft
 from .texts import marked, sentence, tr
+
+STEEPEST = 89  # deg of the slider
+MM2_PER_CM2 = 100.0
+OVERHUNG = (0.86, 0.1, 0.12)
 
 SOLIDS = Link(
     "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
@@ -27,11 +37,26 @@ SOLIDS = Link(
 SUBSTRATE = Link("Substrate", "", marked("The part that they stand on; none is needed on a platform."), required=False)
 
 
+class SolidNodes(HubNodes):
+    """Draws the plane that solids stand on, their first layer, and what of them leans out over nothing."""
+
+    def __init__(self) -> None:
+        super().__init__(pickable=False)
+        self.over = Faces(OVERHUNG, 0.0)
+        self.root.addChild(self.over.node)
+
+    def set_overhang(self, corners: Array) -> None:
+        """Facets (m, 3, 3) that are to be red."""
+        self.over.set(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+
+
 class SolidPanel(PickPanel):
     """Makes a feature of solids in plane layers of what is selected, or changes one."""
 
     stage, icon, function, draft = SolidFeature, "solid", "make_solid_feature", "Solids"
-    nodes: HubNodes
+    nodes: SolidNodes
+    leaning: Leaning | None = None  # what of the part leans out, as it is previewed
+    lean = -1  # deg that the field of the largest overhang held when the slider followed it
     kept: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
 
     def __init__(self, obj: Any = None) -> None:
@@ -40,7 +65,37 @@ class SolidPanel(PickPanel):
         self.substrate = PickField(SUBSTRATE, tr("Stands on"), None if obj is None else obj.Substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
         picks = [self.solids, self.substrate, self.fixtures]
-        super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, HubNodes(pickable=False))
+        super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes())
+        self._add_overhang()
+
+    def _add_overhang(self) -> None:
+        """The slider of the overhang view: a picture alone, it enters nothing."""
+        box, help = QtGui.QWidget(), tr("Faces that lean out over nothing by more than this angle are red in the 3D view")
+        column = QtGui.QVBoxLayout(box)
+        column.setContentsMargins(4, 0, 4, 0)
+        self.overhang, self.overhung = QtGui.QSlider(QtCore.Qt.Horizontal), QtGui.QLabel()
+        self.overhang.setObjectName("OverhangAngle")
+        self.overhang.setRange(0, STEEPEST)
+        self.overhung.setObjectName("OverhangArea")
+        for widget in (self.overhung, self.overhang):
+            widget.setToolTip(help)
+            widget.setWhatsThis(help)
+            column.addWidget(widget)
+        self._show_overhang()
+        self.overhang.valueChanged.connect(self._show_overhang)
+        self.column.insertWidget(self.column.indexOf(self.messages) + 1, box)
+
+    def _show_overhang(self, *_: Any) -> None:
+        """Colour what leans out by more than the slider tells."""
+        angle = self.overhang.value()
+        if self.leaning is None:
+            self.nodes.set_overhang(np.zeros((0, 3, 3)))
+            self.overhung.setText(tr("Overhang > {}°").format(angle))
+            return
+        corners, area = self.leaning.beyond(math.radians(angle))
+        self.nodes.set_overhang(corners)
+        share = 100.0 * area / max(self.leaning.whole, 1e-300)
+        self.overhung.setText(tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share))
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """All that is selected is to be deposited."""
@@ -78,19 +133,22 @@ class SolidPanel(PickPanel):
             found["ChordError"] = COARSE
         return found
 
-    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
         """Solids are read anew only where they are others."""
         draft.check()
         key, kept, work = self._inputs(), self.kept, draft.prepare()
         strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
 
-        def both() -> tuple[Outcome, Drawing]:
+        def both() -> tuple[Outcome, tuple[Drawing, Leaning, int]]:
             made = kept[1] if kept is not None and kept[0] == key else work()
             self.kept = (key, made)
             bodies = made.value.groups[0].bodies
             solids = stacked(bodies, strategy, made.value.label)
             size.refuse_absurd(size.of_solids(solids, strategy), strategy)
-            return Outcome(solids, solids.issues), drawing(solids)
+            slit = strategy.chord_error if strategy.fuse == "auto" else None
+            lean = leaning(bodies, solids.groups[0].base.frame[:3, 2], STANDING * strategy.layer_height, slit)
+            asked = round(math.degrees(strategy.max_overhang))
+            return Outcome(solids, solids.issues), (drawing(solids), lean, min(asked, STEEPEST))
 
         return both
 
@@ -100,8 +158,13 @@ class SolidPanel(PickPanel):
             "Fixtures": self.fixtures.label,
         }
 
-    def _draw(self, made: Outcome, drawing: Drawing) -> str:
+    def _draw(self, made: Outcome, drawn: tuple[Drawing, Leaning, int]) -> str:
+        drawing, self.leaning, asked = drawn
         self.nodes.set(drawing)
+        if asked != self.lean:  # the slider begins where the field is, and follows it
+            self.lean = asked
+            self.overhang.setValue(asked)
+        self._show_overhang()
         group = made.value.groups[0]
         height = max(float(group.base.surface.distance(group.base.inside(body.vertices)).max()) for body in group.bodies)
         contours = sum(len(some) for solids in drawing.contours for some in solids)
@@ -110,3 +173,5 @@ class SolidPanel(PickPanel):
 
     def _draw_without(self) -> None:
         self.nodes.set(NOTHING)
+        self.leaning = None
+        self._show_overhang()

@@ -31,6 +31,7 @@ def _fit(source: Source, layers: tuple[int, int]) -> Charts:
     return () if found is None else (fit(*found, source.process.bead_width),)
 
 
+_NO_PLANES = "only solids in plane layers have sections and volumes of layers"
 _NO_MODEL = "no bead model sets the speeds (process.bead_model)"
 PICTURES = {
     "angles": Entry("Joint angles", joints.angles, machine=True),
@@ -42,6 +43,8 @@ PICTURES = {
     "travel": Entry("Speed along the path", process.travel),
     "deposit": Entry("Deposit rate", process.deposit),
     "spacing": Entry("Distance between layers", of=process.spacing, lacking="none of these layers lies on another"),
+    "volumes": Entry("Volume by layer", of=process.by_layer, lacking=_NO_PLANES),
+    "section": Entry("Section of the last layer", of=process.section, lacking=_NO_PLANES),
     "heights": Entry("Predicted heights", of=process.heights, lacking=_NO_MODEL),
     "spread": Entry("Predicted widths and speeds", of=process.spread, lacking=_NO_MODEL),
     "fit": Entry("Fit of the bead widths", of=_fit, lacking=_NO_MODEL),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-LINE, STEP, DOTS, MARKED = "line", "step", "dots", "marked"
+LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")
 # limits are in sight where values come as near as this share of them
 NEAR = 0.4
@@ -36,7 +36,8 @@ class Curve:
     """Values y over x, (n,) each; NaN lifts the pen.
 
     colour: a number of the palette, a word of `Look`, or #rrggbb. kind: LINE; STEP, where y is that of the way from the x
-    before; DOTS; MARKED, a line with dots. layer: (n,) int of each value, where it has one. Of all but DOTS x never falls.
+    before; DOTS; MARKED, a line with dots; OUTLINE, a curve of the plane, as wide as `width` in the units of x where that is
+    more than 0. layer: (n,) int of each value, where it has one. Of all but DOTS and OUTLINE x never falls.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Curve:
     colour: int | str = 0
     kind: str = LINE
     layer: NDArray[np.int64] | None = None
+    width: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class Chart:
     limits: least and most value allowed, infinite where there is none; what lies beyond is shaded, values there are marked.
     band: a range of x that is as wanted. marks: values of y with a name to compare with; upright: of x. borders: x of the
     starts of layers, and layers, their numbers. span: of y, where it is not as the values ask for. unlimited: why there are
-    no limits, where one would look for them.
+    no limits, where one would look for them. plane: x and y are places in a plane, drawn to the same scale.
     """
 
     title: str
@@ -79,6 +81,7 @@ class Chart:
     layers: NDArray[np.int64] | None = None
     span: tuple[float, float] | None = None
     unlimited: str = ""
+    plane: bool = False
 
     def wrong(self, values: Array) -> NDArray[np.bool_]:
         """Which values (n,) lie beyond the limits."""
@@ -97,7 +100,7 @@ class Chart:
         if self.bars is not None:
             return float(self.bars.edges[0]), float(self.bars.edges[-1])
         low, high = _ends([curve.x for curve in self.curves], [])
-        if any(curve.kind in (DOTS, MARKED) for curve in self.curves):
+        if any(curve.kind in (DOTS, MARKED, OUTLINE) for curve in self.curves):
             low, high = _padded(low, high)
         return (low, high) if high > low else (low - 0.5, low + 0.5)
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from .chart import DOTS, MARKED, STEP, Chart, Curve
+from .chart import DOTS, MARKED, OUTLINE, STEP, Chart, Curve
 from .envelope import envelope
 from .look import BAR, Look
 
@@ -27,7 +27,7 @@ CHARACTER = 6.0  # pixels, about, of a text
 TITLE_ROOM = 1.2  # of a title, which is larger
 MOST_BORDERS, FEW_WRONG = 80, 40
 APART = 26.0  # pixels between the numbers of layers, at least
-BORDER, FRAME, FORBIDDEN, WANTED = 0.35, 0.5, 0.13, 0.14  # opacities
+BORDER, FRAME, FORBIDDEN, WANTED, BEAD = 0.35, 0.5, 0.13, 0.14, 0.35  # opacities
 Range = tuple[float, float]
 
 
@@ -70,10 +70,10 @@ def figure(
     tall = max((height - fixed) / len(charts), 12.0)
     for number, chart in enumerate(charts):
         numbered = _numbered(shared, number, charts)
-        place = Place(
+        place = _to_scale(chart, Place(
             LEFT, top + above[number], across_pixels, tall,
             window.across.get(0 if shared else number) or across or chart.across(), window.up.get(number) or chart.up(),
-        )
+        ))
         _Frame(made, chart, look, place, width, height, numbered, numbers[number]).draw()
         places.append(place)
         top += above[number] + tall + (BELOW if numbered else BARE)
@@ -89,9 +89,19 @@ def _numbered(shared: bool, number: int, charts: Sequence[Chart]) -> bool:
     return not shared or number == len(charts) - 1
 
 
+def _to_scale(chart: Chart, place: Place) -> Place:
+    """A place that shows more of one side where x and y are drawn to the same scale."""
+    if not chart.plane:
+        return place
+    (left, right), (low, high) = place.across, place.up
+    scale = max((right - left) / place.width, (high - low) / place.height)
+    more = 0.5 * (scale * place.width - right + left), 0.5 * (scale * place.height - high + low)
+    return replace(place, across=(left - more[0], right + more[0]), up=(low - more[1], high + more[1]))
+
+
 def _named(chart: Chart) -> list[Curve]:
     """The curves whose names are told."""
-    return [curve for curve in chart.curves if curve.kind != DOTS]
+    return [curve for curve in chart.curves if curve.kind != DOTS and curve.name]
 
 
 def _titled(chart: Chart, look: Look) -> str:
@@ -208,6 +218,11 @@ class _Frame:
         style = {"drawstyle": "steps-pre"} if curve.kind == STEP else {}
         if curve.kind == DOTS:
             axes.add_line(Line2D(curve.x, curve.y, color=colour, linestyle="none", marker="o", markersize=4.0))
+            return
+        if curve.kind == OUTLINE:
+            to_points = 72.0 / DPI * self.place.width / (self.place.across[1] - self.place.across[0])
+            style = {"linewidth": to_points * curve.width, "alpha": BEAD} if curve.width else {"linewidth": 1.3}
+            axes.add_line(Line2D(curve.x, curve.y, color=colour, solid_joinstyle="round", solid_capstyle="round", **style))
             return
         rows = envelope(curve.x, curve.y, int(self.place.width), *self.place.across)
         x, y = curve.x[rows], curve.y[rows]

@@ -7,14 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from ..core.layers.slabs import outline
 from ..core.process import predicted
-from .chart import LINE, MARKED, STEP, Array, Bars, Chart, Curve, Quantity
+from .chart import LINE, MARKED, OUTLINE, STEP, Array, Bars, Chart, Curve, Quantity
 from .rows import Rows
 from .source import Source
 
 BINS = 48
 # g/s in kg/h, and mm^3 in cm^3
 KG_PER_HOUR, MM3_PER_CM3 = 3.6, 1000.0
+LEAST_PART = 1e-3  # of the largest layer; a share of less means nothing
 
 
 def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
@@ -111,6 +113,47 @@ def height_charts(told: dict[str, Any] | None, layers: tuple[int, int]) -> tuple
         Chart("Sum of the heights, off the layers", layer, Quantity("off", "mm"),
               (curve("drift", [row["drift_mm"] for row in rows], 3),), marks=((0.0, ""),)),
     )
+
+
+def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """What is deposited layer by layer beside what the part has there, and the share of it; none but of plane layers."""
+    if source.slabs is None:
+        return ()
+    end = layers[1] + 1 if layers[1] + 1 < len(source.toolpath.layers) else None  # with what is left out at the top
+    part, laid = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
+    if not len(part):
+        return ()
+    x, layer = np.arange(layers[0], layers[0] + len(part), dtype=float), Quantity("layer")
+    share = np.divide(100.0 * laid, part, out=np.full(len(part), np.nan), where=part > LEAST_PART * part.max())
+    whole = 100.0 * laid.sum() / max(part.sum(), 1e-300)
+    return (
+        Chart("Volume by layer", layer, Quantity("volume", "cm³"),
+              (Curve("part", x, part, "soft", MARKED), Curve("deposited", x, laid, 0, MARKED))),
+        Chart(f"Deposited of the part: {whole:.4g} %", layer, Quantity("share", "%"), (Curve("share", x, share, 0, MARKED),),
+              marks=((100.0, ""),)),
+    )
+
+
+def section(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
+    """The last of the layers as beads of their width, on the outline of the part where it is cut for it; none but of plane
+    layers."""
+    if source.group is None:
+        return ()
+    number, height = layers[1], source.toolpath.layer_height
+    base, rows = source.group.base, source.motion.deposit & (source.motion.layer == layers[1])
+    if not rows.any():
+        return ()
+    beads = source.toolpath.layers[number].beads
+    plane = float(np.median(base.inside(beads[0].points)[:, 2]))
+    counted = source.process.bead_width if source.toolpath.bead_width is None else source.toolpath.bead_width
+    curves = [
+        Curve("" if k else "bead", *base.inside(bead.points)[:, :2].T, 0, OUTLINE,
+              width=counted if bead.width is None else float(np.mean(bead.width)))
+        for k, bead in enumerate(beads)
+    ]
+    loops = outline(source.group, plane + source.cut_at * height)
+    curves += [Curve("" if k else "part", *loop.T, "ink", OUTLINE) for k, loop in enumerate(loops)]
+    return (Chart(f"Section of layer {number}", Quantity("x", "mm"), Quantity("y", "mm"), tuple(curves), plane=True),)
 
 
 def _histogram(title: str, x: Quantity, values: Array, length: Array) -> Chart:

@@ -9,7 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.geometry.on_hub import Group, SolidsOnHub
 from ..core.kinematics.cell import Cell
+from ..core.layers.slabs import Slabs, group_of, slabs
 from ..core.motion import Motion
 from ..core.parameters.process import ProcessParameters
 from ..core.process import bead_model, bead_table, predicted, spacing
@@ -28,7 +30,8 @@ class Source:
     """A job: its toolpath as it is run, and its motion, that of the deposit alone where there is no cell.
 
     condition, threshold: (n,) of the rows of the motion, NaN where there is none. band: share of the layer height by which
-    local distances may differ, None where nobody asks.
+    local distances may differ, None where nobody asks. solids: what is filled, where it is; cut_at: share of a layer height
+    above its plane at which a plane layer is cut.
     """
 
     toolpath: Toolpath
@@ -38,6 +41,20 @@ class Source:
     condition: Array | None = None
     threshold: Array | None = None
     band: float | None = None
+    solids: SolidsOnHub | None = None
+    cut_at: float = 0.5
+
+    @cached_property
+    def group(self) -> Group | None:
+        """The bodies in plane layers, None where layers are others."""
+        return None if self.solids is None else group_of(self.solids)
+
+    @cached_property
+    def slabs(self) -> Slabs | None:
+        """What part and deposit have in each plane layer."""
+        if self.group is None:
+            return None
+        return slabs(self.group, self.toolpath.layer_height, self.motion.position, self.volumes)
 
     @cached_property
     def times(self) -> Timeline:

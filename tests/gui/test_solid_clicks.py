@@ -60,3 +60,51 @@ def test_a_mesh_is_proposed_to_be_filled(person):
     person.until(lambda: "is a mesh, which is filled" in person.field(panel, "reason").text(), "the proposal", 20)
     person.press("Cancel")
     person.panel_closed()
+
+
+def red(person):
+    return person.screen_pixels((219, 25, 31), 60)
+
+
+def test_the_slider_shows_what_leans_out_before_anything_is_sliced(person):
+    """A table with a foot: its top leans out all round, and a chamfer of 30 deg under it."""
+    doc = App.newDocument("Overhang")
+    part = doc.addObject("Part::Feature", "Table")
+    foot = Part.makeBox(20, 20, 20, App.Vector(-10, -10, 0))
+    half = 10 + 10 * 3 ** -0.5 * 1.0
+    low, high = (Part.makePolygon([App.Vector(*place) for place in (
+        (-r, -r, z), (r, -r, z), (r, r, z), (-r, r, z), (-r, -r, z))]) for r, z in ((10, 20), (half, 30)))
+    part.Shape = foot.fuse([Part.makeLoft([low, high], True, True), Part.makeBox(60, 60, 5, App.Vector(-30, -30, 30))])
+    doc.recompute()
+    person.select(part)
+    person.click("RoboticAM_Solid")
+    panel = person.panel("RoboticAM_SolidFeature")
+    slider, told = person.field(panel, "OverhangAngle"), person.field(panel, "OverhangArea")
+    ceiling = 60 ** 2 - (2 * half) ** 2
+    chamfer = 4 * (10 + half) * 10 / 0.75 ** 0.5
+
+    def area():
+        return float(told.text().split(": ")[1].split(" ")[0]) * 100
+
+    person.until(lambda: "cm²" in told.text(), "the area", 30)
+    assert slider.value() == 45 and area() == pytest.approx(ceiling, rel=2e-3)
+    view = person.gui.activeDocument().activeView()
+    view.setCameraOrientation(App.Rotation(App.Vector(1, 0, 0), 150))  # from below
+    person.gui.SendMsgToActiveView("ViewFit")
+    person.idle(0.5)
+    some = red(person)
+    person.screenshot("overhang_view")
+    slider.setValue(25)
+    assert area() == pytest.approx(ceiling + chamfer, rel=2e-3)
+    person.idle(0.5)
+    assert red(person) > some + 500
+    slider.setValue(89)
+    assert area() == pytest.approx(ceiling, rel=2e-3)
+    person.type(panel, "Direction", "0 0 -1")  # upside down nothing but the foot's underside is over something
+    person.until(lambda: area() == 0.0, "nothing that leans out", 20)
+    person.idle(0.3)
+    assert red(person) < 0.2 * some  # nothing but marks of FreeCAD's own
+    person.type(panel, "MaxOverhang", "60 deg")
+    person.until(lambda: slider.value() == 60, "the slider to follow the field", 20)
+    person.press("Cancel")
+    person.panel_closed()

@@ -6,11 +6,18 @@ import dataclasses
 import numpy as np
 import pytest
 
+from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import SolidParameters
 from freecad_am.core.process import bead_model, bead_table, predicted, spacing
+from freecad_am.core.simulation import deposit
 from freecad_am.core.simulation.totals import totals
-from freecad_am.plots import catalogue, joints, process
+from freecad_am.plots import catalogue, draw, joints, process
 from freecad_am.plots.chart import together
+from freecad_am.plots.look import LIGHT
 from freecad_am.plots.rows import PATH, TIME, rows
+from freecad_am.plots.source import Source
+from tests.core.strategies.test_solids_in_planes import box, planned
 
 
 def curve(charts, number=0, of=0):
@@ -166,5 +173,36 @@ def test_every_picture_is_there_or_says_why(dome, modelled):
     for name, entry in catalogue.PICTURES.items():
         of_dome, of_path = catalogue.picture(name, source), catalogue.picture(name, modelled)
         assert bool(of_dome.charts) != bool(of_dome.lacking) and bool(of_path.charts) != bool(of_path.lacking)
-        assert bool(of_dome.charts) == (name not in ("heights", "spread", "fit")), name
-        assert bool(of_path.charts) == (not entry.machine), name
+        filled = name in ("volumes", "section")
+        assert bool(of_dome.charts) == (name not in ("heights", "spread", "fit") and not filled), name
+        assert bool(of_path.charts) == (not entry.machine and not filled), name
+
+
+def test_volumes_and_sections_of_plane_layers(modelled):
+    part = box((-20, -15, 0), (20, 15, 13), "block")
+    solids = stacked([part], SolidParameters(), "block")
+    toolpath = planned(part, fill="lines", contour=True)
+    source = Source(toolpath, deposit.alone(toolpath), ProcessParameters(), solids=solids)
+    volume, share = catalogue.picture("volumes", source).charts
+    of_part, laid = (one.y for one in volume.curves)
+    np.testing.assert_allclose(of_part, [4.8, 4.8, 4.8, 1.2], rtol=1e-9)  # cm3; 1 mm at the top is less than half a layer
+    assert laid[3] == 0.0 and laid.sum() == pytest.approx(source.volumes.sum() / 1000.0, rel=1e-12)
+    np.testing.assert_allclose(share.curves[0].y, 100.0 * laid / of_part)
+    assert f"{100 * laid.sum() / 15.6:.4g} %" in share.title
+    (some, _) = catalogue.picture("volumes", source, layers=(1, 1)).charts
+    assert some.curves[1].y.tolist() == laid[1:2].tolist() and some.curves[1].x.tolist() == [1.0]
+    (flat,) = catalogue.picture("section", source, layers=(0, 1)).charts
+    outline = next(one for one in flat.curves if one.name == "part")
+    assert {tuple(np.round(np.abs(place), 9)) for place in zip(outline.x, outline.y)} <= {(20.0, 15.0)} | {
+        (20.0, round(float(abs(y)), 9)) for y in outline.y} | {(round(float(abs(x)), 9), 15.0) for x in outline.x}
+    beads = [one for one in flat.curves if one is not outline]
+    assert len(beads) == len(toolpath.layers[1].beads) and all(one.width > 0.0 for one in beads)
+    edge = 20.0 - 0.5 * beads[0].width
+    assert max(np.abs(one.x).max() for one in beads) == pytest.approx(edge, abs=0.06)
+    figure, (place,) = draw.figure((flat,), LIGHT, 900, 400)
+    across, up = np.diff(place.across)[0] / place.width, np.diff(place.up)[0] / place.height
+    assert across == pytest.approx(up)  # to scale
+    line = next(one for one in figure.axes[0].get_lines() if one.get_linewidth() > 5)
+    assert line.get_linewidth() / 72.0 * draw.DPI * across == pytest.approx(beads[0].width)
+    for name in ("volumes", "section"):
+        assert "plane layers" in catalogue.picture(name, modelled).lacking

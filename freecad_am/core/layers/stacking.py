@@ -55,7 +55,7 @@ def stacked(bodies: Sequence[Body], strategy: SolidParameters, label: str, issue
 def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     """The axes and the directions out of large flat faces, the best first: the least area over nothing, then the least
     height, then in their order."""
-    vertices, normals, areas = _facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
+    vertices, normals, areas = facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
     ways = _candidates(normals, areas)
     steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
     found = [_judged(way, vertices, normals, areas, steep, standing) for way in ways]
@@ -63,7 +63,7 @@ def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     return sorted(found, key=lambda one: (round(one.area / total / CLOSE), round(one.height, 6)))
 
 
-def _facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
+def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
     """Corners (m, 3, 3), unit normals (m, 3) and areas (m,) of all triangles with an area; what of them another body covers,
     within a slit of so many mm, does not count: touching bodies are one. None: each body is one by itself."""
     corners = np.concatenate([body.corners() for body in bodies])

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...plots.chart import DOTS, STEP, Chart, Curve
+from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
 from ..texts import tr
 
 Range = tuple[float, float]
@@ -21,7 +21,7 @@ def told(chart: Chart, x: float) -> str:
             low, high = chart.bars.edges[bin : bin + 2].tolist()
             texts = [f"{chart.x.name} {low:.5g} – {high:.5g} {chart.x.unit}"]
             texts.append(f"{chart.bars.heights[bin]:.4g} {chart.y.unit}")
-    curves = [curve for curve in chart.curves if len(curve.x) and curve.kind != DOTS]
+    curves = [curve for curve in chart.curves if len(curve.x) and curve.kind not in (DOTS, OUTLINE)]
     if curves and curves[0].layer is not None:
         texts.insert(0, tr("layer {}").format(curves[0].layer[_nearest(curves[0], x)]))
     for curve in curves:

@@ -7,14 +7,17 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
+from ...core.geometry.on_hub import SolidsOnHub
 from ...core.kinematics import cell as cells
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
+from ...core.parameters.strategy import SolidParameters
 from ...core.planning import program as programs
 from ...core.simulation import deposit
 from ...core.simulation.margins import on_deposit
 from ...objects import user_machines
+from ...objects.solid_feature import SolidFeature
 from ...objects.stage import stage_of
 from ...plots.source import Source
 from ..view_toolpath import band_of
@@ -56,8 +59,9 @@ def maker_of(obj: Any) -> Callable[[], Source]:
     toolpath = toolpath_object.Proxy.value(toolpath_object)
     process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
     band = band_of(toolpath_object) if hasattr(toolpath_object.Feature, "Band") else None
+    solids, cut_at = _filled(toolpath_object.Feature)
     if kind_of(path) == TOOLPATH:
-        return lambda: Source(toolpath, deposit.alone(toolpath), process, band=band)
+        return lambda: Source(toolpath, deposit.alone(toolpath), process, band=band, solids=solids, cut_at=cut_at)
     planned, settings, folders = path.Proxy.value(path), path.Cell.Proxy.value(path.Cell), user_machines.folders()
     start = obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
 
@@ -69,6 +73,15 @@ def maker_of(obj: Any) -> Callable[[], Source]:
             rows = programs.rows_from(motion, start)
             motion = Motion(**{field.name: getattr(motion, field.name)[rows] for field in fields(motion)})
             condition, threshold = condition[rows], threshold[rows]
-        return Source(run, motion, process, cell, condition, threshold, band)
+        return Source(run, motion, process, cell, condition, threshold, band, solids, cut_at)
 
     return make
+
+
+def _filled(feature: Any) -> tuple[SolidsOnHub | None, float]:
+    """What is filled in plane layers, None for other features, and the share of a layer height at which layers are cut."""
+    stage = stage_of(feature)
+    if not isinstance(stage, SolidFeature) or not feature.Key:
+        return None, 0.5
+    strategy = stage.parameters(feature, SolidParameters)
+    return (stage.value(feature) if strategy.layers == "planes" else None), strategy.share_of_cut

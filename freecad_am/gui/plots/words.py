@@ -28,6 +28,8 @@ WORDS = (
     marked("no limit known: the machine file has no max_speed"),
     marked("no limit known: the machine file has no max_acceleration"),
     marked("no limit known: the machine file has no max_jerk"),
+    marked("Volume by layer"), marked("Section of the last layer"), marked("volume"), marked("share"), marked("part"),
+    marked("deposited"), marked("bead"), marked("only solids in plane layers have sections and volumes of layers"),
     marked("none of these layers lies on another"), marked("no bead model sets the speeds (process.bead_model)"),
 )
 

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Volumes between planes by cutting with half spaces and by equations; leaning facets by their slopes."""
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.layers.leaning import leaning
+from freecad_am.core.layers.slabs import below, group_of, outline, slabs
+from freecad_am.core.layers.stacking import stacked
+from freecad_am.core.parameters.strategy import SolidParameters
+from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
+
+
+def clipped(points, height):
+    """The volume of a convex body below a height, by its corners there and where the lines between all others cross it."""
+    under, over = points[points[:, 2] <= height], points[points[:, 2] > height]
+    if not len(under):
+        return 0.0
+    share = (height - under[:, None, 2]) / np.maximum(over[None, :, 2] - under[:, None, 2], 1e-300)
+    crossed = under[:, None] + share[..., None] * (over[None] - under[:, None])
+    corners = np.vstack([under, crossed.reshape(-1, 3)])
+    return ConvexHull(corners).volume if np.ptp(corners[:, 2]) > 1e-9 else 0.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_volumes_below_planes_are_those_of_half_spaces(seed):
+    random = np.random.default_rng(seed)
+    points = random.normal(size=(14, 3)) * [20.0, 12.0, 9.0]
+    points[:3, 2] = -25.0  # a face that lies in a plane
+    body = hull(points)
+    heights = np.concatenate([[-26.0, -25.0], np.linspace(-24.0, 28.0, 17), points[4:8, 2]])
+    wanted = [clipped(points, height) for height in heights]
+    np.testing.assert_allclose(below(body.vertices, body.triangles, heights), wanted, rtol=1e-9, atol=1e-8)
+
+
+def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_stacked():
+    cone = tube(CONE)  # by its polygon
+    area = 240 / 2 * np.sin(2 * np.pi / 240)
+    group = group_of(stacked([cone], SolidParameters(layer_height=4.0), "cone"))
+    found = slabs(group, 4.0, np.zeros((0, 3)), np.zeros(0))
+    planes = np.minimum(4.0 * np.arange(9), 30.0)
+    radius = 40.0 - 0.5 * planes
+    inner = area * 100.0 * np.diff(planes)
+    wanted = -area * np.diff(radius ** 3) * 2.0 / 3.0 - inner
+    np.testing.assert_allclose(found.part, wanted, rtol=1e-9)
+    assert len(found.deposited) == 8 and not found.deposited.any()
+    bars = [box((0, 0, 0), (30, 7, 5)), box((0, 20, 0), (10, 27, 5))]
+    group = group_of(stacked(bars, SolidParameters(layer_height=4.0, direction="-1 0 0"), "bars"))
+    # 30 mm high along -X, the second box in the first 20 mm above the lowest
+    points = np.array([[28.0, 1.0, 1.0], [26.0, 1.0, 1.0], [2.0, 1.0, 1.0]])
+    points[:, 0] = 30.0 - 4.0 * np.array([0, 1, 6])
+    found = slabs(group, 4.0, points, np.array([3.0, 0.0, 5.0]))
+    second = 35.0 * np.array([0, 0, 0, 0, 0, 4, 4, 2])
+    np.testing.assert_allclose(found.part, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9)
+    assert found.deposited.tolist() == [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0]
+    assert sorted(len(loop) for loop in outline(group, 25.0)) == [7, 7] or len(outline(group, 25.0)) == 2
+    assert len(outline(group, 3.0)) == 1
+
+
+def test_facets_lean_by_their_slope_and_what_stands_does_not():
+    """Roofs of slopes from 10 to 80 deg, upside down."""
+    for slope in np.radians([10.0, 35.0, 60.0, 80.0]):
+        rise = 20.0 * np.tan(0.5 * np.pi - slope)
+        # widens upwards from 10 to 50: sides lean out by the slope; the base of 10 x 30 stands
+        points = np.array([[x, y, z] for z, half in ((0.0, 5.0), (rise, 25.0)) for x in (-half, half) for y in (0.0, 30.0)])
+        body = hull(points)
+        found = leaning([body], np.array([0.0, 0.0, 1.0]), 0.1)
+        side = 30.0 * np.hypot(20.0, rise)
+        assert found.beyond(slope - 0.01)[1] == pytest.approx(2.0 * side, rel=1e-9)
+        assert found.beyond(slope + 0.01)[1] == 0.0 and len(found.beyond(slope + 0.01)[0]) == 0
+        assert found.whole == pytest.approx(ConvexHull(points).area, rel=1e-9)
+        flying = Body("higher", body.vertices + [100.0, 0.0, 50.0], body.triangles)
+        both = leaning([body, flying], np.array([0.0, 0.0, 1.0]), 0.1)
+        assert both.beyond(np.radians(85.0))[1] == pytest.approx(300.0, rel=1e-9)  # its underside is a ceiling
+        assert (np.diff(both.lean) >= 0.0).all()
