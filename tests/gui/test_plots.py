@@ -5,6 +5,7 @@ import csv
 
 import FreeCAD as App
 import numpy as np
+import Part
 import pytest
 
 from freecad_am import api
@@ -72,6 +73,8 @@ def test_every_picture_is_seen(person, planned, panel):
             person.screenshot(f"plots_{name}")
         if name in ("heights", "spread", "fit"):
             assert dock.picture is None and "bead model" in dock.canvas.text and not person.field(panel, "save").isEnabled()
+        elif name in ("volumes", "section"):
+            assert dock.picture is None and "plane layers" in dock.canvas.text
         else:
             assert dock.picture.title == entry.title and colours(person, dock.canvas) > 200, name
             assert len(dock.canvas.drawn.places) == len(dock.picture.charts)
@@ -221,3 +224,24 @@ def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
     person.until(lambda: "nothing to plot" in canvas.text, "the text", 5)
     person.until(lambda: canvas.visibleRegion().boundingRect().contains(canvas.rect().center()), "the text in sight", 5)
     assert canvas.height() <= canvas.visibleRegion().boundingRect().height()
+
+
+def test_a_solid_in_plane_layers_is_seen_layer_by_layer(person):
+    document = App.newDocument("Filled")
+    part = document.addObject("Part::Feature", "Block")
+    part.Shape = Part.makeBox(60, 40, 22).cut(Part.makeCylinder(9, 22, App.Vector(40, 20, 0)))
+    document.recompute()
+    feature = api.make_solid_feature(document, part, layer_height=5, chord_error=0.1, bead_spacing=5)
+    docks.show(api.make_toolpath(document, feature))
+    panel = person.panel(docks.NAME)
+    dock = take(person, panel, "volumes")
+    volume = dock.picture.charts[0]
+    assert 1000.0 * volume.curves[0].y.sum() == pytest.approx(part.Shape.Volume, rel=2e-3)
+    assert colours(person, dock.canvas) > 200
+    person.screenshot("plots_volumes")
+    person.field(panel, "to").setValue(2)
+    take(person, panel, "section")
+    names = [curve.name for curve in dock.picture.charts[0].curves]
+    assert names.count("part") == 1 and "bead" in names
+    assert colours(person, dock.canvas) > 2000
+    person.screenshot("plots_section")
