@@ -1787,6 +1787,11 @@
         <translation>Masse déposée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/process.py"/>
+        <source>Deposited of the part: {0} %</source>
+        <translation>Déposé de la pièce : {0} %</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
         <source>Depositing</source>
         <translation>Dépôt en cours</translation>
@@ -1995,6 +2000,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Faces of the wall.</source>
         <translation>Faces de la paroi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>Faces that lean out over nothing by more than this angle are red in the 3D view</source>
+        <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/feature_panel.py"/>
@@ -3272,6 +3282,16 @@
         <translation>Hors d&apos;atteinte</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>Overhang &gt; {}°</source>
+        <translation>Surplomb &gt; {}°</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>Overhang &gt; {}°: {:.4g} cm² ({:.0f} %)</source>
+        <translation>Surplomb &gt; {}° : {:.4g} cm² ({:.0f} %)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Overlap</source>
         <translation>Recouvrement</translation>
@@ -3740,6 +3760,16 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Seam</source>
         <translation>Couture</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/process.py"/>
+        <source>Section of layer {0}</source>
+        <translation>Section de la couche {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Section of the last layer</source>
+        <translation>Section de la dernière couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/guess.py"/>
@@ -4842,6 +4872,11 @@
         <translation>Volume</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>Volume by layer</source>
+        <translation>Volume par couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Volume of the deposit, bead width times layer height (cm³).</source>
         <translation>Volume du dépôt, largeur de cordon fois hauteur de couche (cm³).</translation>
@@ -5722,6 +5757,11 @@
         <translation>arrière-haut-non retourné</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>bead</source>
+        <translation>cordon</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/choices.py"/>
         <source>bead width</source>
         <translation>largeur de cordon</translation>
@@ -6045,6 +6085,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>deposit</source>
         <translation>dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>deposited</source>
+        <translation>déposé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -7687,6 +7732,11 @@
         <translation>seule une boucle sur un mouvement est comprise</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>only solids in plane layers have sections and volumes of layers</source>
+        <translation>seuls les solides en couches planes ont des sections et des volumes de couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>open</source>
         <translation>ouvert</translation>
@@ -7732,7 +7782,7 @@
         <translation>parallèles à son appui</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>part</source>
         <translation>pièce</translation>
     </message>
@@ -7985,6 +8035,11 @@
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>shapes of all links, every {0} deg of the whole motion: they touch {1} with {2}; links against each other are not checked</source>
         <translation>formes de tous les corps, tous les {0} deg de tout le mouvement : ils touchent {1} avec {2} ; les corps entre eux ne sont pas vérifiés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>share</source>
+        <translation>part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -9265,6 +9320,11 @@
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>violet to orange</source>
         <translation>violet à orange</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/words.py"/>
+        <source>volume</source>
+        <translation>volume</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
