@@ -34,7 +34,7 @@ def plans(tmp_path_factory):
 def sliced(plans):
     """Beads of the layers up to the first wholly past 90 deg: (tube, layer height, spacing, chord error)."""
     def beads(tube, height, spacing, chord_error):
-        text = plans.exact("tube-on-pipe", chord_error)
+        text = plans.exact(plans.text("tube-on-pipe"), chord_error)
         text = text.replace("layer_height: 5 mm", f"layer_height: {height:g} mm").replace("constant-distance", spacing)
         text = text.replace("tube-on-pipe.step", "long-tube.step" if tube == TUBE else "long-wide-tube.step")
         layers = plans.plan("tube-on-pipe", text).layers

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from tests.batch import wall_checks
-from tests.batch.wall_examples import EXAMPLES, Plans
+from tests.batch.wall_examples import EXAMPLES, LONG, Plans
 from tests.swept_beads import Cone, Swept
 
 CHORD = 0.01  # mm, the chord error of the jobs
@@ -23,21 +23,28 @@ def plans(tmp_path_factory):
     return Plans(Path(__file__).resolve().parents[2], tmp_path_factory.mktemp("walls"))
 
 
-@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda example: example.job.split("/")[-1])
+def name_of(example):
+    return example.job.split("/")[-1] + " in thicker layers" * example.thicker
+
+
+ALL = [*EXAMPLES, *(pytest.param(one, marks=pytest.mark.long) for one in LONG)]
+
+
+@pytest.fixture(scope="module", params=ALL, ids=name_of)
 def example(request):
     return request.param
 
 
 @pytest.fixture(scope="module")
 def planned(example, plans):
-    """The job as it is shipped."""
-    return plans.plan(example.job)
+    """The job as it is shipped, or in thicker layers."""
+    return plans.plan(example.job, plans.text_of(example) if example.thicker else None)
 
 
 @pytest.fixture(scope="module")
 def exact(example, plans):
     """The same without a cell, its points dense."""
-    return plans.plan(example.job, plans.exact(example.job, FINE))
+    return plans.plan(example.job, plans.exact(plans.text_of(example), FINE))
 
 
 @pytest.fixture(scope="module")
@@ -145,20 +152,24 @@ def deepest_in_deposit(example, planned, points, step):
 
 
 @pytest.fixture(scope="module")
-def without_cell(example, plans):
-    """The job as it is shipped, its points those of the toolpath alone."""
-    return plans.plan(example.job, plans.text(example.job).split("\ncell:")[0] + "\n" if example.has_cell else None)
+def without_cell(example, plans, request):
+    """The job, its points those of the toolpath alone; None of the paper's, which leaves the directions alone."""
+    if example.job == "tube-on-pipe":
+        return None
+    if not example.has_cell:
+        return request.getfixturevalue("planned")
+    return plans.plan(example.job, plans.text(example.job).split("\ncell:")[0] + "\n")
 
 
 def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are(example, without_cell):
-    if example.job == "tube-on-pipe":  # as in the paper, which leaves the directions alone
+    if without_cell is None:
         return
     assert deepest_in_deposit(example, without_cell, 12, 1.5) <= CHORD
 
 
 @pytest.mark.long
 def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are_at_all_points(example, without_cell):
-    if example.job == "tube-on-pipe":
+    if without_cell is None:
         return
     assert deepest_in_deposit(example, without_cell, 400, 0.4) <= CHORD
 
@@ -181,8 +192,8 @@ def test_the_front_of_the_branched_tube_splits_in_two(plans):
 
 
 def test_a_mesh_serves_as_well_as_the_solid(plans):
-    solid = plans.plan("tube-on-pipe", plans.exact("tube-on-pipe", FINE))
-    mesh = plans.plan("walls/tube-on-scanned-pipe", plans.exact("walls/tube-on-scanned-pipe", FINE))
+    solid = plans.plan("tube-on-pipe", plans.exact(plans.text("tube-on-pipe"), FINE))
+    mesh = plans.plan("walls/tube-on-scanned-pipe", plans.exact(plans.text("walls/tube-on-scanned-pipe"), FINE))
     assert len(mesh.layers) == len(solid.layers) == 15
     for one, other in zip(mesh.layers, solid.layers):
         assert wall_checks.nearest(one[0].points, [other[0].points]).distance.max() <= 0.05

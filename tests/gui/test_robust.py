@@ -35,16 +35,19 @@ def statuses(doc):
     return [obj.Status for obj in api.stages_of(doc)]
 
 
-def use_everything(person, doc, renew=True):
-    """Open the panel of every stage and close it again, all context menus, the path dock and the simulation."""
-    for obj in api.stages_of(doc):
+def use_everything(person, doc, renewed=None):
+    """Open the panel of every stage and close it again, all context menus, the path dock and the simulation; renew some, or
+    the last stage, which renews all that it is made from."""
+    stages = api.stages_of(doc)
+    renewed = stages[-1:] if renewed is None else renewed
+    for obj in stages:
         person.double_click(obj)
         person.gui.Control.closeDialog()
         person.panel_closed()
         menu = person.widgets.QMenu()
         obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
         for action in menu.actions():
-            wanted = ["RoboticAM_MenuSimulate", *["RoboticAM_MenuRenew"] * renew]  # which is a step of undo
+            wanted = ["RoboticAM_MenuSimulate", *["RoboticAM_MenuRenew"] * (obj in renewed)]  # which is a step of undo
             if action.objectName() in wanted and action.isEnabled():
                 action.trigger()
                 person.idle(0.1)
@@ -72,7 +75,7 @@ def test_a_deleted_part_is_missing_everywhere_and_comes_back(person, job):
     job.recompute()
     assert statuses(job) == ["up to date", *["failed"] * 4]
     assert all("waits for" in obj.Message for obj in (job.Toolpath, job.JointPath, job.Program))
-    use_everything(person, job, renew=False)
+    use_everything(person, job, renewed=())
     person.gui.runCommand("Std_Undo")
     person.idle()
     job.recompute()
@@ -88,7 +91,7 @@ def test_a_deleted_stage_is_missing_and_comes_back(person, job, name):
     left = [obj for obj in api.stages_of(job) if obj.Status != "up to date"]
     assert left if name != "Cell" else [obj.Name for obj in left] == ["JointPath", "Program"]
     assert any("is missing" in obj.Message for obj in left)
-    use_everything(person, job, renew=False)
+    use_everything(person, job, renewed=())
     job.undo()
     job.recompute()
     person.idle()
@@ -359,7 +362,7 @@ def test_undo_and_redo_across_recomputes(person, job):
         job.recompute()
         assert [obj.Key for obj in api.stages_of(job)] == keys[k] and statuses(job) == ["up to date"] * 5
     assert len(api.result(job.Toolpath).layers) == job.Toolpath.Layers
-    use_everything(person, job)
+    use_everything(person, job, renewed=api.stages_of(job))
 
 
 def test_a_document_of_an_earlier_version(person, tmp_path):

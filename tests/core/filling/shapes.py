@@ -58,6 +58,11 @@ def tree(curves, step):
     return cKDTree(np.vstack([dense(points, closed, step) for points, closed in curves]))
 
 
+def distance(places, points, most):
+    """From the nearest of the places of a tree; infinite from `most` on, which spares the search of far ones."""
+    return places.query(points, distance_upper_bound=most)[0]
+
+
 def inside(loops, points):
     """Even-odd rule."""
     odd = np.zeros(len(points), dtype=bool)

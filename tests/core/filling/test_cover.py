@@ -60,10 +60,10 @@ def test_at_least_99_percent_is_covered_and_no_bead_is_outside(name, pattern, an
     curves = fill(region, BEADS, pattern, angle, DEFAULT.contour)
     grid, within = shapes.raster(loops, PITCH)
     border = shapes.tree([(loop, True) for loop in loops], STEP)
-    from_border = border.query(grid)[0]
-    away = shapes.tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
+    from_border = shapes.distance(border, grid, 0.5 * S)
+    away = shapes.distance(shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * S)
     # what beads inside can reach: within half a bead of a place that is half a bead inside
-    reach = cKDTree(grid[within & (from_border >= 0.5 * S)]).query(grid)[0] < 0.5 * S - PITCH
+    reach = shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * S)]), grid, 0.5 * S) < 0.5 * S - PITCH
     covered = away <= 0.5 * S + 1e-3
     assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert away[reach].max() < 0.5 * (S + GAP) + 0.02, "no gap is wider than stated"
@@ -142,9 +142,9 @@ def test_beads_wider_than_their_spacing_cover_as_much_and_stay_inside(name, patt
     region, = regions(loops)
     curves = fill(region, beads, pattern, angle, DEFAULT.contour)
     grid, within = shapes.raster(loops, PITCH)
-    from_border = shapes.tree([(loop, True) for loop in loops], STEP).query(grid)[0]
-    away = shapes.tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
-    reach = cKDTree(grid[within & (from_border >= 0.5 * width)]).query(grid)[0] < 0.5 * width - PITCH
+    from_border = shapes.distance(shapes.tree([(loop, True) for loop in loops], STEP), grid, 0.5 * width)
+    away = shapes.distance(shapes.tree([(curve.points, curve.closed) for curve in curves], STEP), grid, 2.0 * width)
+    reach = shapes.distance(cKDTree(grid[within & (from_border >= 0.5 * width)]), grid, 0.5 * width) < 0.5 * width - PITCH
     single = [curve for curve in curves if curve.kind == "centre" and curve.ring == 0]  # stand out, and are told
     covered = away <= 0.5 * width + 1e-3
     assert (covered & reach).sum() >= 0.99 * reach.sum()

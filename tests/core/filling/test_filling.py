@@ -16,16 +16,13 @@ from freecad_am.core.issues import InfeasibleError, InputError
 _spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
 shapes = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(shapes)
-SHAPES, dense, inside, raster, tree = shapes.SHAPES, shapes.dense, shapes.inside, shapes.raster, shapes.tree
+SHAPES, dense, inside, raster, tree, distance = (
+    shapes.SHAPES, shapes.dense, shapes.inside, shapes.raster, shapes.tree, shapes.distance,
+)
 
 S, GAP, PITCH = 5.0, 2.0, 0.4
 BEADS = Beads(S, GAP, 0.0)
 STEP = 0.05
-
-
-def distance(places, points, most):
-    """From the nearest of the places; infinite from `most` on, which spares the search of far ones."""
-    return places.query(points, distance_upper_bound=most)[0]
 
 
 def filled(name, pattern, beads=BEADS, **options):
@@ -179,25 +176,25 @@ def test_short_beads_that_close_gaps_go_on_until_they_are_long_enough(pattern):
     lengths = [np.hypot(*np.diff(line, axis=0).T).sum() for line in lines]
     assert min(lengths) >= least - 1e-9
     grid, within = raster(SHAPES["wavy 1"], PITCH)
-    border = tree([(loop, True) for loop in SHAPES["wavy 1"]], STEP).query(grid)[0]
-    away = tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
+    border = distance(tree([(loop, True) for loop in SHAPES["wavy 1"]], STEP), grid, 0.5 * S)
+    away = distance(tree([(curve.points, curve.closed) for curve in curves], STEP), grid, S)
     core = within & (border >= 0.5 * S)
-    reach = tree([(grid[core], False)], 1e9).query(grid)[0] < 0.5 * S - PITCH
+    reach = distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
     assert away[reach].max() < 0.5 * (S + GAP) + PITCH
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
-@pytest.mark.parametrize("scale", [1e-3, 1e4])
-def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern, scale):
+def test_scale_changes_nothing_and_neither_does_doing_it_again(pattern):
     loops = SHAPES["blade"]
     one = filled("blade", pattern)
     region, = regions([loop.copy() for loop in loops])
     assert all(np.array_equal(a.points, b.points) for a, b in zip(one, fill(region, BEADS, pattern)))
-    large, = regions([loop * scale for loop in loops])
-    scaled = fill(large, Beads(S * scale, GAP * scale, 0.0), pattern)
     mine = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in one)
-    theirs = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in scaled)
-    assert theirs / scale == pytest.approx(mine, rel=0.01)
+    for scale in (1e-3, 1e4):
+        large, = regions([loop * scale for loop in loops])
+        scaled = fill(large, Beads(S * scale, GAP * scale, 0.0), pattern)
+        theirs = sum(np.hypot(*np.diff(c.points, axis=0).T).sum() for c in scaled)
+        assert theirs / scale == pytest.approx(mine, rel=0.01)
 
 
 def test_unknown_patterns_are_refused():

@@ -12,12 +12,30 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.process.spacing import between_layers
+from freecad_am.core.slicing import fronts
 from freecad_am.core.strategies import wall_fronts
 from tests.core.patch_walls import ball, bend, grid, patch_wall, samples, sheet, tube
 
 PIPE = Round.cylinder(32.0, [0, 0, 0], [0, 1, 0])
 FLOOR = HalfSpace(np.zeros(3), np.array([0.0, 0.0, 1.0]))
 SILL = HalfSpace(np.zeros(3), np.array([0.0, 1.0, 0.0]))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def sliced_once():
+    """The fronts of a wall depend on nothing but its layer height, and take most of the time of a plan: they are found once
+    for all plans of it."""
+    found, layers = {}, fronts.layers
+
+    def kept(wall, height, smoothing=None, progress=lambda fraction, text: None):
+        key = id(wall), height, smoothing
+        if key not in found:
+            found[key] = wall, layers(wall, height, smoothing, progress)  # the wall too, so that its number stays its own
+        return found[key][1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fronts, "layers", kept)
+        yield
 
 
 def planned(wall, height, process=None, strategy=None, **build):
@@ -75,6 +93,7 @@ MADE = {}
 
 
 def made(name):
+    """Wall, layer height, and a toolpath whose chords are off by 0.0003 mm."""
     if name not in MADE:
         make, height = WALLS[name]
         wall = make()
