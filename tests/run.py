@@ -28,14 +28,18 @@ GUI = ROOT / "tests" / "gui"
 WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
 HEADLESS_TIMEOUT = 2400  # s for a part without a window
 LONG_TIMEOUT = 8 * 3600  # with long tests, and where tests are named
-# folders of parts of their own, longest first, and one more part has all the rest: parts of a few minutes, which fill the
-# cores to the end
+# folders and files of parts of their own, longest first, and one more part has all the rest: parts of a few minutes, which
+# fill the cores to the end
 FOLDERS = (
-    ("batch",), ("core/strategies",), ("robust", "posts"), ("brep", "objects"), ("core/planning", "core/kinematics"),
+    ("batch",), ("brep", "objects"),
+    ("batch/test_wall_examples.py", "batch/test_thruster.py", "batch/test_deflected_thruster.py"),
+    ("core/strategies",), ("robust", "posts"), ("core/planning", "core/kinematics"), ("core/filling", "core/slicing"),
 )
 WINDOWS = (
-    ("tutorials", "test_flow.py", "test_new_machine.py", "test_docks.py"),
-    ("test_robust.py", "test_robust_events.py", "test_selected_job.py", "test_clicks.py", "test_wall_clicks.py"),
+    ("test_robust.py", *(f"test_{name}.py" for name in (
+        "robust_events", "selected_job", "wall_clicks", "path", "panels", "cell_preview", "program_preview",
+    ))),
+    ("tutorials", *(f"test_{name}.py" for name in ("spin_map", "new_machine", "flow", "docks", "tree", "clicks"))),
 )
 WAITING = 0.6  # of a core: what a window uses while it is looked at, clicked and waited for
 BEHIND = 5  # the niceness of the headless tests, so that no click in a window comes late for them
@@ -145,13 +149,16 @@ def named(arguments: list[str]) -> list[str]:
 
 
 def cut(parts: Sequence[Sequence[str]], top: str) -> list[tuple[str, list[str]]]:
-    """Names of parts and the arguments of each: what is named, and last all the rest below the folder `top`."""
-    made, done = list[tuple[str, list[str]]](), list[str]()
-    for names in parts:
-        places = [f"{top}/{name}" for name in names]
-        done += [f"--ignore={place}" for place in places]
-        made.append((names[0].removesuffix(".py"), places))
-    return [*made, ("rest", [top, *done])]
+    """Names of parts and the arguments of each: what is named, but for what another part names, and last all the rest below
+    the folder `top`."""
+    named_of = [[f"{top}/{name}" for name in names] for names in parts]
+    every = [place for places in named_of for place in places]
+    made = []
+    for places in [*named_of, [top]]:
+        left = [place for place in every if place not in places and any(place.startswith(f"{one}/") for one in places)]
+        name = places[0].rpartition("/")[2].removeprefix("test_").removesuffix(".py") if places != [top] else "rest"
+        made.append((name, [*places, *(f"--ignore={place}" for place in left)]))
+    return made
 
 
 def headless_parts(arguments: list[str]) -> list[Part]:
