@@ -133,15 +133,18 @@ def make_developable_feature(
 
 def make_solid_feature(
     doc: Any, source: Any, substrate: Any = None, label: str = "Feature", *, further: Sequence[Any] = (),
-    fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
+    guide: Any = None, fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
     build_direction: BuildDirectionParameters | None = None, **values: Any,
 ) -> Any:
     """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
 
-    further: more objects to deposit; substrate: what they stand on, where that is no platform; fixtures: objects, solids or
-    meshes, that the nozzle must not touch either.
+    further: more objects to deposit; substrate: what they stand on, where that is no platform; guide: of layers="along", an
+    object or (object, ["Edge1"]); fixtures: objects, solids or meshes, that the nozzle must not touch either.
     """
-    links = {"Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures)}
+    links = {
+        "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
+        "Guide": guide if guide is None or isinstance(guide, tuple) else (guide, [""]),
+    }
     return make_feature_of(doc, "solid", source, label=label, links=links, parameters=[strategy, build_direction],
                            values=values)
 

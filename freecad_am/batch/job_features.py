@@ -15,7 +15,7 @@ from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import KINDS, NEEDED, NONE, family_of
 
 from . import fields, quantity, tree
-from .part_source import PartSource, absolute, fixtures_of, part_of
+from .part_source import PartSource, absolute, fixtures_of, guide_of, part_of
 
 # what a job calls the links of a feature, which the window picks in a document
 _KEYS = {
@@ -28,7 +28,7 @@ KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", 
 @dataclass(frozen=True)
 class JobFeature:
     """What is deposited, and how. `substrate` is there as the family of the strategy has it (`core.strategies.families`), or
-    where what was deposited before may be it."""
+    where what was deposited before may be it. `guide` of layers along one; None: their centre line."""
 
     name: str
     part: PartSource
@@ -37,6 +37,7 @@ class JobFeature:
     strategy: LayerParameters
     build_direction: BuildDirectionParameters
     process: ProcessParameters
+    guide: PartSource | None = None
 
 
 def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = False) -> JobFeature:
@@ -51,9 +52,12 @@ def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = Fa
     build_direction = fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction")
     _refuse_direction(strategy, build_direction)
     part = part_of({key: value for key, value in part_section.items() if key != "fuse"}, path)
+    guide = guide_of((values.get("strategy") or {}).get("guide"), part_section, path)
+    if guide is not None and getattr(strategy, "layers", "") != "along":
+        raise InputError("NOT_FOR_FAMILY", "strategy.guide", "only layers: along have a guide; leave it out, or use them")
     return JobFeature(
         name, part, _substrate(values.get("substrate"), strategy, part, path, earlier),
-        fixtures_of(values.get("fixtures"), path), strategy, build_direction, process,
+        fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide,
     )
 
 
@@ -120,7 +124,7 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
         kind = "developable"
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
-    known = ("kind", *(field.name for field in dataclasses.fields(family.parameters)))
+    known = ("kind", *(("guide",) if kind == "solid" else ()), *(field.name for field in dataclasses.fields(family.parameters)))
     mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
     if "substrate" not in own and family.substrate == NONE:
         mixed.pop("substrate", None)
@@ -217,7 +221,7 @@ def _strategy(section: Any) -> LayerParameters:
     if kind == "solid":
         section = _with_direction(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
-    return fields.build(factory, section, "strategy", also=("kind",))
+    return fields.build(factory, section, "strategy", also=("kind", "guide") if kind == "solid" else ("kind",))
 
 
 def _with_fuse(section: Any, part: dict[str, Any]) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from freecad_am import api
@@ -16,6 +17,7 @@ from freecad_am.core.strategies.families import NONE, family_of
 from .job import Job
 from .job_features import about_feature
 from .part import bring
+from .part_source import PartSource
 
 TOUCHING = 0.01  # mm
 
@@ -29,6 +31,7 @@ class Shapes:
         try:
             self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
             self.substrate = None if self.of.substrate is None else bring(document, self.of.substrate, "substrate")
+            self.guide = None if self.of.guide is None else self._guide(self.of.guide)
             self.faces = self.of.part.faces
             if len(job.features) > 1:
                 self._set_apart()
@@ -50,6 +53,7 @@ class Shapes:
         bases = () if self.of.substrate is None else self.of.substrate.faces
         links = {
             "Substrate": substrate, "Fixtures": self.fixtures, "StartEdges": self.of.part.start_edges, "BaseFaces": bases,
+            "Guide": self.guide,
         }
         try:
             return api.make_feature_of(
@@ -59,6 +63,12 @@ class Shapes:
             )
         except InputError as error:
             raise self.placed(error) from None
+
+    def _guide(self, source: PartSource) -> tuple[Any, list[str]]:
+        """The object that layers are guided by, of the part itself or brought into the document, and edges of it."""
+        own = replace(source, edges=()) == replace(self.of.part, scale=1.0, solids=())
+        owner = self.part if own else bring(self.document, source, "strategy.guide")
+        return owner, list(source.edges) or [""]
 
     def _set_apart(self) -> None:
         """Take of the file what is this feature's, so that others may be of the same; the feature gets its name alone."""

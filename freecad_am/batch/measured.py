@@ -8,7 +8,6 @@ import os
 from typing import Any
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.strategies.families import family_of
 
 from . import outputs, paths
 
@@ -90,13 +89,10 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
 
 def _feature(document: Any, read: Any, session: Any) -> Any:
     """The feature of a job; its toolpath need not be made."""
-    from .part import bring
-    from .run import make_feature
+    from .job_shapes import Shapes
 
     session.progress("feature ...")
-    part = bring(document, read.part, meshes=family_of(read.strategy).meshes)
-    substrate = None if read.substrate is None else bring(document, read.substrate, "substrate")
-    return make_feature(document, read, part, substrate)
+    return Shapes(document, read, 0).make_feature([])
 
 
 def _of_document(path: str, name: str) -> tuple[Any, Any]:

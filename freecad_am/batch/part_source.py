@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from freecad_am.core.geometry.file_unit import refuse_scale
@@ -24,7 +24,8 @@ MESHES = (".stl", ".obj", ".3mf")
 @dataclass(frozen=True)
 class PartSource:
     """Where a shape comes from. `settings` are (object, property, text) set in an FCStd part before it is used. scale: mm
-    of one unit of a mesh file that does not tell it. solids: those of the shape that are meant, all where none is named."""
+    of one unit of a mesh file that does not tell it. solids: those of the shape that are meant, all where none is named.
+    edges: those of a guide, likewise."""
 
     file: str
     object: str | None = None
@@ -33,6 +34,7 @@ class PartSource:
     start_edges: tuple[str, ...] = ()
     scale: float = 1.0
     solids: tuple[str, ...] = ()
+    edges: tuple[str, ...] = ()
 
 
 def fixtures_of(section: Any, path: str) -> tuple[PartSource, ...]:
@@ -80,6 +82,24 @@ def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource
         scale=_scale(section.get("scale"), file, f"{key}.scale"),
         solids=solids,
     )
+
+
+def guide_of(given: Any, part: dict[str, Any], path: str) -> PartSource | None:
+    """Where the guide of a strategy comes from: the file and object of the section `part`, unless it tells its own; None for
+    auto. InputError naming key and what to do."""
+    key = "strategy.guide"
+    if given is None or given == "auto":
+        return None
+    if not isinstance(given, dict):
+        raise InputError(
+            "BAD_VALUE", key, f"{quantity.shown(given)} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: "
+            "spine.step}, or auto",
+        )
+    fields.known_keys(given, ("file", "object", "edges", "set"), key)
+    own = {name: given[name] for name in ("file", "object", "set") if name in given}
+    if "file" not in own:
+        own = {**{name: part[name] for name in ("file", "object", "set") if name in part}, **own}
+    return replace(part_of(own, path, key), edges=_names(given.get("edges"), f"{key}.edges", _EDGE))
 
 
 def _scale(value: Any, file: str, key: str) -> float:

@@ -49,6 +49,10 @@ def build(
         "duration_s": sums.time,
         "totals": totals.as_dict(sums),
         "spacing_mm": spread(spacing),
+        "layer_heights": [] if toolpath.layer_heights is None else [
+            {"layer": int(layer), "least_mm": float(least), "largest_mm": float(largest)}
+            for layer, least, largest in toolpath.layer_heights
+        ],
         "unsupported_mm": toolpath.unsupported,
         "on_part": None if toolpath.on_part is None else dict(
             zip(("places", "worst_mm", "allowed_mm"), (int(toolpath.on_part[0]), *toolpath.on_part[1:]), strict=True)

@@ -44,21 +44,23 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
 def _curve(chain: list[Any], wall: PatchWall) -> FirstCurve:
     wire = Part.Wire(chain)
     closed = bool(wire.isClosed())
-    sampled = [_sampled(edge, wall.mesh.typical_edge) for edge in wire.OrderedEdges]
-    nodes = np.vstack([points[:-1] for points, _ in sampled])
-    after = np.vstack([along[:-1] for _, along in sampled])
-    arrivals = [along[-1:] for _, along in sampled]
-    starts = [arrivals[-1] if closed else sampled[0][1][:1], *arrivals[:-1]]
-    before = np.vstack([np.vstack([start, along[1:-1]]) for start, (_, along) in zip(starts, sampled)])
+    rows = [sampled(edge, wall.mesh.typical_edge) for edge in wire.OrderedEdges]
+    nodes = np.vstack([points[:-1] for points, _ in rows])
+    after = np.vstack([along[:-1] for _, along in rows])
+    arrivals = [along[-1:] for _, along in rows]
+    starts = [arrivals[-1] if closed else rows[0][1][:1], *arrivals[:-1]]
+    before = np.vstack([np.vstack([start, along[1:-1]]) for start, (_, along) in zip(starts, rows)])
     if not closed:
-        nodes = np.vstack([nodes, sampled[-1][0][-1:]])
+        nodes = np.vstack([nodes, rows[-1][0][-1:]])
         before, after = np.vstack([before, arrivals[-1]]), np.vstack([after, arrivals[-1]])
     smooth = np.einsum("ij,ij->i", before, after) > np.cos(SMOOTH)
     before[smooth] = after[smooth]
     return FirstCurve(wall.project(nodes)[0], before, after, closed)
 
 
-def _sampled(edge: Any, step: float) -> tuple[Array, Array]:
+def sampled(edge: Any, step: float) -> tuple[Array, Array]:
+    """Points and unit tangents (n, 3) of an edge the way it runs, so near together that the arcs between them keep within
+    WITHIN; about `step` mm at most."""
     low, high = edge.ParameterRange
     count = max(8, int(np.ceil(edge.Length / step))) + 1
     t = np.linspace(low, high, count)

@@ -25,6 +25,7 @@ WORDS = {  # of keys that are no words by themselves; `tr` gives them in the lan
     "iso-parameter": marked("lines of the surface"),
     "geodesic": marked("through the part, without support"),
     "offset": marked("parallel to where it stands"),
+    "along": marked("normal to a guide curve"),
     "around-axis": marked("around the axis"),
     "symmetry-plane": marked("plane of symmetry"),
     "bead_width": marked("bead width"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in the 3D view: the cylinders, cones or plane they grow on, and the contours of their first layers."""
+"""Solids in the 3D view: the cylinders, cones or plane they grow on, the guide of their layers,
+and the contours of the first of these."""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.geometry.guide import Guide
 from ..core.geometry.on_hub import Base, Group, SolidsOnHub
 from ..core.geometry.plane import Plane
 from ..core.layers.field import footprints
@@ -78,6 +80,11 @@ def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
 def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array]]:
     """Points and triangles of the base about contours, and lines along its ends and up it."""
     base = group.base
+    if isinstance(base.surface, Guide):
+        points, corners, lines = _plane(base, np.concatenate(contours or [body.vertices for body in group.bodies]))
+        length = max(float(base.surface.distance(base.inside(body.vertices)).max()) for body in group.bodies)
+        way = np.linspace(0.0, length, SIDES + 1)
+        return points, corners, [*lines, base.placed(base.surface.at(way)[0])]
     if isinstance(base.surface, Plane):
         return _plane(base, np.concatenate(contours or [body.vertices for body in group.bodies]))
     low, high = _reach(base, contours or [body.vertices for body in group.bodies])

@@ -22,12 +22,14 @@ class PickField(Input):
 
     def __init__(
         self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None], element: str = "",
-        meshes: bool = False,
+        meshes: bool = False, whole: bool = False,
     ) -> None:
-        """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same."""
+        """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same;
+        whole: so may an object as a whole in place of its edges."""
         self.link, self.label, self.element = link, label, element
         self.several = link.type_name == _LIST
         self.meshes = meshes or not element
+        self.whole = whole or element != EDGE
         self.picks = self._present(present)
         self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
         self.widget = QtGui.QWidget()
@@ -64,7 +66,7 @@ class PickField(Input):
     def take(self, pick: Pick) -> bool:
         """Take what was clicked, or leave it out where it was in already; False for what cannot be taken."""
         names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
-        if (self.element == EDGE and not names) or (is_mesh(pick.obj) and not self.meshes):
+        if (not self.whole and not names) or (is_mesh(pick.obj) and not self.meshes):
             return False
         mine = self.picks[0] if self.picks else None
         if self.several:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of solids in plane layers: solids are picked, and the plane they stand on is seen while it is open."""
+"""The panel of solids: solids and a guide of their layers are picked; the plane they stand on is seen while it is open."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
+from ..core.issues import AmError
+from ..core.layers import along, guide_edges
 from ..core.layers.leaning import Leaning, leaning
 from ..core.layers.stacking import STANDING, stacked
 from ..core.parameters.strategy import SolidParameters
@@ -35,6 +37,11 @@ SOLIDS = Link(
     type_name="App::PropertyLinkList",
 )
 SUBSTRATE = Link("Substrate", "", marked("The part that they stand on; none is needed on a platform."), required=False)
+GUIDE = Link(
+    "Guide", "", marked("The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
+                        "solid."),
+    required=False, type_name="App::PropertyLinkSub",
+)
 
 
 class SolidNodes(HubNodes):
@@ -64,7 +71,9 @@ class SolidPanel(PickPanel):
         self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
         self.substrate = PickField(SUBSTRATE, tr("Stands on"), None if obj is None else obj.Substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
-        picks = [self.solids, self.substrate, self.fixtures]
+        guide = None if obj is None else getattr(obj, "Guide", None)
+        self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
+        picks = [self.solids, self.substrate, self.guide, self.fixtures]
         super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes())
         self._add_overhang()
 
@@ -113,18 +122,25 @@ class SolidPanel(PickPanel):
         solids = [pick.obj for pick in self.solids.picks]
         return {
             "Source": (solids[0], []), "Further": solids[1:], "Substrate": self.substrate.value(),
-            "Fixtures": self.fixtures.value(),
+            "Guide": self.guide.value(), "Fixtures": self.fixtures.value(),
         }
 
     def _inputs(self) -> dict[str, str]:
         solids = [recorded.reference(pick.obj) for pick in self.solids.picks]
         found = {
             "source": solids[0] if solids else "None", "further": f"[{', '.join(solids[1:])}]",
-            **self.substrate.arguments(), **self.fixtures.arguments(),
+            **self.substrate.arguments(), "guide": self._guide(), **self.fixtures.arguments(),
         }
         return found if self.obj is not None else {
             key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
         }
+
+    def _guide(self) -> str:
+        """The guide as a macro gives it."""
+        if not self.guide.picks:
+            return "None"
+        pick = self.guide.picks[0]
+        return f"({recorded.reference(pick.obj)}, {list(pick.names) or ['']!r})"
 
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
@@ -136,15 +152,19 @@ class SolidPanel(PickPanel):
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
         """Solids are read anew only where they are others."""
         draft.check()
-        key, kept, work = self._inputs(), self.kept, draft.prepare()
+        kept, work = self.kept, draft.prepare()
         strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
+        guided = strategy.layers == "along"
+        key = (self._inputs(), strategy.direction if guided else None, guided)
 
         def both() -> tuple[Outcome, tuple[Drawing, Leaning, int]]:
             made = kept[1] if kept is not None and kept[0] == key else work()
             self.kept = (key, made)
             bodies = made.value.groups[0].bodies
-            solids = stacked(bodies, strategy, made.value.label)
+            solids = made.value if guided else stacked(bodies, strategy, made.value.label)
             size.refuse_absurd(size.of_solids(solids, strategy), strategy)
+            if guided:  # at once what is higher or lower than allowed
+                list(along.slices(solids.groups[0].base, bodies, strategy))
             slit = strategy.chord_error if strategy.fuse == "auto" else None
             lean = leaning(bodies, solids.groups[0].base.frame[:3, 2], STANDING * strategy.layer_height, slit)
             asked = round(math.degrees(strategy.max_overhang))
@@ -155,8 +175,13 @@ class SolidPanel(PickPanel):
     def _link_places(self) -> dict[str, str]:
         return {
             "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.substrate.label,
-            "Fixtures": self.fixtures.label,
+            "Guide": self.guide.label, "Fixtures": self.fixtures.label,
         }
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        if error.where == guide_edges.WHERE:
+            return self.guide.label, sentence(error.message)
+        return super()._placed(error)
 
     def _draw(self, made: Outcome, drawn: tuple[Drawing, Leaning, int]) -> str:
         drawing, self.leaning, asked = drawn

@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Any solids in a document, deposited in plane layers: what to deposit, what it stands on, how it is cut and filled."""
+"""Any solids in a document, in layers of any kind: what to deposit, what it stands on, how it is cut and filled."""
 
 from __future__ import annotations
 
 import dataclasses
 from typing import Any
 
+from ..brep.guide import edges_of
 from ..brep.hub import bodies_of
 from ..core.geometry.surroundings import Body
-from ..core.issues import Issue
+from ..core.issues import InputError, Issue
+from ..core.layers.guided import guided
 from ..core.layers.stacking import stacked
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SolidParameters
 from ..core.strategies import size
 from .feature import source_of
-from .fingerprints import fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, taken
+from .fingerprints import fingerprint, shape_fingerprint
+from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .stage import Link, Outcome, Section, Stage, Work
 
 
@@ -34,6 +36,10 @@ class SolidFeature(Stage):
             type_name="App::PropertyLinkList",
         ),
         Link("Substrate", "", "The part that they stand on; none is needed on a platform.", required=False),
+        Link(
+            "Guide", "", "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
+            "solid.", required=False, type_name="App::PropertyLinkSub",
+        ),
         FIXTURES,
     )
     figures = (
@@ -48,6 +54,7 @@ class SolidFeature(Stage):
         objects = tuple(taken(one) for one in (source_of(obj)[0], *obj.Further))
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
+        guide = _guide(obj, strategy)
 
         def work() -> Outcome:
             solid: list[Body] = []
@@ -57,7 +64,11 @@ class SolidFeature(Stage):
                                   strategy.mend, True)
                 solid += found.bodies
                 issues += found.issues
-            solids = stacked(solid, strategy, label, issues)
+            if strategy.layers == "along":
+                edges = None if guide is None else edges_of(*guide)
+                solids = guided(solid, edges, strategy, label, issues)
+            else:
+                solids = stacked(solid, strategy, label, issues)
             large = size.judged(size.of_solids(solids, strategy), strategy)
             solids = dataclasses.replace(solids, surroundings=bodies((*ground, *fixtures)))
             base = solids.groups[0].base
@@ -68,7 +79,22 @@ class SolidFeature(Stage):
 
     def further_inputs(self, obj: Any) -> list[str]:
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
+        guide = [shape_fingerprint(obj.Guide[0]), " ".join(obj.Guide[1])] if getattr(obj, "Guide", None) else []
         return [
             fingerprint(source_of(obj)[0]), *(fingerprint(other) for other in obj.Further), "|", *ground, "|",
-            *(fingerprint(fixture) for fixture in obj.Fixtures),
+            *(fingerprint(fixture) for fixture in obj.Fixtures), *guide,
         ]
+
+
+def _guide(obj: Any, strategy: SolidParameters) -> tuple[Any, tuple[str, ...], str] | None:
+    """The shape of the guide, the names of its edges, none for all, and what it is called; None where none is chosen.
+    InputError NOT_FOR_FAMILY, NO_SHAPE."""
+    if not getattr(obj, "Guide", None):
+        return None
+    if strategy.layers != "along":
+        raise InputError(
+            "NOT_FOR_FAMILY", f"{obj.Label}.Guide", f"layers: {strategy.layers} have no guide; use layers: along, or leave "
+            "the guide out",
+        )
+    owner, names = obj.Guide
+    return global_shape(owner), tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name), owner.Label

@@ -36,6 +36,40 @@ def test_the_panel_previews_and_makes_a_feature(person):
     assert (feature.Status, feature.Height.Value, feature.Source[0]) == ("up to date", pytest.approx(60.0), part)
 
 
+def elbow(doc):
+    up, over = App.Vector(0, 0, 1), App.Vector(30 * 0.5**0.5, 0, 30 - 30 * 0.5**0.5)
+    bend = Part.Arc(App.Vector(), App.Vector(30, 0, 0) - App.Vector(over.x, 0, -over.x), App.Vector(30, 0, 30)).toShape()
+    spine = doc.addObject("Part::Feature", "Spine")
+    spine.Shape = bend
+    part = doc.addObject("Part::Feature", "Elbow")
+    part.Shape = Part.Wire(bend).makePipeShell([Part.Wire(Part.makeCircle(8, App.Vector(), up))], True, False)
+    doc.recompute()
+    return part, spine
+
+
+def test_layers_along_a_guide_that_is_picked_or_found(person):
+    doc = App.newDocument("Guided")
+    part, spine = elbow(doc)
+    person.select(part)
+    person.click("RoboticAM_Solid")
+    panel = person.panel("RoboticAM_SolidFeature")
+    told = person.field(panel, "preview")
+    person.until(lambda: "1 solids" in told.text(), "the preview", 30)
+    person.type(panel, "Band", "40")
+    person.choose(panel, "Layers", "along")
+    person.until(lambda: "centre line, 47." in told.text(), "the centre line", 30)
+    person.field(panel, "PickGuide").click()
+    person.select(spine)
+    guide = person.field(panel, "Guide")
+    person.until(lambda: "Spine" in guide.text() and "centre line" not in told.text(), "the guide", 30)
+    person.screenshot("solid_panel_guide")
+    person.press("Ok")
+    person.panel_closed()
+    (feature,) = api.stages_of(doc, "feature")
+    assert (feature.Status, feature.Guide[0], feature.Layers) == ("up to date", spine, "along")
+    assert feature.Height.Value == pytest.approx(15.0 * 3.14159265, abs=0.01)
+
+
 def test_new_job_fills_what_is_no_wall(person, coarse):
     doc = App.newDocument("Job")
     part = bracket(doc)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..issues import Issue
 from .columns import columns
 from .developable import TURN, Developable
+from .guide import Guide
 from .plane import Plane
 from .surroundings import Body
 
@@ -20,11 +21,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Base:
-    """A cylinder or cone in the part: name: what messages call it; frame: (4, 4) pose of its own frame in part coordinates,
-    Z its axis, towards the apex of a cone."""
+    """A cylinder, a cone, or the first plane of a stack or along a guide, in the part: name: what messages call it; frame:
+    (4, 4) pose of its own frame in part coordinates, Z its axis, towards the apex of a cone."""
 
     name: str
-    surface: Developable | Plane
+    surface: Developable | Plane | Guide
     frame: Array
 
     def inside(self, points: Array) -> Array:

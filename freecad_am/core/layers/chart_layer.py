@@ -48,6 +48,9 @@ class ChartLayer:
         x = self.chart.heading(place)
         return Wrapped(points, normals, -np.unwrap(np.arctan2((x * second).sum(axis=1), (x * first).sum(axis=1))))
 
+    def heights(self, flat: Array) -> None:
+        """The layer height everywhere."""
+
     def followed(self, flat: Array, sheet: float) -> ChartLayer:
         """The same: it does not lie on itself."""
         return self

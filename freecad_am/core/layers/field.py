@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ..geometry.developable import Developable
+from ..geometry.guide import Guide
 from ..geometry.on_hub import Group, middle_azimuth
 from ..geometry.surroundings import Body
 from ..parameters.strategy import DevelopableParameters, FilledParameters, SolidParameters
 from ..slicing.equidistant import Facets
 from ..slicing.laid_flat import cut
-from . import curved, planes, rotary
+from . import along, curved, planes, rotary
 from .plane_layer import PlaneLayer
 from .surface import Array, Slice
 
@@ -36,11 +37,12 @@ def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> 
             for body in group.bodies
         ]
     assert isinstance(strategy, SolidParameters)
-    if strategy.layers != "planes":
+    if strategy.layers in ("geodesic", "offset"):
         return [Piece(group.bodies[0].name, 0.0, curved.slices(group.base, group.bodies, ground, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
+    cut = along.slices if isinstance(surface, Guide) else planes.slices
     return [
-        Piece(lot[0].name if len(lot) == 1 else f"{len(lot)} solids", 0.0, planes.slices(group.base, lot, strategy))
+        Piece(lot[0].name if len(lot) == 1 else f"{len(lot)} solids", 0.0, cut(group.base, lot, strategy))
         for lot in lots
     ]
 
@@ -52,7 +54,8 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
     if isinstance(surface, Developable):
         made = [Facets(surface, base.inside(body.vertices), body.triangles, body.name) for body in group.bodies]
         return [[base.placed(loop.points) for loop in cut(facets, 0.0, chord_error)] for facets in made]
-    found = [planes.footprint(base, body, chord_error) for body in group.bodies]
+    foot = along.footprint if isinstance(surface, Guide) else planes.footprint
+    found = [foot(base, body, chord_error) for body in group.bodies]
     return [[base.placed(PlaneLayer(0.0).wrap(loop).points) for loop in loops] for loops in found]
 
 

@@ -37,6 +37,9 @@ class PlaneLayer:
         points = np.column_stack([flat, np.full(count, self.height)])
         return Wrapped(points, np.tile([0.0, 0.0, 1.0], (count, 1)), np.zeros(count))
 
+    def heights(self, flat: Array) -> None:
+        """The layer height everywhere."""
+
     def followed(self, flat: Array, sheet: float) -> PlaneLayer:
         """The same plane."""
         return self

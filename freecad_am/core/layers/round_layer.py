@@ -47,6 +47,9 @@ class RoundLayer:
         points = np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
         return Wrapped(points, self.surface.normals(points), theta * math.sin(self.surface.taper))
 
+    def heights(self, flat: Array) -> None:
+        """The layer height everywhere."""
+
     def followed(self, flat: Array, sheet: float) -> RoundLayer:
         """On a wide cone a curve may have come farther round than the plane alone tells, behind the apex."""
         if self.surface.is_cylinder:

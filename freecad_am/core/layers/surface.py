@@ -46,6 +46,9 @@ class LayerSurface(Protocol):
     def wrap(self, flat: Array) -> Wrapped:
         """A curve (n, 2) on the plane brought back."""
 
+    def heights(self, flat: Array) -> Array | None:
+        """How high (n,) mm the layer is at places (n, 2); None where it has the layer height everywhere."""
+
     def followed(self, flat: Array, sheet: float) -> LayerSurface:
         """The surface for a curve (n, 2) that lies about u = `sheet` mm (`strip.Period`)."""
 
@@ -62,10 +65,12 @@ class LayerSurface(Protocol):
 
 class Slice(NamedTuple):
     """One layer of a part: its number, its surface, its regions laid flat, and findings. covered: what of the plane is near
-    to neither a top nor a bottom (`covered.under_and_over`); None where nobody asks."""
+    to neither a top nor a bottom (`covered.under_and_over`); None where nobody asks. heights: its least, mean and largest
+    height, mm; None where it has the layer height everywhere."""
 
     layer: int
     surface: LayerSurface
     regions: tuple[Region | Strip, ...]
     issues: tuple[Issue, ...]
     covered: tuple[Region, ...] | None = None
+    heights: tuple[float, float, float] | None = None

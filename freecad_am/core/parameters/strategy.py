@@ -257,8 +257,9 @@ class SolidParameters(FilledParameters):
 
     layers: str = f.parameter(
         "planes", f.CHOICE, "What the layers are: parallel planes; at equal distances by the way through the part from "
-        "where it stands, so that nothing needs support (geodesic); or at equal distances straight from there (offset).",
-        choices=("planes", "geodesic", "offset"),
+        "where it stands, so that nothing needs support (geodesic); at equal distances straight from there (offset); or "
+        "planes normal to a guide curve (along).",
+        choices=("planes", "geodesic", "offset", "along"),
     )
     direction: str = f.parameter(
         "0 0 1", f.TEXT, "Stacking direction x y z in the part's coordinates, from the first layer to the last; auto: the "
@@ -271,6 +272,10 @@ class SolidParameters(FilledParameters):
     max_overhang: float = f.parameter(
         math.radians(45.0), f.ANGLE, "Largest angle between the stacking direction and a wall that leans out, before there "
         "is a warning; 90 deg: none.", low=0.0, high=math.pi / 2.0,
+    )
+    band: float = f.parameter(
+        0.2, f.RATIO, "Share of the layer height by which layers along a guide may be higher or lower beside it.", low=0.0,
+        high=0.9,
     )
     fuse: str = f.parameter(
         "auto", f.CHOICE, "Solids that touch or overlap are deposited as one (auto), or each by itself (none).",

@@ -69,11 +69,18 @@ def rolled(
     share = None if curve.share is None else _share(curve, ended, flat)
     if model is not None:
         return _at_speed(bead, flat, closed, process, model, 1.0 if share is None else share)._replace(turned=turned)
-    if share is None:
+    heights = surface.heights(flat)
+    if share is None and heights is None:
         return Rolled(bead, turned=turned)
-    speed = followed(flat, process.travel_speed / share, closed, process.acceleration)
-    width = bead_width(strategy, process, model) * process.travel_speed / speed
-    return Rolled(replace(bead, speed=_of_segments(speed), width=width), turned=turned)
+    high = np.ones(len(flat)) if heights is None else heights / strategy.layer_height
+    section = high if share is None else high * share
+    speed = followed(flat, process.travel_speed / section, closed, process.acceleration)
+    section = process.travel_speed / speed  # at one wire feed
+    bead = replace(bead, speed=_of_segments(speed))
+    if share is None:
+        return Rolled(replace(bead, height=strategy.layer_height * section), turned=turned)
+    width = bead_width(strategy, process, model) * section / high
+    return Rolled(replace(bead, width=width, height=heights), turned=turned)
 
 
 def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:

@@ -56,6 +56,7 @@ def plan(
     made: list[Rolled] = []
     mended: list[Issue] = []
     covers: list[Cover] = []
+    uneven: dict[int, tuple[float, float]] = {}
     found = [(group, one.base, number, piece) for group, one in enumerate(solids.groups)
              for number, piece in enumerate(pieces(one, solids.surroundings, strategy))]
     planes, at = on_planes(solids), None
@@ -66,7 +67,10 @@ def plan(
             progress(done / len(found), f"{piece.name} layer {layer.layer}")
             beads = _filled(layer, piece, base, pictures)
             mended += beads.issues
-            covers.append(beads.cover)
+            share = 1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
+            covers.append(Cover(*(share * area for area in beads.cover)))
+            if layer.heights is not None:
+                uneven[layer.layer] = _both(uneven.get(layer.layer), layer.heights)
             here = [_bead(curve, layer, base, strategy, build, process, model) for curve in beads.curves]
             made += here
             ranks = [curve.ring for curve in beads.curves]
@@ -89,7 +93,14 @@ def plan(
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
         volumes=_volumes(solids, strategy, covers) if planes else None,
+        layer_heights=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
+
+
+def _both(known: tuple[float, float] | None, heights: tuple[float, float, float]) -> tuple[float, float]:
+    """The least and the largest height of a layer in several pieces."""
+    low, _, high = heights
+    return (low, high) if known is None else (min(low, known[0]), max(high, known[1]))
 
 
 def _volumes(solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A guide curve from edges of a shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..core.geometry.patch import Array
+from ..core.issues import InputError
+from .start_edges import sampled
+
+LEAST = 1e-3  # mm; shorter edges are none
+
+
+def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, Array]]:
+    """Points and unit tangents (n, 3) of named edges of a shape, of all of them without names. InputError UNKNOWN_EDGE,
+    GUIDE_OPEN."""
+    known = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
+    wrong = [name for name in names if name not in known]
+    if wrong:
+        raise InputError(
+            "UNKNOWN_EDGE", label, f"it has no {', '.join(wrong)}; its edges are Edge1 to Edge{len(known)}"
+        )
+    if not names and shape.Faces:
+        raise InputError(
+            "GUIDE_OPEN", label, f"it has {len(known)} edges, of which a guide takes some; name them, as in edges: [Edge1]"
+        )
+    edges = [known[name] for name in dict.fromkeys(names)] or list(shape.Edges)
+    return [_nodes(edge) for edge in edges if edge.Length > LEAST]
+
+
+def _nodes(edge: Any) -> tuple[Array, Array]:
+    points, tangents = sampled(edge, max(edge.Length / 16.0, 0.1))
+    apart = np.r_[True, np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9]
+    return points[apart], tangents[apart]

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs in layers along a guide: read from waypoints.csv, measured with OpenCASCADE and by the geometry of arcs alone."""
+
+import csv
+import json
+
+import FreeCAD
+import numpy as np
+import Part
+import pytest
+
+V = FreeCAD.Vector
+HEIGHT, RADIUS = 2.5, 40.0
+JOB = """\
+part: {{file: part.step}}
+strategy:
+  {{kind: solid, layers: along, guide: {guide}, layer_height: 2.5 mm, band: {band}, chord_error: 0.1 mm,
+    bead_spacing: 3 mm{more}}}
+process: {{bead_width: 3 mm}}
+build_direction: {{clearance: none{mode}}}
+"""
+
+
+def arc(start, way, normal, angle, radius=RADIUS):
+    """An arc from a place on, turning about a normal by an angle, deg; and where and which way it ends."""
+    side = normal.cross(way)
+    middle, end = (start + way * (radius * np.sin(t)) + side * (radius * (1 - np.cos(t)))
+                   for t in np.radians([0.5 * angle, angle]))
+    return Part.Arc(start, middle, end).toShape(), end, way * np.cos(np.radians(angle)) + side * np.sin(np.radians(angle))
+
+
+def spine(angle=90, straight=15.0):
+    """Up, round by an angle, and straight on."""
+    begin, up = V(0, 0, straight), V(0, 0, 1)
+    bend, end, way = arc(begin, up, V(0, 1, 0), angle)
+    return Part.Wire([Part.makeLine(V(), begin), bend, Part.makeLine(end, end + way * straight)])
+
+
+def swept(profile, wire):
+    return wire.makePipeShell([profile], True, False)
+
+
+def elbow(wire=None, radius=9.0):
+    return swept(Part.Wire(Part.makeCircle(radius)), wire or spine())
+
+
+def beam(wire=None):
+    """An I whose flanges are the inside and the outside of the bend."""
+    half = [(9, 9), (9, 3), (3, 3)]
+    corner = [(x, y) for x, y in half] + [(x, -y) for x, y in half[::-1]]
+    outline = corner + [(-x, -y) for x, y in corner]
+    points = [V(x, y, 0) for x, y in outline]
+    return swept(Part.makePolygon([*points, points[0]]), wire or spine())
+
+
+@pytest.fixture
+def planned(workshop):
+    def run(shape, guide="auto", wire=None, band="30 %", more="", mode="", again=""):
+        shape.exportStep(str(workshop.folder / "part.step"))
+        if wire is not None:
+            wire.exportBrep(str(workshop.folder / "spine.brep"))
+        job = workshop.write_job(JOB.format(guide=guide, band=band, more=more, mode=mode))
+        out = workshop.folder / f"out{again}"
+        done = workshop.run("plan", job.name, "-o", out.name, "--no-page")
+        if done.status == 2 or not out.exists():
+            return done, None, None
+        with open(next(out.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+        return done, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
+
+    return run
+
+
+def column(rows, *names):
+    return np.array([[float(row[name]) for name in names] for row in rows])
+
+
+def bend_of(points, straight=15.0):
+    """By what angle (n,) rad about the axis of the spine's bend points (n, 3) are, and how far (n,) mm from that axis."""
+    off = points - (RADIUS, 0.0, straight)
+    return np.arctan2(off[:, 2], -off[:, 0]), np.hypot(off[:, 0], off[:, 2])
+
+
+@pytest.mark.parametrize(("make", "guide", "spare"), [(elbow, "{file: spine.brep}", 1e-4), (beam, "auto", 0.15)])
+def test_a_bent_part_is_filled_by_planes_normal_to_its_spine(planned, make, guide, spare):
+    part = make()
+    done, report, rows = planned(part, guide, spine(), band="35 %")
+    assert done.status == 0, done.err
+    points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
+    layer = np.array([int(row["layer"]) for row in rows])
+    solid = part.Solids[0]
+    off = [part.distToShape(Part.Vertex(*point))[0] for point in points.tolist()
+           if not solid.isInside(V(*point), 1e-3, True)]
+    assert max(off, default=0.0) < 0.05  # half of the chord error
+    assert {"OFF_PART", "UNSUPPORTED", "OPEN_GAP"}.isdisjoint(issue["code"] for issue in report["issues"])
+    # planes: all of a layer lies in one, the next one stands a layer height on along the spine
+    for number in range(layer.max() + 1):
+        here = layer == number
+        assert np.ptp(build[here], axis=0).max() < 1e-6
+        assert np.ptp(points[here] @ build[here][0]) < 1e-5
+    angle, away = bend_of(points)
+    bent = (angle > 0.1) & (angle < 0.5 * np.pi - 0.1)
+    # in the bend the plane goes through the axis of it: all its points have one angle
+    for number in np.unique(layer[bent]):
+        assert np.ptp(angle[bent & (layer == number)]) * RADIUS < 20.0 * spare + 1e-3
+    # heights are in proportion to the distance from the axis; the report tells those of the outline
+    inside, outside = RADIUS - 9.0, RADIUS + 9.0
+    told = {row["layer"]: row for row in report["layer_heights"]}
+    middle = told[int(np.median(layer[bent]))]
+    assert middle["least_mm"] == pytest.approx(HEIGHT * inside / RADIUS, abs=0.01 + spare)
+    assert middle["largest_mm"] == pytest.approx(HEIGHT * outside / RADIUS, abs=0.01 + spare)
+    assert told[1]["least_mm"] == pytest.approx(HEIGHT, abs=spare) == told[1]["largest_mm"]
+    # the torch is slower where the layer is higher
+    speed = column(rows, "speed_mm_s")[:, 0]
+    start = np.array([row["point"] == "0" for row in rows])
+    if guide != "auto":
+        mean = 0.5 * (away[1:] + away[:-1])
+        some = bent[1:] & ~start[1:]
+        assert np.abs(speed[1:][some] * mean[some] / (6.0 * RADIUS) - 1.0).max() < 0.02
+    assert report["deposit"]["deposited_cm3"] == pytest.approx(part.Volume / 1000.0, rel=0.03)
+    if make is elbow:
+        assert report["totals"]["volume_cm3"] == pytest.approx(part.Volume / 1000.0, rel=0.03)
+
+
+def test_a_plane_that_meets_the_part_twice_cuts_what_belongs_to_it_alone(planned):
+    """An arch: planes of one leg go through the other one too."""
+    wire = spine(180)
+    part = elbow(wire, 6.0)
+    done, _, rows = planned(part, "{file: spine.brep}", wire)
+    assert done.status == 0, done.err
+    points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
+    for number in range(layer.max() + 1):
+        assert np.ptp(points[layer == number], axis=0).max() < 12.0
+    assert layer.max() + 1 == int((30.0 + np.pi * RADIUS) / HEIGHT)
+    middle = np.array([0.5 * (points[layer == number].min(axis=0) + points[layer == number].max(axis=0))
+                       for number in range(layer.max() + 1)])
+    assert (np.diff(middle[:, 0]) > -0.05).all() and middle[-1, 0] > 2.0 * RADIUS - 1.0
+
+
+def test_an_edge_of_the_part_guides_too_and_the_same_job_gives_the_same_bytes(planned, workshop):
+    beam().exportStep(str(workshop.folder / "part.step"))
+    part = Part.read(str(workshop.folder / "part.step"))  # its edges have other numbers in the file
+    number = next(k for k, edge in enumerate(part.Edges) if edge.Curve.TypeId == "Part::GeomCircle"
+                  and abs(edge.Curve.Radius - RADIUS - 3.0) < 1e-6)
+    for again in ("", "2"):
+        done, report, _ = planned(part, f"{{edges: [Edge{number + 1}]}}", band="40 %", again=again)
+        assert done.status == 0, done.err
+    first, second = (next((workshop.folder / name).rglob("waypoints.csv")).read_bytes() for name in ("out", "out2"))
+    assert first == second
+    largest = max(row["largest_mm"] for row in report["layer_heights"])
+    assert largest == pytest.approx(HEIGHT * (RADIUS + 9.0) / (RADIUS + 3.0), abs=0.02)  # a layer height on the edge
+
+
+BESIDE = Part.makeLine(V(30, 0, 0), V(30, 0, 60))
+BACK = Part.Wire([Part.makeLine(V(0, 0, 0), V(0, 0, 40)), Part.makeLine(V(0, 0, 40), V(0.5, 0, 0))])
+CORNER = Part.Wire([Part.makeLine(V(), V(0, 0, 30)), Part.makeLine(V(0, 0, 30), V(10, 0, 60))])
+APART = Part.Compound([Part.makeLine(V(), V(0, 0, 20)), Part.makeLine(V(0, 0, 30), V(0, 0, 60))])
+RING = Part.Wire(Part.makeCircle(20, V(), V(0, 1, 0)))
+TIGHT = Part.Wire([Part.makeLine(V(), V(0, 0, 30)), arc(V(0, 0, 30), V(0, 0, 1), V(0, 1, 0), 90, 6.0)[0]])
+
+
+@pytest.mark.parametrize(("wire", "code", "words"), [
+    (BESIDE, "GUIDE_OUTSIDE", "(30, 0, "), (BACK, "GUIDE_DOUBLES_BACK", "(0, 0, 40)"), (CORNER, "GUIDE_CORNER", "18.4 deg"),
+    (APART, "GUIDE_OPEN", "10 mm off"), (RING, "GUIDE_CLOSED", "leave an edge"), (TIGHT, "GUIDE_TIGHT", "larger radius"),
+])
+def test_guides_that_cannot_lead_are_told(planned, wire, code, words):
+    done, _, _ = planned(Part.makeBox(20, 20, 60, V(-10, -10, 0)), "{file: spine.brep}", wire)
+    assert done.status == 2
+    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, done.err
+
+
+@pytest.mark.parametrize(("shape", "guide", "more", "mode", "code", "words"), [
+    (Part.makeSphere(20), "auto", "", "", "GUIDE_NOT_FOUND", "edge, a wire or a sketch"),
+    (Part.Compound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, V(20, 0, 0))]), "auto", "", "", "GUIDE_NOT_FOUND",
+     "several solids"),
+    (Part.makeBox(20, 20, 60), "{edges: [Edge99]}", "", "", "UNKNOWN_EDGE", "Edge1 to Edge12"),
+    (Part.makeBox(20, 20, 60), "{object: Spine}", "", "", "BAD_VALUE", "FCStd"),
+    (Part.makeBox(20, 20, 60), "upwards", "", "", "BAD_VALUE", "{edges: [Edge1]}"),
+    (Part.makeBox(20, 20, 1), "{edges: [Edge1]}", "", "", "TOO_LOW", "give at most"),
+    (Part.makeBox(20, 20, 60), "auto", "", ", mode: fixed", "NOT_FOR_FAMILY", "use local"),
+])
+def test_what_cannot_be_cut_is_told(planned, shape, guide, more, mode, code, words):
+    done, _, _ = planned(shape, guide, more=more, mode=mode)
+    assert done.status == 2
+    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, done.err
+
+
+def test_layers_beyond_the_band_are_refused_with_layer_and_place(planned):
+    done, _, _ = planned(elbow(), "{file: spine.brep}", spine(), band="10 %")
+    assert done.status in (2, 3) and "LAYER_HEIGHT" in done.err and "22.5 % would be needed" in done.err, done.err
+    assert "layer " in done.err and "strategy.band" in done.err
+
+
+@pytest.mark.parametrize("layers", ["planes", "geodesic"])
+def test_only_layers_along_have_a_guide(workshop, layers):
+    Part.makeBox(20, 20, 20).exportStep(str(workshop.folder / "part.step"))
+    job = JOB.format(guide="{edges: [Edge1]}", band="20 %", more="", mode="").replace("along", layers)
+    done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
+    assert done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and "strategy.guide" in done.err, done.err
