@@ -124,7 +124,8 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
         kind = "developable"
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
-    known = ("kind", *(("guide",) if kind == "solid" else ()), *(field.name for field in dataclasses.fields(family.parameters)))
+    known = ("kind", *(field.name for field in dataclasses.fields(family.parameters)))
+    known = ("guide", *known) if kind == "solid" else known
     mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
     if "substrate" not in own and family.substrate == NONE:
         mixed.pop("substrate", None)

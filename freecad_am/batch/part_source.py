@@ -92,8 +92,8 @@ def guide_of(given: Any, part: dict[str, Any], path: str) -> PartSource | None:
         return None
     if not isinstance(given, dict):
         raise InputError(
-            "BAD_VALUE", key, f"{quantity.shown(given)} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: "
-            "spine.step}, or auto",
+            "BAD_VALUE", key, f"{quantity.shown(given)} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, "
+            "{file: spine.step}, or auto",
         )
     fields.known_keys(given, ("file", "object", "edges", "set"), key)
     own = {name: given[name] for name in ("file", "object", "set") if name in given}

@@ -49,9 +49,9 @@ def build(
         "duration_s": sums.time,
         "totals": totals.as_dict(sums),
         "spacing_mm": spread(spacing),
-        "layer_heights": [] if toolpath.layer_heights is None else [
+        "layer_heights": [] if toolpath.uneven is None else [
             {"layer": int(layer), "least_mm": float(least), "largest_mm": float(largest)}
-            for layer, least, largest in toolpath.layer_heights
+            for layer, least, largest in toolpath.uneven
         ],
         "unsupported_mm": toolpath.unsupported,
         "on_part": None if toolpath.on_part is None else dict(

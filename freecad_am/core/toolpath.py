@@ -259,7 +259,7 @@ class Toolpath:
     largest distance of one from it and what is allowed, mm; None where nobody looked. volumes: mm3 of a part that is filled,
     of what beads leave of it, and of beads beside it; None where it is not known. feature_label: of one of several.
     features: where several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself
-    then speaks for the first of them. layer_heights: (k, 3) number, least and largest height, mm, of layers that are not as
+    then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
     high everywhere; None where all are.
     """
 
@@ -279,7 +279,7 @@ class Toolpath:
     volumes: tuple[float, float, float] | None = None
     feature_label: str = ""
     features: tuple[Toolpath, ...] = ()
-    layer_heights: Array | None = None
+    uneven: Array | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

@@ -44,15 +44,15 @@ def joined(toolpaths: Sequence[Toolpath], sequence: str, up: Array, bodies: Sequ
         surroundings=tuple(bodies), law=None, unsupported=None, on_part=None, volumes=None, feature_label="",
         wire_feed=first.wire_feed if len(feeds) == 1 else None,
         features=tuple(replace(one, layers=(), issues=(), surroundings=()) for one in toolpaths),
-        layer_heights=_layer_heights(toolpaths, numbers),
+        uneven=_uneven(toolpaths, numbers),
     )
 
 
-def _layer_heights(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | None:
+def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | None:
     """Numbers, least and largest heights (k, 3) of the layers of all features that are not as high everywhere."""
     found = [
-        np.column_stack([some[one.layer_heights[:, 0].astype(np.intp)], one.layer_heights[:, 1:]])
-        for one, some in zip(toolpaths, numbers) if one.layer_heights is not None
+        np.column_stack([some[one.uneven[:, 0].astype(np.intp)], one.uneven[:, 1:]])
+        for one, some in zip(toolpaths, numbers) if one.uneven is not None
     ]
     return np.vstack(found) if found else None
 

@@ -93,7 +93,7 @@ def plan(
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
         volumes=_volumes(solids, strategy, covers) if planes else None,
-        layer_heights=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
+        uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
 
 
