@@ -41,7 +41,7 @@ def planned(doc, part, tmp_path):
 def test_layers_start_at_the_edge(planned, part):
     low = next(k for k, edge in enumerate(part.Edges, 1) if edge.BoundBox.ZMax < 7.001)
     stages = planned(f"Edge{low}")
-    wall = api.result(stages.feature)
+    wall = api.result(stages.features[0])
     curve, = wall.first
     assert not curve.closed and curve.points[:, 2] == pytest.approx(7.0, abs=1e-9)
     heights = np.array([layer.beads[0].points[:, 2].mean() for layer in api.result(stages.toolpath).layers])
