@@ -2282,6 +2282,11 @@
         <translation>Croît sur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>Guide</source>
+        <translation>Guide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens.py"/>
         <source>H words have address extensions to {0}, not {1}; use another output, or program.nc.deposit_on and deposit_off</source>
         <translation>les mots H ont des extensions d&apos;adresse jusqu&apos;à {0}, et non {1} ; utilisez une autre sortie, ou program.nc.deposit_on et deposit_off</translation>
@@ -4282,6 +4287,11 @@
         <translation>Le document ou l&apos;objet de ce panneau a disparu ; annulez et ouvrez le panneau de nouveau.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
+        <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>The feature to deposit.</source>
         <translation>L&apos;élément à déposer.</translation>
@@ -5652,6 +5662,11 @@
         <translation>auto</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>auto finds no centre line of {0} from where it stands: {1}; choose an edge, a wire or a sketch as guide, or set strategy.direction so that the part stands on one of its ends</source>
+        <translation>auto ne trouve pas de ligne médiane de {0} à partir de son appui : {1} ; choisissez une arête, un fil ou une esquisse comme guide, ou réglez strategy.direction pour que la pièce repose sur l&apos;une de ses extrémités</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>axes 2 and 3 are not parallel, but {0} deg apart</source>
         <translation>les axes 2 et 3 ne sont pas parallèles, mais à {0} deg l&apos;un de l&apos;autre</translation>
@@ -6502,6 +6517,11 @@
         <translation>elle se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <source>it comes back to where it begins, at {0}: the last layer would lie on the first; leave an edge of it out</source>
+        <translation>il revient à son début, en {0} : la dernière couche reposerait sur la première ; enlevez-en une arête</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/speeds.py"/>
         <source>it could at {0} mm/s, but the bead model asks for {1} mm/s and too much would pile up: turn the torch more slowly (build_direction.max_turn), lean it less, mount the part otherwise, or ask for a wider bead (process.bead_width), which is laid more slowly</source>
         <translation>il le pourrait à {0} mm/s, mais le modèle de cordon demande {1} mm/s et trop s&apos;y amasserait : tournez la torche plus lentement (build_direction.max_turn), penchez-la moins, montez la pièce autrement, ou demandez un cordon plus large (process.bead_width), qui est posé plus lentement</translation>
@@ -6585,6 +6605,11 @@
         <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>it has 1 row; measure at least {0} beads</source>
         <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <source>it has a corner of {0} deg at {1}, where layers would have no height on the inside; round it with a radius, or choose guide: auto</source>
+        <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
@@ -6677,7 +6702,7 @@
         <translation>il n&apos;a pas de solide ; choisissez des solides ou des maillages fermés à déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/start_edges.py"/>
+        <location filename="../../freecad_am/brep/guide.py"/>
         <source>it has no {0}; its edges are Edge1 to Edge{1}</source>
         <translation>il n&apos;a pas de {0} ; ses arêtes vont de Edge1 à Edge{1}</translation>
     </message>
@@ -6695,6 +6720,11 @@
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>it has {0} axes, {1} of which slide; a robot that can be planned has six that turn</source>
         <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/guide.py"/>
+        <source>it has {0} edges, of which a guide takes some; name them, as in edges: [Edge1]</source>
+        <translation>il a {0} arêtes, dont un guide prend quelques-unes ; nommez-les, comme dans edges: [Edge1]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall.py"/>
@@ -6912,6 +6942,11 @@
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>it is several solids</source>
+        <translation>ce sont plusieurs solides</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>it is solid and has no {0} wall; use wall: outer</source>
         <translation>il est plein et n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
@@ -6967,6 +7002,11 @@
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <source>it turns back by {0} deg at {1}: layers would go through what was deposited; choose edges that lead on</source>
+        <translation>il fait demi-tour de {0} deg en {1} : les couches traverseraient ce qui est déposé ; choisissez des arêtes qui mènent plus loin</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/laid_flat.py"/>
         <source>it winds {0} times about the cone and would lie on itself when laid flat; divide it into shorter solids</source>
         <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois mis à plat ; divisez-le en solides plus courts</translation>
@@ -7000,6 +7040,11 @@
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>its code does not run from begin to end</source>
         <translation>son code ne va pas de begin à end</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <source>its edges are not one curve: {0} of {1} do not go on from where the others end, at {2} and {3}, and the nearest is {4} mm off; choose edges that meet end to end</source>
+        <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wire.py"/>
@@ -7210,6 +7255,16 @@
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>layers of {0} mm ask for a mesh of the wall of about {1} triangles, and more than {2} cannot be worked with; give more than {3} mm, or deposit the wall in parts</source>
         <translation>des couches de {0} mm demandent un maillage de la paroi d&apos;environ {1} triangles, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez plus de {3} mm, ou déposez la paroi en plusieurs parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/guided.py"/>
+        <source>layers of {0} stand normal to its centre line, {1} mm from {2} to {3}, which turns by {4} deg in all</source>
+        <translation>les couches de {0} sont normales à sa ligne médiane, {1} mm de {2} à {3}, qui tourne de {4} deg en tout</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>layers: {0} have no guide; use layers: along, or leave the guide out</source>
+        <translation>les couches {0} n&apos;ont pas de guide ; utilisez layers: along, ou enlevez le guide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -7522,6 +7577,11 @@
         <translation>aucun programme ne convient à ses entrées ({0})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>no section lies where it stands</source>
+        <translation>aucune section là où il repose</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>none</source>
         <translation>aucun</translation>
@@ -7550,6 +7610,11 @@
         <location filename="../../freecad_am/core/planning/constant.py"/>
         <source>none of {0} values of RZ serves for the whole job; the nearest to it is {1} deg</source>
         <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/choices.py"/>
+        <source>normal to a guide curve</source>
+        <translation>normales à une courbe guide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/painting.py"/>
@@ -8392,6 +8457,21 @@
         <translation>le noyau géométrique ne peut pas traiter cette forme ({0}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/along.py"/>
+        <source>the guide bends more tightly at {0} than the part is wide there: planes normal to it cross one another within the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
+        <translation>le guide est plus courbé en {0} que la pièce n&apos;y est étroite : ses plans normaux se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/guide_edges.py"/>
+        <source>the guide has no edge with a length; choose edges, a wire or a sketch</source>
+        <translation>le guide n&apos;a aucune arête de longueur non nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/along.py"/>
+        <source>the guide leaves the part: at layer {0} it is {1} mm beside it, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
+        <translation>le guide quitte la pièce : à la couche {0} il est à {1} mm à côté, en {2} ; choisissez un guide dans la pièce ou le long de l&apos;une de ses arêtes, ou guide: auto</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/standing.py"/>
         <source>the hub has no cylinder and no cone on its outside; choose a face of it, or give strategy.base</source>
         <translation>le moyeu n&apos;a ni cylindre ni cône à son extérieur ; choisissez une de ses faces, ou donnez strategy.base</translation>
@@ -8450,6 +8530,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>the limits of {0} run from {1} to {2}; give the lower one first</source>
         <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la plus basse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the line of {0} mm leads through {1} % of the volume</source>
+        <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/touching.py"/>
@@ -8730,6 +8815,11 @@
         <location filename="../../freecad_am/brep/substrate.py"/>
         <source>the solid around {0} is turned inside out (volume {1} mm3); repair it (Part, Check geometry), or turn it (Part, Reverse shapes)</source>
         <translation>le solide autour de {0} est retourné (volume {1} mm3) ; réparez-le (Part, Vérifier la géométrie), ou inversez-le (Part, Inverser les formes)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the solid ends after one section</source>
+        <translation>le solide finit après une section</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
@@ -10172,6 +10262,11 @@
         <translation>{0} mm est trop pour {1}, haut de {2} mm suivant strategy.direction (le point le plus haut est en {3}) : aucune couche n&apos;est coupée ({4}) ; donnez {5} mm au plus</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/along.py"/>
+        <source>{0} mm is too much for {1}, {2} mm long along the guide: no layer is cut in its {3}; give at most {4} mm</source>
+        <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/size.py"/>
         <source>{0} mm makes about {1} layers, and more than {2} cannot be worked with; give at least {3} mm</source>
         <translation>{0} mm font environ {1} couches, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
@@ -10265,6 +10360,11 @@
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>{0} of {1} layers are more than 20 % off the layer height of {2} mm, first layer {3}; layer {4} is {5} mm from the one below; layers along the wall (spacing: arc-length) are even</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/along.py"/>
+        <source>{0} of {1} layers are not as high everywhere as asked for: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, and {8} % would be needed: raise it, or choose a guide in the middle of the part or one that bends less</source>
+        <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/on_part.py"/>
