@@ -150,21 +150,23 @@ def make_solid_feature(
 
 
 def make_toolpath(
-    doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, sequence: str = "feature",
-    processes: Sequence[ProcessParameters] = (), process: ProcessParameters | None = None, **values: Any,
+    doc: Any, feature: Any, cell: Any = None, label: str = "Toolpath", *, further: Sequence[Any] = (),
+    sequence: str = "feature", processes: Sequence[ProcessParameters] = (),
+    process: ProcessParameters | None = None, **values: Any,
 ) -> Any:
     """Layers and beads of a feature; the cell gives the nozzle to keep clear. `am.make_toolpath(doc, doc.Feature)`
 
-    feature: a list of features are deposited in one go, `sequence="feature"` in this order or `sequence="height"` the lowest
-    layer first; `processes` are those of each, where they differ in what a feature has of its own.
+    further: features that are deposited after it in one go, `sequence="feature"` in this order or `sequence="height"` the
+    lowest layer first; `processes` are those of each, where they differ in what a feature has of its own. A list as the
+    feature stands for it and further ones.
     """
     if "bead_width" in values:  # it is meant, even where it is the default
         values.setdefault("fill_width", "bead_width")
-    first, *further = feature if isinstance(feature, (list, tuple)) else [feature]
+    first, *more = [*feature, *further] if isinstance(feature, (list, tuple)) else [feature, *further]
     links: dict[str, Any] = {"Feature": first, "Cell": cell}
-    if further:
+    if more:
         own = [own_process(one, process or ProcessParameters()) for one in processes]
-        links = {**links, "Further": further, "Sequence": sequence, "FeatureProcess": own}
+        links = {**links, "Further": more, "Sequence": sequence, "FeatureProcess": own}
     return _make(doc, Toolpath, "Toolpath", label, links, [process], values)
 
 
@@ -206,7 +208,7 @@ def inspect(
 def make_all(
     doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", substrate: Any = None,
     further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", post: str = "",
-    process: Mapping[str, Any] | None = None,
+    process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (),
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
@@ -215,21 +217,44 @@ def make_all(
     machine's controller, in the words of `post` where it reads them; there is none when no post is known for it, or the
     joint path is infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a
     deposition point and a branch that suit it. `am.make_all(doc, doc.Pot)`
+
+    then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `faces`,
+    `substrate`, `further` and `base_faces`; they come after the feature in what is returned.
+    `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
     chosen = cell_of(machine, user_machines.folders())
     with _one_step(doc, "New job"):
         made = [make_cell(doc, parameters=chosen)]
-        links = {"Substrate": substrate, "Further": list(further), "BaseFaces": base_faces}
-        made.append(make_feature_of(doc, kind, source, faces, links=links))
-        made.append(make_toolpath(doc, made[1], made[0], **(process or {})))
-        made.append(make_joint_path(doc, made[2], made[0]))
+        first = {
+            "source": source, "kind": kind, "faces": faces, "substrate": substrate, "further": further,
+            "base_faces": base_faces,
+        }
+        features = [_feature_of_job(doc, one) for one in (first, *then)]
+        toolpath = make_toolpath(doc, features, made[0], **(process or {}))
+        path = make_joint_path(doc, toolpath, made[0])
+        made += [*features, toolpath, path]
         posts = machines.load(chosen.machine, user_machines.folders()).posts
         wanted = post or ProgramParameters().post
         post = wanted if posts is None or wanted in posts else next(iter(posts), "")
-        if made[-1].Status == "up to date" and post:
-            made.append(make_program(doc, made[3], name=name or proposed_name(source.Label), post=post))
+        if path.Status == "up to date" and post:
+            made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post))
         grouped(doc, f"Job {source.Label}", made)
         return tuple(made)
+
+
+def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
+    """A feature at its defaults by the keys that `make_all` takes. InputError BAD_VALUE for another key."""
+    known = ("source", "kind", "faces", "substrate", "further", "base_faces")
+    wrong = [key for key in given_keys if key not in known]
+    if wrong or "source" not in given_keys:
+        told = ", ".join(wrong) or "no source"
+        raise InputError("BAD_VALUE", "then", f"{told}: give source, and any of {', '.join(known[1:])}")
+    links = {
+        "Substrate": given_keys.get("substrate"), "Further": list(given_keys.get("further", ())),
+        "BaseFaces": given_keys.get("base_faces", ()),
+    }
+    kind = given_keys.get("kind", "revolution")
+    return make_feature_of(doc, kind, given_keys["source"], given_keys.get("faces", ()), links=links)
 
 
 def change(obj: Any, **values: Any) -> Any:
@@ -245,6 +270,8 @@ def change(obj: Any, **values: Any) -> Any:
             links["name"] = "ProgramName"
         if proxy.kind == "inspection":
             links["file"] = "File"
+        if proxy.kind == "toolpath":
+            links["sequence"] = "Sequence"
         if "source" in values:
             values["source"] = _with_faces(values["source"], values.pop("faces", ()))
         if "start_edges" in values:

@@ -11,8 +11,10 @@ from PySide import QtCore, QtGui
 
 from ..core.issues import InputError
 from ..core.process import bead_model, bead_table
+from ..core.strategies.sequence import BY_FEATURE
 from ..objects.toolpath import Toolpath
 from . import inputs
+from .feature_order import FeatureOrder
 from .fit_plot import FitPlot, speeds_told, told
 from .later import Later
 from .signals import connect
@@ -31,7 +33,12 @@ class ToolpathPanel(StagePanel):
 
     def __init__(self, obj: Any = None) -> None:
         title = tr("Toolpath") if obj is None else obj.Label
-        super().__init__(Toolpath, title, inputs.of(Toolpath, obj), obj)
+        feature, *others = inputs.of(Toolpath, obj)
+        assert isinstance(feature, inputs.StageChoice)
+        link = next(link for link in Toolpath.links if link.many)
+        present, sequence = (None, BY_FEATURE) if obj is None else (getattr(obj, link.name), obj.Sequence)
+        order = FeatureOrder(link, feature, present, sequence)
+        super().__init__(Toolpath, title, [feature, order, *others], obj)
         self.plot = FitPlot()
         self.fit = QtGui.QLabel()
         self.fit.setObjectName("BeadModelFit")

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.strategy import SurfaceParameters
+from ..objects.toolpath import features_of
 from .lines import Array
 from .path.colouring import KINDS, Scale, coloured
 from .path.path_view import OPTIONS, PathView
@@ -35,10 +36,11 @@ class ToolpathView(PathView):
         super().draw(obj, value)
         if not self.source_hidden:  # a new path lies in the surface of its shape, and its start in that of a wall
             self.source_hidden = True
-            for source in (obj.Feature.Source[0], *getattr(obj.Feature, "Further", ())):
-                source.ViewObject.Visibility = False
-            if hasattr(obj.Feature, "Substrate"):
-                obj.Feature.ViewObject.Visibility = False
+            for feature in features_of(obj):
+                for source in (feature.Source[0], *getattr(feature, "Further", ())):
+                    source.ViewObject.Visibility = False
+                if hasattr(feature, "Substrate"):
+                    feature.ViewObject.Visibility = False
         if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):
             obj.Cell.ViewObject.Proxy.refresh()
 
