@@ -1177,9 +1177,19 @@
         <translation>Accélération</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Add</source>
+        <translation>Ajouter</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Adds a cell: machine, set-up, platform and nozzle</source>
         <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Adds the features selected, else the next one of the document</source>
+        <translation>Ajoute les éléments sélectionnés, sinon le suivant du document</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
@@ -1802,6 +1812,16 @@
         <translation>Point de dépôt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Deposits the chosen feature earlier</source>
+        <translation>Dépose plus tôt l&apos;élément choisi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Deposits the chosen feature later</source>
+        <translation>Dépose plus tard l&apos;élément choisi</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Deviations up to this, outside or inside, are within tolerance.</source>
         <translation>Les écarts jusqu&apos;à cette valeur, vers l&apos;extérieur ou l&apos;intérieur, sont dans la tolérance.</translation>
@@ -1880,6 +1900,11 @@
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Document (*.pdf)</source>
         <translation>Document (*.pdf)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Down</source>
+        <translation>Descendre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
@@ -3662,6 +3687,11 @@
         <translation>Remarques</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Remove</source>
+        <translation>Retirer</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
         <source>Renew</source>
         <translation>Renouveler</translation>
@@ -3805,6 +3835,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Setup</source>
         <translation>Installation</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Several features: one after the other, or of all layers the lowest first</source>
+        <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou de toutes les couches la plus basse d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -4170,6 +4205,11 @@
         <location filename="../../freecad_am/gui/toolpath_panel.py"/>
         <source>Takes the beads that were measured from a file of comma separated values</source>
         <translation>Prend les cordons qui ont été mesurés dans un fichier de valeurs séparées par des virgules</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Takes the chosen feature out of this toolpath</source>
+        <translation>Retire l&apos;élément choisi de ce parcours</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -4632,6 +4672,11 @@
         <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>There is no other feature in this document; make it first.</source>
+        <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>There is no path to look at yet: make a toolpath or a joint path.</source>
         <translation>Il n&apos;y a pas encore de trajectoire à regarder : faites une trajectoire d&apos;outil ou articulaire.</translation>
@@ -4830,6 +4875,11 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Unit of the measured coordinates; auto: the one that the file names, else mm.</source>
         <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>Up</source>
+        <translation>Monter</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -7377,6 +7427,11 @@
         <translation>la plus basse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>lowest layer first</source>
+        <translation>couche la plus basse d&apos;abord</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>m</source>
         <translation>m</translation>
@@ -7582,6 +7637,11 @@
         <translation>aucune section là où il repose</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>no source</source>
+        <translation>pas de source</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>none</source>
         <translation>aucun</translation>
@@ -7785,6 +7845,11 @@
         <location filename="../../freecad_am/core/strategies/solids/lean_notes.py"/>
         <source>on {0} of {1} beads, {2} mm in all, the torch begins to turn ahead of corners, by up to {3} deg from what is asked, to turn no faster than {4}</source>
         <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les angles, jusqu&apos;à {3} deg de ce qui est demandé, pour ne pas tourner plus vite que {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <source>one after the other</source>
+        <translation>l&apos;un après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/part_file.py"/>
@@ -9777,6 +9842,11 @@
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} holds {1} solids</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>{0} in a loop that waits for an input</source>
         <translation>{0} dans une boucle qui attend une entrée</translation>
@@ -9802,9 +9872,24 @@
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a mesh, which is filled</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>{0} is a program of this very job; call another one, or rename the job</source>
         <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a solid</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a solid; it turns about one axis, but a wall of one bead would leave out {1} of its {2} cm3</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
@@ -10560,6 +10645,11 @@
         <location filename="../../freecad_am/core/kinematics/machine_draft.py"/>
         <source>{0}: controller.matrix</source>
         <translation>{0} : controller.matrix</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>{0}: give source, and any of {1}</source>
+        <translation>{0} : donnez source, et au besoin {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
