@@ -9842,11 +9842,6 @@
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0} holds {1} solids</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>{0} in a loop that waits for an input</source>
         <translation>{0} dans une boucle qui attend une entrée</translation>
@@ -9872,24 +9867,9 @@
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0} is a mesh, which is filled</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>{0} is a program of this very job; call another one, or rename the job</source>
         <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0} is a solid</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/proposed_family.py"/>
-        <source>{0} is a solid; it turns about one axis, but a wall of one bead would leave out {1} of its {2} cm3</source>
-        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
