@@ -7,6 +7,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
+from freecad_am.core.geometry.file_unit import MESHES
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -193,7 +194,7 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier
     if part.faces and not family.faces:
         raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
     if family.substrate == NEEDED:
-        if section is None and (part.start_edges or earlier):
+        if section is None and (part.start_edges or earlier or part.file.lower().endswith(MESHES)):
             return None
         if section is None:
             raise InputError(

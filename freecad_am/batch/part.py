@@ -12,10 +12,11 @@ import FreeCAD as App
 from freecad_am import api
 from freecad_am.brep.apart import apart
 from freecad_am.brep.chosen import solids_of
+from freecad_am.core.geometry.file_unit import MESHES
 from freecad_am.core.issues import InputError
 from freecad_am.objects import document_file
 
-from .part_source import MESHES, PartSource
+from .part_source import PartSource
 
 PATIENCE = 100.0  # times as long as reading a document may take; building a part of other values may be long work
 

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from freecad_am.core.geometry.file_unit import refuse_scale
+from freecad_am.core.geometry.file_unit import MESHES, refuse_scale
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 
@@ -18,7 +18,6 @@ _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
 _FACE = re.compile(r"Face[1-9]\d*", re.ASCII)
 _SOLID = re.compile(r"Solid[1-9]\d*", re.ASCII)
 
-MESHES = (".stl", ".obj", ".3mf")
 
 
 @dataclass(frozen=True)

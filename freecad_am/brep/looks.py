@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.geometry.file_unit import MESHES
 from .apart import apart
-from .read import MESHES, read_mesh, read_shape
+from .read import read_mesh, read_shape
 
 Array = NDArray[np.float64]
 

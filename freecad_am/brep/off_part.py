@@ -61,6 +61,12 @@ def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Ar
     return found
 
 
+def off_facets(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
+    """Distances (n,) mm of points (n, 3) from the triangles of a mesh, open or closed."""
+    found: Array = np.abs(_signed(vertices, triangles, points))
+    return found
+
+
 def _by_triangles(shape: Any, points: Array) -> Array:
     return _signed(*beside(triangles_of, shape, DEFLECTION), points)
 

@@ -53,17 +53,23 @@ def find_patch_wall(
             "NO_SUBSTRATE", label, "there is nothing to grow on; choose a substrate, or the edges to start from"
         )
     else:
-        first, behind, issues = _from_substrate(wall, substrate, rims, label)
+        first, behind, issues = from_substrate(wall, substrate, rims, label)
     refuse_tight(wall, ~behind, height, label)
-    if len(first) > 1:
-        places = ", ".join(place(curve.points.mean(axis=0)) for curve in first)
-        issues.append(Issue(
-            NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; "
-            "choose the edges to start from if only some are meant",
-        ))
+    issues += several_loops(first, label)
     return replace(
         wall, first=tuple(first), behind=behind, rims=with_ends(wall, rims, tuple(first), behind), issues=tuple(issues),
     )
+
+
+def several_loops(first: Sequence[FirstCurve], label: str) -> list[Issue]:
+    """A note where there are several first curves."""
+    if len(first) < 2:
+        return []
+    places = ", ".join(place(curve.points.mean(axis=0)) for curve in first)
+    return [Issue(
+        NOTE, "SEVERAL_LOOPS", f"{label} starts in {len(first)} curves, about {places}: layers grow from all of them; "
+        "choose the edges to start from if only some are meant",
+    )]
 
 
 def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
@@ -107,9 +113,11 @@ def _outward(wall: PatchWall, shape: Any) -> PatchWall:
     )
 
 
-def _from_substrate(
+def from_substrate(
     wall: PatchWall, substrate: Substrate, rims: Any, label: str
 ) -> tuple[list[FirstCurve], Mask, list[Issue]]:
+    """Where a wall leaves its substrate, which of its vertices (n,) lie behind that, and notes. InputError NO_CONTACT,
+    INSIDE."""
     ground = substrate.ground(wall.mesh.typical_edge)
     value = contact.levels(wall, ground)
     outside = value >= 0.0

@@ -15,12 +15,12 @@ import Mesh
 import numpy as np
 import Part
 
+from ..core.geometry.file_unit import MESHES
 from ..core.issues import InputError
 from . import three_mf
 from .apart import apart
 
 READABLE = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
-MESHES = (".stl", ".obj", ".3mf")
 FARTHEST = 1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
 
 

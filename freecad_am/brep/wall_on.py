@@ -11,9 +11,11 @@ import numpy as np
 
 from ..core.geometry.patch_wall import PatchWall
 from ..core.geometry.surface_wall import SurfaceWall
+from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from .first_layer import find_wall
 from .kernel import FAULTS, told
+from .mesh_wall import find_mesh_wall
 from .patch_wall import find_patch_wall
 from .substrate import Substrate, substrate_of
 from .wall import faces_by_name, tubes
@@ -30,8 +32,8 @@ def wall_on(
     shape: Any, faces: Sequence[str], substrate: Any, height: float, label: str = "part",
     substrate_label: str = "substrate", start_edges: Sequence[str] = (), mend: float = 0.0,
 ) -> SurfaceWall | PatchWall:
-    """The wall of a Part.Shape for layers of `height` mm, in its coordinates. mend: the largest hole of a mesh that is
-    closed, mm.
+    """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
+    of a mesh that is closed, mm.
 
     substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from edges of the part. A
     SurfaceWall where the faces are one surface that closes around, its end straight across, and the first layer one loop; a
@@ -41,13 +43,16 @@ def wall_on(
     with told(substrate_label):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
     with told(label):
-        wall = _wall_on(shape, faces, carrier, height, label, start_edges)
+        wall = _wall_on(shape, faces, carrier, height, label, start_edges, mend)
     return wall if carrier is None else replace(wall, issues=(*carrier.issues, *wall.issues))
 
 
 def _wall_on(
-    shape: Any, faces: Sequence[str], carrier: Substrate | None, height: float, label: str, start_edges: Sequence[str]
+    shape: Any, faces: Sequence[str], carrier: Substrate | None, height: float, label: str, start_edges: Sequence[str],
+    mend: float,
 ) -> SurfaceWall | PatchWall:
+    if isinstance(shape, Body):
+        return find_mesh_wall(shape, carrier, height, label, start_edges, mend)
     if carrier is not None and carrier.shape is not None and not start_edges:
         try:
             tube = find_wall(shape, faces, carrier.shape, label, carrier.label)

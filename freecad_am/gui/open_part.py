@@ -11,7 +11,8 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
-from ..brep.read import MESHES, READABLE
+from ..brep.read import READABLE
+from ..core.geometry.file_unit import MESHES
 from ..core.issues import AmError
 from ..objects.progress import Cancelled
 from . import recorded

@@ -139,8 +139,10 @@ def whole(pick: Pick) -> Pick:
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     """Wall and substrate of a selection, None for what it does not tell, and what is unclear about it.
 
-    The one with faces picked is the wall, else the first; a mesh is the substrate.
+    The one with faces picked is the wall, else the first; a mesh is the substrate, but by itself a wall.
     """
+    if len(picks) == 1 and is_mesh(picks[0].obj):
+        return picks[0], None, ""
     picks = [with_faces(pick) for pick in picks]
     walls = [pick for pick in picks if not is_mesh(pick.obj)]
     faced = [pick for pick in walls if pick.names]

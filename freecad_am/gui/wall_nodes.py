@@ -10,7 +10,7 @@ import numpy as np
 from pivy import coin
 
 from ..core.issues import InputError
-from ..objects.shapes import global_shape
+from ..objects.shapes import Taken, taken
 from .lines import DASHED, Array, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)
@@ -58,7 +58,7 @@ class WallNodes:
     def set_faces(self, source: Any, names: Sequence[str]) -> None:
         """Tint faces of an object, all where none are named; nothing where it has none such now."""
         try:
-            found = triangles_of(global_shape(source), names)
+            found = drawn(taken(source), names)
         except InputError:  # the shape is not read yet
             found = NONE
         self.faces.set(*found)
@@ -77,6 +77,14 @@ def first_curves(wall: Any) -> list[Array]:
     if isinstance(first, np.ndarray):
         return [np.concatenate([first, first[:1]])]
     return [np.concatenate([one.points, one.points[:1]]) if one.closed else one.points for one in first]
+
+
+def drawn(part: Taken, names: Sequence[str]) -> tuple[Array, Array]:
+    """Points (n, 3) and triangles (m, 3) of a mesh, or of faces of a shape, all where none are named. NO_FACES."""
+    if part.shape is not None:
+        return triangles_of(part.shape.copy(False), names)
+    body = part.body()
+    return body.vertices, body.triangles.astype(np.int32)
 
 
 def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ from .pick_field import PickField
 from .pick_panel import PickPanel
 from .preview import Draft
 from .texts import marked, sentence, tr, translated
-from .wall_nodes import WallNodes, first_curves, triangles_of
+from .wall_nodes import WallNodes, drawn, first_curves
 
 _NAMES = {"Source": marked("Wall")}
 _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
@@ -34,7 +34,7 @@ class WallPanel(PickPanel):
         picks = [
             PickField(
                 link, _label(link), None if obj is None else getattr(obj, link.name), self._arm,
-                _ELEMENTS.get(link.name, ""),
+                _ELEMENTS.get(link.name, ""), meshes=link.name == "Source",
             )
             for link in SurfaceFeature.links
         ]
@@ -57,11 +57,14 @@ class WallPanel(PickPanel):
         return unclear
 
     def _lacking(self) -> PickField | None:
-        """A substrate is not missing where a wall starts at edges of its own."""
+        """A substrate is not missing where a wall starts at edges of its own, and where it is a mesh, which may stand on the
+        platform."""
         if not self._field("Source").picks:
             return self._field("Source")
         edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
-        return None if edges or self._field("Substrate").picks else self._field("Substrate")
+        if edges or self._field("Substrate").picks or picking.is_mesh(self._field("Source").picks[0].obj):
+            return None
+        return self._field("Substrate")
 
     def _following(self, field: PickField) -> PickField | None:
         """The substrate while a click on another object than the wall's can only mean it."""
@@ -71,8 +74,6 @@ class WallPanel(PickPanel):
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         if field.element == picking.EDGE:
             return tr("Click edges of one object.")
-        if picking.is_mesh(pick.obj):
-            return tr("{} is a mesh; a wall is of faces.").format(pick.obj.Label)
         told = tr("{} is another object; faces of a wall are of one object. Clear it first to start again.")
         return told.format(pick.obj.Label)
 
@@ -80,11 +81,11 @@ class WallPanel(PickPanel):
         return {field.link.name: field.value() for field in self.picks}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
-        work, shape = draft.prepare(), taken(draft.obj.Source[0]).shape
+        work, part = draft.prepare(), taken(draft.obj.Source[0])
 
         def both() -> tuple[Outcome, Any]:
             made = work()
-            return made, triangles_of(shape.copy(False), made.value.faces)
+            return made, drawn(part, made.value.faces)
 
         return both
 

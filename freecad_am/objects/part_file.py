@@ -9,8 +9,8 @@ from typing import Any
 import FreeCAD as App
 
 from ..brep.apart import apart
-from ..brep.read import MESHES, read_mesh, read_shape
-from ..core.geometry.file_unit import refuse_scale
+from ..brep.read import read_mesh, read_shape
+from ..core.geometry.file_unit import MESHES, refuse_scale
 from ..core.issues import InputError
 from . import document_file, hooks
 from .feature import global_shape

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..brep.off_part import off_faces, off_mesh, off_solids
+from ..brep.off_part import off_faces, off_facets, off_mesh, off_solids
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from ..core.kinematics.cell import mounted
@@ -121,6 +121,9 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         return toolpath
     if middle or family_of(of.strategy).filled:
         off = np.min([_off_solid(source, places.points, limit) for source in sources], axis=0)
+    elif sources[0].shape is None:
+        body = sources[0].body()
+        off = np.maximum(off_facets(body.vertices, body.triangles, places.points) - of.wall.smoothing, 0.0)
     else:
         off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
     return on_part.judged(toolpath, places, off, limit)

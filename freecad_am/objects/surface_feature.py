@@ -14,8 +14,8 @@ from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters
 from ..core.strategies import size
 from .feature import source_of
-from .fingerprints import fingerprint, shape_fingerprint
-from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .fingerprints import fingerprint
+from .shapes import FIXTURES, bodies, fixtures_of, taken
 from .stage import Link, Outcome, Section, Stage, Work
 
 
@@ -42,7 +42,7 @@ class SurfaceFeature(Stage):
     figures = (
         ("WallFaces", "App::PropertyStringList", "Faces of the wall."),
         ("WallKind", "App::PropertyString", "torus, cone (cylinders too) or table; patches for a wall of any "
-        "connected faces."),
+        "connected faces; mesh."),
     )
 
     def prepare(self, obj: Any) -> Work:
@@ -51,18 +51,21 @@ class SurfaceFeature(Stage):
         self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
         substrates = () if obj.Substrate is None else (taken(obj.Substrate),)
-        shape, label, edges, fixtures = global_shape(source), source.Label, _start_edges(obj), fixtures_of(obj)
+        part, label, edges, fixtures = taken(source), source.Label, _start_edges(obj), fixtures_of(obj)
+        if part.shape is None and faces:
+            raise InputError("UNKNOWN_FACE", label, "a mesh has no faces to choose; leave them out")
 
         def work() -> Outcome:
             ground = bodies(substrates)
             solid, name = None, ""
             for substrate in substrates:
                 solid, name = (ground[0] if substrate.shape is None else substrate.shape), substrate.label
-            wall = wall_on(shape.copy(False), faces, solid, strategy.layer_height, label, name, edges, strategy.mend)
+            shape = part.body() if part.shape is None else part.shape.copy(False)
+            wall = wall_on(shape, faces, solid, strategy.layer_height, label, name, edges, strategy.mend)
             large = size.judged(size.of_wall(wall, strategy), strategy)
-            depths = of_faces(shape, wall.faces, label, ground[0] if ground else None)
+            depths = None if part.shape is None else of_faces(part.shape, wall.faces, label, ground[0] if ground else None)
             wall = dataclasses.replace(wall, surroundings=(*ground, *bodies(fixtures)), depths=depths)
-            kind = "patches" if isinstance(wall, PatchWall) else wall.kind
+            kind = "mesh" if part.shape is None else "patches" if isinstance(wall, PatchWall) else wall.kind
             return Outcome(wall, (*wall.issues, *large), (("WallFaces", list(wall.faces)), ("WallKind", kind)))
 
         return work
@@ -71,7 +74,7 @@ class SurfaceFeature(Stage):
         source, faces = source_of(obj)
         substrate = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         fixtures = [fingerprint(fixture) for fixture in obj.Fixtures]
-        return [shape_fingerprint(source), *substrate, " ".join((*faces, *_start_edges(obj))), *fixtures]
+        return [fingerprint(source), *substrate, " ".join((*faces, *_start_edges(obj))), *fixtures]
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:

@@ -242,7 +242,7 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
     person.panel_closed()
 
 
-def test_a_scan_is_a_substrate_and_a_mesh_is_no_wall(person, bend):
+def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     import Mesh
 
     part, _ = bend
@@ -257,11 +257,20 @@ def test_a_scan_is_a_substrate_and_a_mesh_is_no_wall(person, bend):
     person.field(panel, "PickSource").click()
     person.gui.Selection.addSelection(scan)
     person.idle()
-    assert "is a mesh" in " ".join(label.text() for label in panel.findChildren(person.widgets.QLabel))
-    assert person.field(panel, "Source").text() == ""
+    assert person.field(panel, "Source").text() == "Scan"
     person.press("Cancel")
     person.panel_closed()
-    assert np.isfinite(scan.Mesh.Area)
+    tube = part.Document.addObject("Mesh::Feature", "Vase")
+    tube.Mesh = Mesh.createCylinder(10.0, 30.0, 0, 5.0, 30)
+    person.select(tube)
+    person.click("RoboticAM_WallOnPart")
+    panel = person.panel(PANEL)
+    assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == ["Vase", ""]
+    previewed(person, panel)
+    person.press("Ok")
+    person.panel_closed()
+    wall = part.Document.ActiveObject
+    assert wall.WallKind == "mesh" and wall.Source[0] == tube
 
 
 def test_a_body_in_an_assembly_carries_a_linked_wall_beside_fixtures(person):

@@ -237,7 +237,7 @@ def _rounded(
                 inner = np.arange(start + 1, end if end > start else end + len(points)) % len(points)
                 keep[inner] = False
     points, sharp = points[keep], sharp[keep]
-    points, into, out = _splined(points, sharp, closed)
+    points, into, out = splined(points, sharp, closed)
     for _ in range(ROUNDS):
         curve = FirstCurve(points, into, out, closed).curve()
         middle = curve.at(curve.w[:-1] + 0.5 * curve.span)[0]
@@ -253,7 +253,7 @@ def _rounded(
         order = np.argsort(np.r_[np.arange(len(points)), bad + 0.5], kind="stable")
         points = np.vstack([points, on_wall[bad]])[order]
         sharp = np.r_[sharp, np.zeros(len(bad), dtype=bool)][order]
-        points, into, out = _splined(points, sharp, closed)
+        points, into, out = splined(points, sharp, closed)
     curve = FirstCurve(points, into, out, closed).curve()
     off = float(np.abs(ground.signed(curve.at(curve.refined(4))[0])).max())
     return FirstCurve(points, into, out, closed), off
@@ -272,8 +272,9 @@ def _apart(points: Array, into: Array, out: Array, edge: Mask, closed: bool) -> 
     return points[keep], into[keep], out[keep], edge[keep]
 
 
-def _splined(points: Array, sharp: Mask, closed: bool) -> tuple[Array, Array, Array]:
-    """The chain, started at a sharp corner if it has one, with tangents of splines from one sharp corner to the next."""
+def splined(points: Array, sharp: Mask, closed: bool) -> tuple[Array, Array, Array]:
+    """The chain (n, 3), started at a sharp corner (n,) if it has one, with unit tangents into and out of each point: those
+    of splines from one sharp corner to the next."""
     start = int(np.argmax(sharp)) if closed and sharp.any() else 0
     points, sharp = np.roll(points, -start, axis=0), np.roll(sharp, -start)
     ring = np.vstack([points, points[:1]]) if closed else points

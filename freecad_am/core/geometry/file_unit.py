@@ -9,6 +9,7 @@ import os
 from ..issues import InputError
 
 UNTOLD = (".stl", ".obj")
+MESHES = (*UNTOLD, ".3mf")
 
 
 def refuse_scale(scale: float, path: str, key: str) -> None:

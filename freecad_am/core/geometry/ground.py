@@ -101,6 +101,35 @@ class FacetGround:
         return self.solid.sagitta[piece]
 
 
+class PlaneGround:
+    """What lies below z = `height` mm: a platform."""
+
+    facets = False
+
+    def __init__(self, height: float) -> None:
+        self.height = height
+
+    def signed(self, points: Array) -> Array:
+        """Heights above it."""
+        above: Array = points[:, 2] - self.height
+        return above
+
+    def located(self, points: Array) -> tuple[Array, Array, Index]:
+        """Right under or over the points."""
+        piece = np.zeros(len(points), dtype=np.intp)
+        return *self.on(piece, points), piece
+
+    def on(self, piece: Index, points: Array) -> tuple[Array, Array]:
+        """The same."""
+        foot = points.copy()
+        foot[:, 2] = self.height
+        return foot, np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
+
+    def sagitta(self, piece: Index) -> Array:
+        """None."""
+        return np.zeros(len(piece))
+
+
 def distances(points: Array, ground: Ground, near: float) -> Array:
     """Distances (n,) of points from the ground, negative inside: exact for those nearer than `near` mm, of others the right
     sign and at most the true size.

@@ -28,6 +28,7 @@ WELDS = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; the first that closes the mesh
 MOST_TOLD = 8
 ROUNDS = 4
 MOSTLY = 0.5  # of the triangles
+END = 0.5  # of the largest opening of a surface; what is larger is an end of it too
 FLAT = 1e-9  # of the cube of its size; a closed piece of less volume encloses nothing
 
 
@@ -56,7 +57,7 @@ def repaired(points: Array, triangles: Index, label: str, hole: float = 0.0, cro
         vertices, corners = _mended(vertices, corners, label, hole, told, mended)
         edges = Edges(corners)
     corners = _turned_alike(vertices, corners, edges, label, told)
-    solids = _apart(vertices, corners, edges, told)
+    solids = _apart(vertices, corners, told)
     if not solids:
         raise InputError("NO_SOLID", label, "the mesh encloses nothing; export the solid again")
     for solid in solids:
@@ -75,6 +76,56 @@ def mended_issues(label: str, mended: list[str]) -> tuple[Issue, ...]:
     if not mended:
         return ()
     return (Issue(WARNING, "MENDED", f"{label}: {'; '.join(mended[:MOST_TOLD])}"),)
+
+
+class Connected(NamedTuple):
+    """A mesh whose triangles have at most one neighbour at each edge, and agree with it; what was mended."""
+
+    vertices: Array
+    triangles: Index
+    issues: tuple[Issue, ...]
+    mended: tuple[str, ...]
+
+
+def connected_triangles(points: Array, triangles: Index, label: str, hole: float) -> Connected:
+    """Points (n, 3) and triangles (m, 3) as a surface that may be open. hole: holes up to so many mm across are closed,
+    where they are smaller than END of the largest opening of their piece. InputError NO_SOLID."""
+    told: list[str] = []
+    mended: list[str] = []
+    vertices, corners = _closed(points, triangles, told)
+    if not len(corners):
+        raise InputError("NO_SOLID", label, "all triangles of the mesh cancel one another; export it again")
+    edges = Edges(corners)
+    corners = _alike_across(corners, edges, np.flatnonzero(edges.count == 2), told)
+    found = told_apart(vertices, corners)
+    if found.split:
+        at = place(vertices[edges.ends[np.argmax(edges.count > 2)]].mean(axis=0))
+        mended.append(f"{found.split} edges of more than two triangles were divided, as at {at}")
+    piece = _pieces(found.triangles)
+    owner = np.zeros(len(found.vertices), dtype=np.intp)
+    owner[found.triangles] = piece[:, None]
+    largest: dict[int, float] = {}
+    small = [
+        one for one in holes(found)
+        if one.size <= min(hole, END * largest.setdefault(int(owner[one.loop[0]]), one.size))
+    ]
+    if small:
+        widest = small[0]
+        mended.append(
+            f"{len(small)} holes were closed, the largest {widest.size:.3g} mm across at {place(widest.middle)}"
+        )
+    vertices, corners = filled(found.vertices, found.triangles, small)
+    issues = (Issue(NOTE, "MESH_REPAIRED", f"{label}: {'; '.join(told[:MOST_TOLD])}"),) if told else ()
+    return Connected(vertices, corners, issues, tuple(mended))
+
+
+def _pieces(corners: Index) -> Index:
+    """The piece (m,) that each triangle hangs together with."""
+    edges = Edges(corners)
+    one, other = edges.faces[edges.count == 2].T
+    links = coo_matrix((np.ones(len(one)), (one, other)), shape=(len(corners), len(corners)))
+    found: Index = connected_components(links, directed=False)[1].astype(np.intp)
+    return found
 
 
 def crossing_told(solid: SolidMesh, least: float) -> list[str]:
@@ -247,11 +298,9 @@ def _flips(count: int, one: Index, other: Index, against: Mask) -> Mask:
     return turned
 
 
-def _apart(vertices: Array, corners: Index, edges: Edges, told: list[str]) -> tuple[SolidMesh, ...]:
+def _apart(vertices: Array, corners: Index, told: list[str]) -> tuple[SolidMesh, ...]:
     """Pieces that hang together, outermost ones turned outside out and cavities with the solid about them."""
-    count = len(corners)
-    links = coo_matrix((np.ones(len(edges.faces)), tuple(edges.faces.T)), shape=(count, count))
-    _, piece = connected_components(links, directed=False)
+    piece = _pieces(corners)
     pieces = np.split(corners[np.argsort(piece, kind="stable")], np.cumsum(np.bincount(piece))[:-1])
     low = np.array([vertices[some].min(axis=(0, 1)) for some in pieces])
     high = np.array([vertices[some].max(axis=(0, 1)) for some in pieces])

@@ -23,9 +23,9 @@ NEEDED, OPTIONAL, NONE = "needed", "optional", "none"
 @dataclass(frozen=True)
 class Family:
     """kind: `strategy.kind` of a job. parameters: the dataclass of `strategy`. substrate: whether it grows on an existing
-    part: NEEDED (or edges to start from), OPTIONAL, NONE. meshes: a mesh may be the part. filled: solids are filled, so that
-    the width and the speed of beads are settings of their own. modes: those of `build_direction` that it knows, and why not
-    others. edges, faces: the part may name edges to start from, and faces.
+    part: NEEDED (or edges to start from, or a mesh, which starts on the platform), OPTIONAL, NONE. meshes: a mesh may be the
+    part. filled: solids are filled, so that the width and the speed of beads are settings of their own. modes: those of
+    `build_direction` that it knows, and why not others. edges, faces: the part may name edges to start from, and faces.
     """
 
     kind: str
@@ -42,7 +42,7 @@ class Family:
 FAMILIES = (
     Family("revolution", RevolutionParameters, NONE, False, False, ("local", "layer", "fixed"),
            "symmetry-plane is not for parts of revolution; use local, layer or fixed"),
-    Family("surface", SurfaceParameters, NEEDED, False, False, ("local", "layer", "symmetry-plane", "fixed"), "", True),
+    Family("surface", SurfaceParameters, NEEDED, True, False, ("local", "layer", "symmetry-plane", "fixed"), "", True),
     Family("developable", DevelopableParameters, OPTIONAL, True, True, ("local",),
            "{} is not for solids on a hub, which grow along its normals; use local"),
     Family("solid", SolidParameters, OPTIONAL, True, True, ("local", "layer", "fixed"),

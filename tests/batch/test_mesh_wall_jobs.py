@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A vase from an STL file, open at both ends, to a toolpath and a document."""
+
+import csv
+import json
+
+import Mesh
+import numpy as np
+import pytest
+
+from freecad_am.batch import job as jobs
+
+JOB = """\
+part: {file: vase.stl}
+strategy: {kind: surface, layer_height: 5 mm, chord_error: 0.1 mm}
+process: {bead_width: 6 mm}
+"""
+
+
+def test_an_open_mesh_is_a_wall_on_the_platform(workshop):
+    side = Mesh.createCone(20.0, 35.0, 40.0, 0, 4.0, 60)  # along X
+    side.rotate(0.0, -np.pi / 2.0, 0.0)
+    side.write(str(workshop.folder / "vase.stl"))
+    (workshop.folder / "vase.yaml").write_text(JOB, encoding="utf-8")
+    assert jobs.read_job(str(workshop.folder / "vase.yaml")).substrate is None
+    done = workshop.run("plan", "vase.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["status"] == "ok" and {"FIRST_LAYER"} <= {issue["code"] for issue in report["issues"]}
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    layer = np.array([int(row["layer"]) for row in rows])
+    x, y, z = (np.array([float(row[f"{axis}_mm"]) for row in rows]) for axis in "xyz")
+    low = float(side.BoundBox.ZMin)
+    assert (z - low) / 40.0 * np.hypot(40.0, 15.0) == pytest.approx(5.0 * layer, abs=0.1)
+    wide = 20.0 + 15.0 * (z - low) / 40.0 if np.hypot(x, y)[layer == 0].mean() < 25.0 else 35.0 - 15.0 * (z - low) / 40.0
+    assert np.hypot(x, y) == pytest.approx(wide, abs=0.5)
+    assert layer.max() == 8
+    (workshop.folder / "vase.yaml").write_text(JOB.replace("vase.stl}", "vase.stl, faces: [Face1]}"), encoding="utf-8")
+    refused = workshop.run("plan", "vase.yaml")
+    assert (refused.status, refused.err.count("error[UNKNOWN_FACE]")) == (2, 1), refused.err
+    (workshop.folder / "vase.yaml").write_text(JOB.replace("vase.stl}", "vase.stl, start_edges: [Edge9]}"), encoding="utf-8")
+    refused = workshop.run("plan", "vase.yaml")
+    assert (refused.status, refused.err.count("error[UNKNOWN_EDGE]")) == (2, 1), refused.err

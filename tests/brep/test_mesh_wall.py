@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls that come as open meshes: layers against what the mesh was made from, starts, mending, refusals."""
+
+import Mesh
+import numpy as np
+import Part
+import pytest
+from FreeCAD import Vector
+
+from freecad_am.brep.wall_on import wall_on
+from freecad_am.core.geometry.smooth_mesh import SmoothMesh
+from freecad_am.core.geometry.surroundings import Body
+from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
+from freecad_am.core.parameters.process import ProcessParameters
+from freecad_am.core.parameters.strategy import SurfaceParameters
+from freecad_am.core.strategies import wall_fronts
+
+SIDES = 60
+
+
+def turned(low, high, height, rows=12, sides=SIDES, floor=False):
+    """Points and triangles of a cone's side from radius `low` at z = 0 to `high`, open at both ends or closed by a floor."""
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    z = np.linspace(0.0, height, rows + 1)
+    radius = np.linspace(low, high, rows + 1)
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = np.concatenate([np.column_stack([r * ring, np.full(sides, h)]) for r, h in zip(radius, z)])
+    faces = []
+    for row in range(rows):
+        for k in range(sides):
+            a, b = row * sides + k, row * sides + (k + 1) % sides
+            faces += [(a, b, a + sides), (b, b + sides, a + sides)]
+    if floor:
+        points = np.vstack([points, [[0.0, 0.0, 0.0]]])
+        faces += [(len(points) - 1, (k + 1) % sides, k) for k in range(sides)]
+    return points, np.array(faces, dtype=np.int64)
+
+
+def wall(points, faces, height=4.0, substrate=None, edges=(), mend=5.0):
+    return wall_on(Body("Vase", points, faces), (), substrate, height, "Vase", "Block", edges, mend)
+
+
+def layers(made, height=4.0):
+    return wall_fronts.plan(
+        made, SurfaceParameters(layer_height=height, chord_error=0.05), BuildDirectionParameters(), ProcessParameters()
+    ).layers
+
+
+def codes(made):
+    return [issue.code for issue in made.issues]
+
+
+def test_the_smooth_surface_of_a_cylinders_mesh_is_the_cylinder():
+    points, faces = turned(30.0, 30.0, 60.0, rows=30, sides=90)
+    rng = np.random.default_rng(4)
+    angle, r, z = rng.uniform(0.0, 6.28, 400), rng.uniform(28.0, 32.0, 400), rng.uniform(8.0, 52.0, 400)
+    asked = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
+    found, normals = SmoothMesh(points, faces, 2.0).project(asked)
+    assert np.abs(np.hypot(*found[:, :2].T) - 30.0).max() < 5e-4
+    out = found * [1.0, 1.0, 0.0] / 30.0
+    assert np.abs(np.einsum("ij,ij->i", normals, out) - 1.0).max() < 1e-5
+    again, _ = SmoothMesh(points, faces, 2.0).project(found)
+    assert np.abs(again - found).max() < 1e-9
+
+
+@pytest.mark.parametrize("flip", [False, True])
+def test_a_vase_on_the_platform(flip):
+    """Layers of a cone lie a layer height apart along its side, each as long as the cone is round there."""
+    points, faces = turned(20.0, 35.0, 40.0)
+    if flip:
+        faces = faces.copy()
+        faces[::5] = faces[::5, ::-1]
+    made = wall(points, faces)
+    assert "FIRST_LAYER" in codes(made) and ("MESH_REPAIRED" in codes(made)) == flip
+    found = layers(made)
+    side = np.hypot(15.0, 40.0)
+    assert len(found) == int(side / 4.0) + 1
+    sagitta = 35.0 * (1.0 - np.cos(np.pi / SIDES))
+    for k, layer in enumerate(found):
+        assert len(layer.beads) == 1 and layer.beads[0].closed
+        at = layer.beads[0].points
+        share = 4.0 * k / side
+        assert np.abs(at[:, 2] - 40.0 * share).max() < 0.05
+        radius = np.hypot(at[:, 0], at[:, 1])
+        assert np.abs(radius - (20.0 + 15.0 * share)).max() < sagitta + 0.05
+        assert layer.beads[0].build[:, 2] == pytest.approx(40.0 / side, abs=0.02)
+
+
+def test_a_cup_starts_above_its_floor_and_what_stands_on_its_tip_nowhere():
+    points, faces = turned(20.0, 20.0, 30.0, floor=True)
+    made = wall(points, faces)
+    assert "floor" in " ".join(issue.message for issue in made.issues)
+    heights = [bead.points[:, 2] for layer in layers(made) for bead in layer.beads]
+    assert min(z.min() for z in heights) == pytest.approx(2.0, abs=0.1) and len(heights) == 8
+    tips = 20.0 * np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+    sides = [(k, (k + 1) % 4, 4) for k in range(4)] + [((k + 1) % 4, k, 5) for k in range(4)]
+    with pytest.raises(InputError) as caught:
+        wall(tips, np.array(sides, dtype=np.int64))
+    assert caught.value.code == "NO_START"
+
+
+def test_open_ends_are_edges_by_their_height():
+    points, faces = turned(20.0, 30.0, 40.0)
+    down = layers(wall(points, faces, edges=("Edge2",)))
+    assert down[0].beads[0].points[:, 2] == pytest.approx(40.0, abs=0.05)
+    assert down[-1].beads[0].points[:, 2].max() < 4.0
+    with pytest.raises(InputError) as caught:
+        wall(points, faces, edges=("Edge3",))
+    assert caught.value.code == "UNKNOWN_EDGE" and "Edge2 at (0, 0, 40" in caught.value.message
+
+
+@pytest.mark.parametrize("scan", [False, True])
+def test_on_a_substrate_what_lies_in_it_is_not_deposited(scan):
+    points, faces = turned(20.0, 20.0, 40.0)
+    block = Part.makeBox(60, 60, 20, Vector(-30, -30, -10))
+    made = wall(points, faces, substrate=Mesh.Mesh(block.tessellate(1.0)) if scan else block)
+    found = layers(made)
+    for k, layer in enumerate(found):
+        assert layer.beads[0].points[:, 2] == pytest.approx(10.0 + 4.0 * k, abs=0.05)
+    assert len(found) == 8
+
+
+def test_small_holes_are_closed_and_the_ends_are_not():
+    points, faces = turned(20.0, 20.0, 40.0, rows=20)
+    gone = (faces == 10 * SIDES + 3).any(axis=1)
+    made = wall(points, faces[~gone], mend=6.0)
+    assert "MENDED" in codes(made) and "1 holes were closed" in " ".join(issue.message for issue in made.issues)
+    assert [len(layer.beads) for layer in layers(made)] == [1] * 11
+    assert "MENDED" not in codes(wall(points, faces[~gone], mend=1.0))
+    assert "MENDED" not in codes(wall(*turned(1.0, 1.0, 30.0, sides=12), height=1.0))
+
+
+def test_pieces_that_nothing_starts_on_and_walls_that_cut_themselves_are_refused():
+    points, faces = turned(20.0, 20.0, 40.0)
+    above = np.vstack([points, points + [0.0, 0.0, 60.0]])
+    with pytest.raises(InputError) as caught:
+        wall(above, np.vstack([faces, faces + len(points)]))
+    assert caught.value.code == "GAP" and "60" in caught.value.message
+    aside = np.vstack([points, points + [25.0, 0.0, 0.0]])
+    with pytest.raises(InputError) as caught:
+        wall(aside, np.vstack([faces, faces + len(points)]))
+    assert caught.value.code == "SELF_INTERSECTION"
+    with pytest.raises(InputError) as caught:
+        wall(points, faces, height=0.01)
+    assert caught.value.code == "TOO_FINE"
