@@ -148,6 +148,6 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
         if away.min() > reach and len(mine) > 2:
             raise InputError(
                 "GAP", label, f"it is {number} pieces that do not hang together, and no layer starts on the one at "
-                f"{place(mine[np.argmin(away)])}, {away.min():.4g} mm from where layers start; name its edge in "
-                "part.start_edges too, or deposit it by itself",
+                f"{place(mine[np.argmin(away)])}, {away.min():.4g} mm from where layers start; choose its "
+                "edge to start from too, or deposit it by itself",
             )
