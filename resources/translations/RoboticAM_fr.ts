@@ -1020,8 +1020,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>torus, cone (cylinders too) or table; patches for a wall of any connected faces.</source>
-        <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces jointes quelconques.</translation>
+        <source>torus, cone (cylinders too) or table; patches for a wall of any connected faces; mesh.</source>
+        <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces quelconques qui se tiennent ; mesh.</translation>
     </message>
 </context>
 <context>
@@ -1945,6 +1945,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Edges of the wall in which layers start, in place of where it leaves the substrate.</source>
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>Edge{0} at {1}</source>
+        <translation>Edge{0} en {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
@@ -5312,6 +5317,11 @@
         <translation>un maillage n&apos;a pas de surfaces exactes ; une pièce de révolution demande une représentation par les frontières : STEP, IGES ou BREP</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <source>a mesh has no faces to choose; leave them out</source>
+        <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>a move before G1, G21, G90 and a work offset are said</source>
         <translation>un mouvement avant que G1, G21, G90 et un décalage d&apos;origine soient dits</translation>
@@ -5565,6 +5575,11 @@
         <location filename="../../freecad_am/core/inspection/roundness.py"/>
         <source>all points lie in one plane, which no sphere fits; measure further round</source>
         <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>all triangles of the mesh cancel one another; export it again</source>
+        <translation>tous les triangles du maillage s&apos;annulent ; exportez-le à nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
@@ -6762,6 +6777,11 @@
         <translation>il n&apos;a pas de {0} ; ses faces vont de Face1 à Face{1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>it has no {0}; the edges of a mesh are its open ends, by height: {1}</source>
+        <translation>il n&apos;a pas de {0} ; les arêtes d&apos;un maillage sont ses extrémités ouvertes, par hauteur : {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>it has only flat faces across the axis; name the faces of the wall</source>
         <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
@@ -7027,6 +7047,11 @@
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>it is {0} pieces that do not hang together, and no layer starts on the one at {1}, {2} mm from where layers start; choose its edge to start from too, or deposit it by itself</source>
+        <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it may hold only the letters A to Z, digits and underscores</source>
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
@@ -7050,6 +7075,11 @@
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>it rounds corners or accelerates in a way that is not understood</source>
         <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>it stands on a point and has no open end to start from; give a substrate that it grows on, or turn it so that an end lies on the platform</source>
+        <translation>il repose sur un point et n&apos;a pas d&apos;extrémité ouverte où commencer ; donnez un substrat, ou tournez-le pour qu&apos;une extrémité repose sur le plateau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/guide_edges.py"/>
@@ -7302,7 +7332,7 @@
         <translation>des couches de {0} mm sont plus hautes que le plus petit rayon de courbure de la paroi, {1} mm en {2} ; prenez des couches plus basses, ou un plus grand rayon à cet endroit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/patch_wall.py"/>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
         <source>layers of {0} mm ask for a mesh of the wall of about {1} triangles, and more than {2} cannot be worked with; give more than {3} mm, or deposit the wall in parts</source>
         <translation>des couches de {0} mm demandent un maillage de la paroi d&apos;environ {1} triangles, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez plus de {3} mm, ou déposez la paroi en plusieurs parties</translation>
     </message>
@@ -8487,6 +8517,16 @@
         <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>the first layer is the edge of {0} at {1}, which stands on the platform</source>
+        <translation>la première couche est l&apos;arête de {0} en {1}, qui repose sur le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>the first layer is the lowest open end of {0}, Edge1 at {1}, which does not lie on the platform</source>
+        <translation>la première couche est l&apos;extrémité ouverte la plus basse de {0}, Edge1 en {1}, qui ne repose pas sur le plateau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>the first layer lies on the wall and on {0}</source>
         <translation>la première couche repose sur la paroi et sur {0}</translation>
@@ -8495,6 +8535,11 @@
         <location filename="../../freecad_am/brep/first_layer.py"/>
         <source>the first layer lies on the wall and on {0} within {1} mm</source>
         <translation>la première couche repose sur la paroi et sur {0} à {1} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/mesh_wall.py"/>
+        <source>the first layer runs {0} mm over the floor of {1}, which is not deposited</source>
+        <translation>la première couche court à {0} mm au-dessus du fond de {1}, qui n&apos;est pas déposé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/times.py"/>
@@ -9027,6 +9072,11 @@
         <translation>la paroi se coupe elle-même en {0} ({1}) ; un coude doit avoir un plus grand rayon que le tube, et les faces ne doivent pas se croiser</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
+        <source>the wall cuts itself: {0} pairs of its triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid</source>
+        <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
         <source>the wall does not come out of the substrate everywhere (at v = {0}, for instance): let it reach into the substrate all around, or choose the edges it starts from</source>
         <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) : faites-la pénétrer dans le substrat sur tout le tour, ou choisissez les arêtes de départ</translation>
@@ -9368,8 +9418,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>torus, cone (cylinders too) or table; patches for a wall of any connected faces.</source>
-        <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces jointes quelconques.</translation>
+        <source>torus, cone (cylinders too) or table; patches for a wall of any connected faces; mesh.</source>
+        <translation>tore, cône (cylindres aussi) ou table ; patches pour une paroi de faces quelconques qui se tiennent ; mesh.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -9570,6 +9620,11 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>with TRAORI a move needs X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS and a work offset</source>
         <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS et un décalage d&apos;origine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
+        <source>with edges of {0} mm, a layer height, the mesh of the wall has more than {1} triangles; use a larger layer height, or deposit the wall in parts</source>
+        <translation>avec des arêtes de {0} mm, une hauteur de couche, le maillage de la paroi a plus de {1} triangles ; prenez des couches plus hautes, ou déposez la paroi en plusieurs parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/sheet.py"/>
@@ -10642,6 +10697,11 @@
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
+        <source>{0}: where facets meet at an angle the wall runs smoothly, up to {1} mm off them, at {2}</source>
+        <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>{0}: {1} edges, the first at {2}; {3}</source>
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
@@ -10890,11 +10950,6 @@
         <location filename="../../freecad_am/gui/guess.py"/>
         <source>{} is a mesh, which is filled in plane layers</source>
         <translation>{} est un maillage, rempli en couches planes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
-        <source>{} is a mesh; a wall is of faces.</source>
-        <translation>{} est un maillage ; une paroi est faite de faces.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
