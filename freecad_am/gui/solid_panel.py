@@ -27,6 +27,7 @@ from .pick_field import PickField
 from .pick_panel import PickPanel
 from .preview import Draft
 from .texts import marked, sentence, tr
+from .wheel import scrolls
 
 STEEPEST = 89  # deg of the slider
 MM2_PER_CM2 = 100.0
@@ -93,6 +94,7 @@ class SolidPanel(PickPanel):
         self._show_overhang()
         self.overhang.valueChanged.connect(self._show_overhang)
         self.column.insertWidget(self.column.indexOf(self.messages) + 1, box)
+        scrolls(box)
 
     def _show_overhang(self, *_: Any) -> None:
         """Colour what leans out by more than the slider tells."""

@@ -202,6 +202,20 @@ class Lesson:
         self.hand.click(self.person.button("Std_ViewFitAll"))
         self.person.idle(0.3)
 
+    def from_below(self):
+        """The view turned until undersides are seen, as by the middle button of the mouse, and all of the part in it."""
+        view = self.person.gui.activeDocument().activeView()
+        view.setCameraOrientation(App.Rotation(App.Vector(1, 0, 0), 120) * App.Rotation(App.Vector(0, 1, 0), 25))
+        self.hand.click(self.person.button("Std_ViewFitAll"))
+        self.person.idle(0.3)
+
+    def plotted(self):
+        """Wait for a plot that was asked for."""
+        from freecad_am.gui.plots import dock
+
+        self.person.until(lambda: dock._dock.building.worker is None and dock._dock.canvas.ready, "the plot", 30)
+        self.person.idle(0.5)
+
     def play(self, factor, notches):
         """Play for a while with the simulation, then come closer to the nozzle."""
         self.tool("Simulate")
