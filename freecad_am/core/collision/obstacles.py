@@ -138,11 +138,15 @@ class Obstacles:
             meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
             return meets
         assert self.radius is not None and self.line is not None and self.beside is not None
-        line = self.line[node] - tip[:, None]
-        same = (self.since[node] >= own) & (_from_origin(line) < self.beside[node])
-        rows = np.flatnonzero(same)
-        meets[rows] = solid.rows(rows).meets_segments(line[rows, 0], line[rows, 1], axis[rows])
-        rows = np.flatnonzero(~same)
+        beside = np.flatnonzero(self.since[node] >= own)
+        line = self.line[node[beside]] - tip[beside, None]
+        next_ = _from_origin(line) < self.beside[node[beside]]
+        rows, line = beside[next_], line[next_]
+        meets[rows] = solid.rows(rows).meets_segments(line[:, 0], line[:, 1], axis[rows])
+        # most are below the solid's lower end: a box about a piece that lies across the axes tells it less well
+        whole = np.einsum("kcj,kj->kc", offset, axis).max(axis=1) + self.radius[node] > solid.low
+        whole[rows] = False
+        rows = np.flatnonzero(whole)
         meets[rows] = separation.within(solid.rows(rows), axis[rows], offset[rows], self.radius[node[rows]])
         return meets
 

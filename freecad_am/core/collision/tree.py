@@ -16,12 +16,15 @@ PAIRS = 50_000  # of queries and nodes looked at together: memory does not grow 
 
 def packed(points: Array) -> Index:
     """An order of points (n, 3) in which every node of the tree holds neighbours: halves along the longest side of their
-    box again and again, cut between whole nodes."""
+    box again and again, cut between whole nodes; the last of these, whose nodes hold single things, are slices across it."""
     order = np.arange(len(points))
-    waiting = [(0, len(points), BRANCH ** int(np.log(max(len(points), 1)) / np.log(BRANCH) + 1))]
+    if not len(points):
+        return order
+    last = BRANCH * BRANCH
+    waiting = [(0, len(points), BRANCH ** int(np.log(len(points)) / np.log(BRANCH) + 1))]
     while waiting:
         low, high, ball = waiting.pop()
-        if high - low <= BRANCH:
+        if high - low <= last:
             continue
         while ball >= high - low:
             ball //= BRANCH
@@ -31,7 +34,11 @@ def packed(points: Array) -> Index:
         longest = (np.maximum.reduce(some) - np.minimum.reduce(some)).argmax()  # np.ptp takes twice as long for a few
         order[low:high] = mine[some[:, longest].argpartition(cut)]
         waiting += [(low, low + cut, ball), (low + cut, high, ball)]
-    return order
+    some, starts = points[order], np.arange(0, len(points), last)
+    longest = (np.maximum.reduceat(some, starts) - np.minimum.reduceat(some, starts)).argmax(axis=1)
+    node = np.arange(len(points)) // last
+    found: Index = order[np.lexsort((some[np.arange(len(points)), longest[node]], node))]
+    return found
 
 
 def sizes(count: int) -> list[int]:
