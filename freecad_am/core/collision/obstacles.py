@@ -93,6 +93,7 @@ class Obstacles:
         found = np.zeros(len(tip), dtype=bool)
         top = len(self._levels[-1].radius)
         waiting = [(len(self._levels) - 1, np.repeat(np.arange(len(tip)), top), np.tile(np.arange(top), len(tip)))]
+        ready: list[tuple[Index, Index]] = []
         while waiting:
             depth, query, node = waiting.pop()
             left = np.flatnonzero(~found.take(query))
@@ -116,15 +117,26 @@ class Obstacles:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].radius))
                 waiting += [(depth - 1, *some) for some in tree.parts(query, node)]
                 continue
-            for q, n in tree.parts(query, node):
-                left = np.flatnonzero(~found.take(q))
-                q, n = q.take(left), n.take(left)
-                meets = self._meets(solid.rows(q), tip[q], axis[q], n, own[q])
-                found[q[meets]] = True
+            # single ones are looked at when there are many: that costs less each
+            ready.append((query, node))
+            if sum(len(query) for query, _ in ready) > tree.PAIRS:
+                self._look(solid, tip, axis, own, ready, found)
+                ready = []
+        self._look(solid, tip, axis, own, ready, found)
         return found
 
-    def _meets(self, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index) -> Mask:
-        """Whether obstacles (k,) reach into solids."""
+    def _look(
+        self, solid: Frustum, tip: Array, axis: Array, own: Index, ready: list[tuple[Index, Index]], found: Mask
+    ) -> None:
+        """Mark the queries that meet one of their single obstacles."""
+        if ready:
+            for query, node in tree.parts(*(np.concatenate(column) for column in zip(*ready))):
+                left = np.flatnonzero(~found.take(query))
+                q, n = query.take(left), node.take(left)
+                found[q[self._meets(q, solid.rows(q), tip[q], axis[q], n, own[q])]] = True
+
+    def _meets(self, query: Index, solid: Frustum, tip: Array, axis: Array, node: Index, own: Index) -> Mask:
+        """Whether obstacles (k,) reach into solids, those of queries (k,); of pieces of beads, whether any of a query do."""
         kind = self.corners.shape[1]
         offset = self.corners.take(node, axis=0) - tip[:, None]
         if kind == 1:
@@ -147,7 +159,9 @@ class Obstacles:
         whole = np.einsum("kcj,kj->kc", offset, axis).max(axis=1) + self.radius[node] > solid.low
         whole[rows] = False
         rows = np.flatnonzero(whole)
-        meets[rows] = separation.within(solid.rows(rows), axis[rows], offset[rows], self.radius[node[rows]])
+        meets[rows] = separation.any_within(
+            query[rows], solid.rows(rows), axis[rows], offset[rows], self.radius[node[rows]]
+        )
         return meets
 
     def distance(

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .frustum import Array, Frustum, Mask
-from .tolerances import CONVERGED
+from .frustum import Array, Frustum, Index, Mask
+from .tolerances import CONVERGED, ROUNDING
 
 MOST = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
 
@@ -29,7 +29,8 @@ def bounds(
     place = solid.nearest(middle, axis) - middle
     high[:] = np.sqrt(_dot(place, place))
     rows = np.flatnonzero(high > np.maximum(nearer, CONVERGED))
-    place, simplex = place[rows], np.repeat(place[rows, None], 3, axis=1)
+    place = place[rows]
+    simplex: Array | None = None
     solid, axis, points = solid.rows(rows), axis[rows], points[rows]
     for _ in range(MOST):
         if not len(rows):
@@ -39,9 +40,9 @@ def bounds(
         size = high[rows]
         low[rows] = np.maximum(low[rows], _dot(place, newest) / size)
         going = np.flatnonzero(low[rows] < np.minimum(farther[rows], size - CONVERGED))
-        rows, simplex, newest = rows[going], simplex[going], newest[going]
-        solid, axis, points, size = solid.rows(going), axis[going], points[going], size[going]
-        place, simplex = _nearest(simplex, newest)
+        rows, newest, size = rows[going], newest[going], size[going]
+        solid, axis, points = solid.rows(going), axis[going], points[going]
+        place, simplex = _of_two(place[going], newest) if simplex is None else _nearest(simplex[going], newest)
         now = np.sqrt(_dot(place, place))
         # no nearer than before: rounding has the last word
         high[rows] = np.minimum(now, size)
@@ -62,9 +63,43 @@ def within(solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
     return found
 
 
+def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
+    """(k,) as `within`, but of the hulls asked for by one query (k,) no more than needed to know whether any does: those
+    with the nearest middle are looked at first, and the others where that does not."""
+    deep = np.maximum(radius - CONVERGED, 0.0)
+    middle = points.mean(axis=1)
+    place = solid.nearest(middle, axis) - middle
+    gap = np.sqrt(_dot(place, place))
+    found: Mask = (gap < deep) | (gap == 0.0)
+    met = np.zeros(query.max(initial=-1) + 1, dtype=bool)
+    met[query[found]] = True
+    # no point of a hull is farther from its middle than a corner
+    spread = points - middle[:, None]
+    spread = np.sqrt(np.einsum("kcj,kcj->kc", spread, spread).max(axis=1))
+    left = np.flatnonzero(~met[query] & (gap - spread < deep + ROUNDING))
+    left = left[np.lexsort(((gap - deep)[left], query[left]))]
+    first = np.diff(query[left], prepend=-1) != 0
+    for some in (left[first], left[~first]):
+        now = some[~met[query[some]]]
+        found[now] = within(solid.rows(now), axis[now], points[now], radius[now])
+        met[query[now[found[now]]]] = True
+    return found
+
+
 def _dot(one: Array, other: Array) -> Array:
     product: Array = np.einsum("ij,ij->i", one, other)
     return product
+
+
+def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
+    """As `_nearest`, of the segments from points (k, 3) to the newest ones."""
+    edge = one - newest
+    square, pull, own = _dot(edge, edge), -_dot(newest, edge), _dot(newest, newest)
+    part = np.clip(pull / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    share = np.where(own - 2.0 * part * pull + part * part * square < own, part, 0.0)[:, None]
+    return newest + share * edge, np.stack([
+        np.where(share > 0.0, one, newest), np.where(share < 1.0, newest, one), np.where(share > 0.0, one, newest)
+    ], axis=1)
 
 
 def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
