@@ -11,24 +11,25 @@ import dataclasses
 import re
 from array import array
 from dataclasses import dataclass, field
-from itertools import chain, groupby
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.issues import InputError
 from ..core.program import Configuration, Event, ReadMoves
+from . import alike
+from .fanuc_records import Records, records_of, unreadable
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
 _TITLE = 1000  # bytes that hold the first line
 # what a unit of a move says: duration s, speed mm/s, share
-_TOLD = {
-    "sec": (1.0, np.nan, np.nan), "msec": (0.001, np.nan, np.nan), "mm/sec": (np.nan, 1.0, np.nan),
-    "%": (np.nan, np.nan, 0.01),
-}
+_UNITS = ("sec", "msec", "mm/sec", "%")
+_TOLD = np.array([(1.0, np.nan, np.nan), (0.001, np.nan, np.nan), (np.nan, 1.0, np.nan), (np.nan, np.nan, 0.01)])
+_SPEED, _SHARE = _UNITS.index("mm/sec"), _UNITS.index("%")
 _MOST_CNT = 100.0
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
@@ -44,45 +45,45 @@ _WAIT = re.compile(r"WAIT +(\d*\.(\d+))\(sec\)$")
 _INPUT = re.compile(r"WAIT DI\[(\d+)(?::[^\]]*)?\]=ON$")
 _HARMLESS = re.compile(r"$|!|//|--eg:")
 
-_RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
-_FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
-_DECIMALS = re.compile(r"\.(\d+)")
-_NUMBER = r" *(-?\d*\.\d+) *"
-
-
-def _values(names: str, units: str) -> str:
-    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split(), strict=True))
-
-
-_JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-_CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
-_POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
-
-
-_Move = tuple[str | Any, ...]  # letter, position, number, unit, FINE, CNT
-
-
 class _Instruction(NamedTuple):
-    """An instruction and the number of its line; or moves that follow each other, and those of theirs."""
+    """An instruction and the number of its line; or moves that follow each other, by the first of them and the one after
+    the last."""
 
     number: int
     text: str
-    moves: list[_Move]
-    numbers: list[int]
+    first: int = 0
+    end: int = 0
+
+
+@dataclass
+class _Moves:
+    """All moves of a file in order (n,): the numbers of their lines, positions, numbers and the units of these, whether they
+    are straight, and CNT, NaN of those that stop."""
+
+    line: Index
+    point: Index
+    value: Array
+    unit: Index
+    straight: Mask
+    corner: Array
 
 
 @dataclass
 class _Listing:
-    """One file: its instructions and its positions."""
+    """One file: its instructions, its moves, and its positions in the order of their numbers."""
 
     file: str
     instructions: list[_Instruction]
-    index: dict[int, int]
-    values: Array
-    configuration: list[tuple[str, ...]]
-    cartesian: bool
-    frames: list[tuple[str, str]]
-    digits: float
+    moves: _Moves
+    records: Records
+
+    def rows(self, points: Index) -> Index:
+        """Which positions those numbered (k,) are, -1 where there is none."""
+        known = self.records.point
+        if not len(known):
+            return np.full(len(points), -1)
+        at = np.minimum(np.searchsorted(known, points), len(known) - 1)
+        return np.where(known[at] == points, at, -1)
 
 
 def _floats() -> array[float]:
@@ -101,7 +102,7 @@ class _Run:
     values: list[Array] = field(default_factory=list)
     configuration: list[tuple[str, ...]] = field(default_factory=list)
     digits: float = 0.0
-    pending: list[int] = field(default_factory=list)
+    pending: list[Index] = field(default_factory=list)
     duration: array[float] = field(default_factory=_floats)
     speed: array[float] = field(default_factory=_floats)
     share: array[float] = field(default_factory=_floats)
@@ -124,10 +125,11 @@ class _Run:
     def take(self, listing: _Listing) -> None:
         """Take over the records that are pending."""
         if self.pending:
-            self.values.append(listing.values[self.pending])
-            self.digits = max(self.digits, listing.digits)
+            rows, told = np.concatenate(self.pending), listing.records
+            self.values.append(told.values[rows])
+            self.digits = max(self.digits, told.digits)
             if self.cartesian:
-                self.configuration += [listing.configuration[row] for row in self.pending]
+                self.configuration += [told.configuration[row] for row in rows]
             self.pending = []
 
 
@@ -138,16 +140,16 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     """
     named = {_name(file, files[file]): file for file in sorted(files)}
     if len(named) < len(files):
-        raise _unreadable("program", "two files hold a program of the same name")
+        raise unreadable("program", "two files hold a program of the same name")
     calling = [content.decode("latin-1") for content in files.values() if b"CALL " in content]
     called = {call.upper() for content in calling for call in _CALLS.findall(content)}
     main = [name for name in named if name not in called]
     if len(main) != 1:
-        raise _unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
+        raise unreadable("program", f"{len(main)} programs are called by none of the others, expected one")
     run = _Run()
     _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
     if not run.duration:
-        raise _unreadable("program", "there are no moves")
+        raise unreadable("program", "there are no moves")
     return _moves(run)
 
 
@@ -193,7 +195,7 @@ def _name(file: str, content: bytes) -> str:
     """The name of a program, upper case."""
     title = re.match(r"/PROG +(\w+)\s*$", _lines(content[:_TITLE])[0])
     if title is None:
-        raise _unreadable(file, _NO_LISTING)
+        raise unreadable(file, _NO_LISTING)
     return title[1].upper()
 
 
@@ -201,56 +203,59 @@ def _listing(file: str, content: bytes) -> _Listing:
     lines = _lines(content)
     marks = [lines.index(section) if section in lines else -1 for section in ("/MN", "/POS", "/END")]
     if -1 in marks or marks != sorted(marks):
-        raise _unreadable(file, _NO_LISTING)
+        raise unreadable(file, _NO_LISTING)
     start, positions, end = marks
-    instructions: list[_Instruction] = []
-    moves: list[_Move] = []
-    for number, line in enumerate(lines[start + 1 : positions], start + 2):
-        if move := _MOTION.match(line):
-            if not moves:
-                instructions.append(_Instruction(number, "", moves, []))
-            instructions[-1].numbers.append(number)
-            moves.append(move.groups())
-            continue
-        if not line.strip():
-            continue
-        moves = []
-        statement = _LINE.match(line)
-        if statement is None:
-            raise _unreadable(f"{file} line {number}", f"{line.strip()!r} is no instruction")
-        instructions.append(_Instruction(number, statement[1].strip(), [], []))
-    records = "\n".join(lines[positions + 1 : end])
-    starts = _RECORD_START.findall(records)
-    found = _JOINTS.findall(records)
-    cartesian = not found
-    found = found or _POSE.findall(records)
-    if [record[0] for record in found] != starts:
-        understood = {record[0] for record in found}
-        bad = next((point for point in starts if point not in understood), starts[-1])
-        number = next(n for n, line in enumerate(lines, 1) if n > positions and re.match(rf"P\[{bad}\b", line))
-        raise _unreadable(f"{file} line {number}", f"the record of P[{bad}] is not understood")
-    index = {int(record[0]): row for row, record in enumerate(found)}
-    if len(index) < len(found):
-        raise _unreadable(file, "a position is recorded twice")
-    texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
-    decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
-    return _Listing(
-        file, instructions, index, np.fromstring(texts, sep=" ").reshape(-1, 6),
-        [record[3:-6] for record in found], cartesian, [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals,
+    instructions, moves = _instructions(file, lines[start + 1 : positions], start + 2)
+    records = records_of(file, lines, positions, end)
+    return _Listing(file, instructions, moves, records)
+
+
+def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instruction], _Moves]:
+    """The instructions of lines, of which the first has a number, and all moves among them."""
+    count = len(lines)
+    moves = _Moves(
+        np.arange(number, number + count), np.zeros(count, dtype=np.intp), np.zeros(count), np.zeros(count, dtype=np.intp),
+        np.zeros(count, dtype=bool), np.full(count, np.nan),
     )
+    moving, others = np.zeros(count, dtype=bool), []
+    for shape, some in alike.shapes(lines).items():
+        move = _MOTION.match(shape)
+        if move is None:
+            others += some
+            continue
+        moving[some] = True
+        spans = [move.span(group) for group in (2, 3, 6) if move[group]]
+        told = alike.numbers([lines[row] for row in some], shape, spans)
+        moves.point[some], moves.value[some] = told[:, 0], told[:, 1]
+        moves.unit[some], moves.straight[some] = _UNITS.index(move[4]), move[1] == "L"
+        if move[6]:
+            moves.corner[some] = told[:, 2]
+    before = np.cumsum(moving)  # how many moves there are up to a line
+    instructions, done = [], 0
+    for row in [*sorted(row for row in others if lines[row].strip()), count]:
+        moved = int(before[row - 1]) if row else 0
+        if moved > done:
+            instructions.append(_Instruction(0, "", done, moved))
+            done = moved
+        if row < count:
+            statement = _LINE.match(lines[row])
+            if statement is None:
+                raise unreadable(f"{file} line {number + row}", f"{lines[row].strip()!r} is no instruction")
+            instructions.append(_Instruction(number + row, statement[1].strip()))
+    return instructions, _Moves(*(getattr(moves, entry.name)[moving] for entry in dataclasses.fields(moves)))
 
 
 def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: tuple[str, ...]) -> None:
     """Carry out the instructions of a program in order, and of those it calls. A listing is there while it is followed."""
     if name in callers:
-        raise _unreadable(files[name][0], "it calls itself")
+        raise unreadable(files[name][0], "it calls itself")
     listing = _listing(*files[name])
-    for position, (number, statement, moves, numbers) in enumerate(listing.instructions):
-        if numbers:
-            _move(listing, numbers, moves, run)
+    for position, (number, statement, first, end) in enumerate(listing.instructions):
+        if end > first:
+            _move(listing, slice(first, end), run)
         elif output := _OUTPUT.match(statement):
             if run.output not in ("", output[1]):
-                raise _unreadable(f"{listing.file} line {number}", "a second output is switched")
+                raise unreadable(f"{listing.file} line {number}", "a second output is switched")
             run.output, run.on = output[1], output[2] == "ON"
             run.happens("on" if run.on else "off", float(output[1]), "DO")
         elif call := _CALL.match(statement):
@@ -269,74 +274,67 @@ def _follow(name: str, files: dict[str, tuple[str, bytes]], run: _Run, callers: 
             run.happens("layer", float(layer[1]))
         elif frame := _FRAME.match(statement):
             if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
-                raise _unreadable(f"{listing.file} line {number}", f"a second U{frame[1]} is selected")
+                raise unreadable(f"{listing.file} line {number}", f"a second U{frame[1]} is selected")
             run.recorded = ("", "")
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
         elif not _HARMLESS.match(statement):
-            raise _unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
+            raise unreadable(f"{listing.file} line {number}", f"the instruction {statement!r} is not understood")
     run.take(listing)
 
 
-def _move(listing: _Listing, numbers: list[int], moves: list[_Move], run: _Run) -> None:
-    """Carry out moves that follow each other, on the lines of these numbers, all of them column by column."""
-    letters, points, values, units, fine, corners = zip(*moves)
-    rows = [listing.index.get(int(point), -1) for point in points]
-    sound = {("J", unit) for unit in _TOLD if unit != "mm/sec"} | {("L", unit) for unit in _TOLD if unit != "%"}
-    if (
-        -1 in rows or not {*zip(letters, units)} <= sound or ("L" in letters and not listing.cartesian)
-        or (run.cartesian != listing.cartesian and run.duration)
-        or any(float(corner) > _MOST_CNT for corner in {*corners} - {None})
-    ):
-        for number, move in zip(numbers, moves):
-            _refuse(listing, move, run, number)
-    run.cartesian = listing.cartesian
-    done = 0
-    for frames, same in groupby([listing.frames[row] for row in rows]):
-        count = sum(1 for _ in same)
-        if frames != run.recorded:
-            _select(listing, rows[done], run, numbers[done])
-        run.user_frame.extend([run.numbers[0]] * count)
-        run.tool_frame.extend([run.numbers[1]] * count)
-        done += count
-    run.pending += rows
-    told = np.array([float(value) for value in values])[:, None] * np.array([_TOLD[unit] for unit in units])
-    for column, numbered in zip((run.duration, run.speed, run.share), told.T):
+def _move(listing: _Listing, some: slice, run: _Run) -> None:
+    """Carry out moves that follow each other, all of them column by column."""
+    moves, cartesian = listing.moves, listing.records.cartesian
+    unit, straight, corner = moves.unit[some], moves.straight[some], moves.corner[some]
+    rows = listing.rows(moves.point[some])
+    wrong = (rows < 0) | (straight & (not cartesian)) | (unit == np.where(straight, _SHARE, _SPEED)) | (corner > _MOST_CNT)
+    if run.cartesian != cartesian and run.duration:
+        wrong[:] = True
+    if wrong.any():
+        _refuse(listing, some.start + int(np.argmax(wrong)), run)
+    run.cartesian = cartesian
+    frames = listing.records.frames
+    selected = [frames[row] for row in rows]
+    changes = [k for k in range(len(rows)) if k == 0 or selected[k] != selected[k - 1]]
+    for first, end in zip(changes, [*changes[1:], len(rows)]):
+        if selected[first] != run.recorded:
+            _select(listing, int(rows[first]), run, int(moves.line[some][first]))
+        run.user_frame.extend([run.numbers[0]] * (end - first))
+        run.tool_frame.extend([run.numbers[1]] * (end - first))
+    run.pending.append(rows)
+    told = moves.value[some, None] * _TOLD[unit]
+    for column, numbered in zip((run.duration, run.speed, run.share, run.blend), (*told.T, corner)):
         column.frombytes(numbered.tobytes())
-    run.deposit += bytes([run.on]) * len(moves)
-    run.linear += bytes([letter == "L" for letter in letters])
-    run.blend.extend([np.nan if stops else float(corner) for stops, corner in zip(fine, corners)])
+    run.deposit += bytes([run.on]) * len(rows)
+    run.linear += straight.tobytes()
 
 
-def _refuse(listing: _Listing, move: _Move, run: _Run, number: int) -> None:
+def _refuse(listing: _Listing, move: int, run: _Run) -> None:
     """InputError for what cannot be understood of a move."""
-    letter, point, _, unit, _, corner = move
-    straight = letter == "L"
-    if int(point) not in listing.index:
-        raise _unreadable(_at(listing, number), f"P[{point}] is not recorded")
-    if run.cartesian != listing.cartesian and run.duration:
-        raise _unreadable(_at(listing, number), "joint and Cartesian positions are mixed")
-    if straight and not listing.cartesian:
-        raise _unreadable(_at(listing, number), "a position is moved to in another way than it is recorded")
-    if (unit == ("%" if straight else "mm/sec")) or (corner and float(corner) > _MOST_CNT):
-        raise _unreadable(_at(listing, number), f"{unit} or CNT{corner} is not understood here")
+    moves, records = listing.moves, listing.records
+    where, unit, corner = _at(listing, int(moves.line[move])), int(moves.unit[move]), moves.corner[move]
+    if moves.point[move] not in records.point:
+        raise unreadable(where, f"P[{moves.point[move]}] is not recorded")
+    if run.cartesian != records.cartesian and run.duration:
+        raise unreadable(where, "joint and Cartesian positions are mixed")
+    if moves.straight[move] and not records.cartesian:
+        raise unreadable(where, "a position is moved to in another way than it is recorded")
+    raise unreadable(where, f"{_UNITS[unit]} or CNT{'' if np.isnan(corner) else int(corner)} is not understood here")
 
 
 def _select(listing: _Listing, row: int, run: _Run, number: int) -> None:
     """Look at the frames that a position is recorded in; those like it need not be looked at until others are selected."""
-    for word, recorded in zip(("FRAME", "TOOL"), listing.frames[row], strict=True):
-        if recorded not in ("F", run.frame.get(word)):
-            point = next(point for point, found in listing.index.items() if found == row)
-            raise _unreadable(
-                _at(listing, number), f"P[{point}] is recorded in another U{word} than the one selected"
+    recorded = listing.records.frames[row]
+    for word, frame in zip(("FRAME", "TOOL"), recorded, strict=True):
+        if frame not in ("F", run.frame.get(word)):
+            raise unreadable(
+                _at(listing, number),
+                f"P[{listing.records.point[row]}] is recorded in another U{word} than the one selected",
             )
-    run.recorded = listing.frames[row]
+    run.recorded = recorded
     run.numbers = float(run.frame.get("FRAME", "nan")), float(run.frame.get("TOOL", "nan"))
 
 
 def _at(listing: _Listing, number: int) -> str:
     return f"{listing.file} line {number}"
-
-
-def _unreadable(where: str, why: str) -> InputError:
-    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")

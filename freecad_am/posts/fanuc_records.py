@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads the positions of FANUC listings: joint values, or poses with their configuration."""
+
+from __future__ import annotations
+
+import re
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+from . import alike
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+_RECORD_START = re.compile(r"^P\[(\d+)", re.MULTILINE)
+_FRAMES = r"P\[(\d+)[^\]]*\]\{\s*GP1:\s*UF : (\d+|F), UT : (\d+|F),\s*"
+_DECIMALS = re.compile(r"\.(\d+)")
+_NUMBER = r" *(-?\d*\.\d+) *"
+
+
+def _values(names: str, units: str) -> str:
+    return r",\s*".join(f"{name} ?={_NUMBER}{unit}" for name, unit in zip(names.split(), units.split(), strict=True))
+
+
+_JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
+# one of them, from the end of the line before to its own end, with the digits of its names as numbers too
+_ONE = re.compile(
+    r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
+)
+_POINT, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
+_CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
+_POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
+
+
+class Records(NamedTuple):
+    """Positions of a file by their numbers (n,), values (n, 6), configurations, frames, and half a last digit."""
+
+    point: Index
+    values: Array
+    configuration: list[tuple[str, ...]]
+    frames: list[tuple[str, str]]
+    digits: float
+    cartesian: bool
+
+
+def records_of(file: str, lines: list[str], positions: int, end: int) -> Records:
+    """The positions that stand between two lines of a file, by number. InputError UNREADABLE_PROGRAM for what is not
+    understood, or recorded twice."""
+    text = "\n".join(lines[positions + 1 : end])
+    found = _joint_records(text) or _any_records(file, text, lines, positions)
+    order = np.argsort(found.point, kind="stable")
+    if (np.diff(found.point[order]) == 0).any():
+        raise unreadable(file, "a position is recorded twice")
+    some = order.tolist()
+    return found._replace(
+        point=found.point[order], values=found.values[order], frames=[found.frames[row] for row in some],
+        configuration=[found.configuration[row] for row in some],
+    )
+
+
+def _joint_records(text: str) -> Records | None:
+    """The positions of a text that holds nothing else than joint positions; None where it may."""
+    *records, rest = f"\n{text}".split("};")
+    if not records or rest.strip():
+        return None
+    point, values, decimals = np.zeros(len(records), dtype=np.intp), np.zeros((len(records), 6)), 99
+    frames = [("", "")] * len(records)
+    for shape, some in alike.shapes(records, "};").items():
+        found = _ONE.fullmatch(shape)
+        if found is None:
+            return None
+        mine = [records[row] for row in some]
+        told = alike.numbers(mine, shape, [found.span(group) for group in (_POINT, _GROUP, *_NAMES, *_VALUES)])
+        if (told[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
+            return None
+        point[some], values[some] = told[:, 0], told[:, 8:]
+        decimals = min(decimals, *(len(found[group].partition(".")[2]) for group in _VALUES))
+        (a, b), (c, d) = found.span(3), found.span(4)
+        for row, record in zip(some, mine):
+            frames[row] = record[a:b], record[c:d]
+    return Records(point, values, [()] * len(records), frames, 0.5 * 10.0**-decimals, False)
+
+
+def _any_records(file: str, text: str, lines: list[str], positions: int) -> Records:
+    """The positions of a text, which begins after that line, whatever stands between them."""
+    starts = _RECORD_START.findall(text)
+    found = _JOINTS.findall(text)
+    cartesian = not found
+    found = found or _POSE.findall(text)
+    if [record[0] for record in found] != starts:
+        understood = {record[0] for record in found}
+        bad = next((point for point in starts if point not in understood), starts[-1])
+        number = next(n for n, line in enumerate(lines, 1) if n > positions and re.match(rf"P\[{bad}\b", line))
+        raise unreadable(f"{file} line {number}", f"the record of P[{bad}] is not understood")
+    texts = " ".join(chain.from_iterable([record[-6:] for record in found]))
+    decimals = min(map(len, _DECIMALS.findall(texts)), default=0)
+    return Records(
+        np.array([int(record[0]) for record in found], dtype=np.intp), np.fromstring(texts, sep=" ").reshape(-1, 6),
+        [record[3:-6] for record in found], [(record[1], record[2]) for record in found], 0.5 * 10.0**-decimals, cartesian,
+    )
+
+
+def unreadable(where: str, why: str) -> InputError:
+    """What is raised for a text that is not understood."""
+    return InputError("UNREADABLE_PROGRAM", where, f"{why}; write the program anew")
