@@ -31,7 +31,7 @@ _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\
 _ONE = re.compile(
     r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
 )
-_POINT, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
+_NUMBERED, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
 _CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
 _POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
 
@@ -74,7 +74,7 @@ def _joint_records(text: str) -> Records | None:
         if found is None:
             return None
         mine = [records[row] for row in some]
-        told = alike.numbers(mine, shape, [found.span(group) for group in (_POINT, _GROUP, *_NAMES, *_VALUES)])
+        told = alike.numbers(mine, shape, [found.span(group) for group in (_NUMBERED, _GROUP, *_NAMES, *_VALUES)])
         if (told[:, 1:8] != [1, 1, 2, 3, 4, 5, 6]).any():
             return None
         point[some], values[some] = told[:, 0], told[:, 8:]
