@@ -5367,7 +5367,7 @@
         <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc_records.py"/>
         <source>a position is recorded twice</source>
         <translation>une position est enregistrée deux fois</translation>
     </message>
@@ -8882,7 +8882,7 @@
         <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc_records.py"/>
         <source>the record of P[{0}] is not understood</source>
         <translation>l&apos;enregistrement de P[{0}] n&apos;est pas compris</translation>
     </message>
@@ -10752,7 +10752,7 @@
         <translation>{0} ; utilisez process.between_layers.input, strategy.wait, ou une autre commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/fanuc_records.py"/>
         <source>{0}; write the program anew</source>
         <translation>{0} ; écrivez le programme de nouveau</translation>
     </message>
