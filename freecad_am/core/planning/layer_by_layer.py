@@ -66,7 +66,9 @@ def _searched(
     progress(0.4, "refining layers")
     wanted = np.array([k not in helped for k in each])
     wanted |= np.array([len(helped.get(int(k), ())) > 1 and bool(joined[k]) for k in each])
-    refined = refine.refine(task, full, threshold, starts, wanted)
+    refined = refine.refine(
+        task, full, threshold, starts, wanted, lambda share: progress(0.4 + 0.3 * share, "refining layers")
+    )
     progress(0.7, "settling")
     settled = valley.settle(task, coarse, coarse_threshold, refined.coefficients)
     paths = judged(task, beads, places, full, threshold, settled, refined)

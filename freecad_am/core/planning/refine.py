@@ -7,6 +7,7 @@ through SLSQP one by one.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,12 +55,13 @@ class _State:
 
 
 def refine(
-    task: Task, points: Points, thresholds: Array, starts: Array, wanted: NDArray[np.bool_] | None = None
+    task: Task, points: Points, thresholds: Array, starts: Array, wanted: NDArray[np.bool_] | None = None,
+    told: Callable[[float], None] = lambda share: None,
 ) -> Refined:
     """Improve the coefficients of every bead, or of the wanted (B,); points are all points of the beads.
 
     starts: (S, B, degree + 1), the first the one to be preferred; NaN where a bead has no further one. Closed beads that
-    join up stay joined.
+    join up stay joined. told: the share of the beads that is done, before each; it may raise to cancel.
     """
     first = _state(task, points, thresholds, starts[0], slopes=False)
     tolerance = task.parameters.tolerance
@@ -71,7 +73,9 @@ def refine(
     reasons = [STATIONARY] * points.beads
     iterations = [0] * points.beads
     directions = basis.changes(task, points, starts.shape[2] - 1)
-    for bead in np.flatnonzero(~done):
+    left = np.flatnonzero(~done)
+    for number, bead in enumerate(left):
+        told(number / len(left))
         part, chosen = points.only(int(bead))
         tried = [
             _climbed(_Bead(task, part, thresholds[chosen]), start, directions[bead])

@@ -235,6 +235,21 @@ def test_progress_may_cancel(sliced, cell_of):
         plan_joints(toolpath, cell_of(toolpath), JointParameters(), cancel)
 
 
+def test_progress_goes_on_layer_by_layer_and_may_cancel_between_them(sliced, cell_of):
+    toolpath, seen = sliced("sphere", 10.0), []
+    cell, parameters = cell_of(toolpath, limits="maker"), JointParameters()
+    plan_joints(toolpath, cell, parameters, lambda fraction, text: seen.append((fraction, text)))
+    fractions = [fraction for fraction, text in seen if text == "refining layers"]
+    assert len(set(fractions)) >= 3 and fractions == sorted(fractions)  # one for each layer that is refined
+
+    def cancel(fraction, text):
+        if fraction == fractions[-1]:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        plan_joints(toolpath, cell, parameters, cancel)
+
+
 def test_a_narrow_rotation_range_is_kept_or_refused(sliced, cell_of):
     toolpath = sliced("sphere", 20.0)
     cell = cell_of(toolpath)
