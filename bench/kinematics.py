@@ -24,7 +24,7 @@ from rows import Row
 POSES, FEW, ROUNDS = 2000, 200, 15
 MACHINE = "fanuc-arcmate120ic"
 LENGTH = 1000.0
-OTHER_WRISTS = {"ur-ur10e": 2.0}  # machines, and us a pose
+OTHER_WRISTS = {"ur-ur10e": 2.0, "fanuc-crx10ia": 60.0}  # machines, and us a pose
 
 
 def run() -> list[Row]:

@@ -20,23 +20,24 @@ cell: {{machine: {machine}, platform_diameter: 100 mm, {cell}}}
 joints: {{method: layer-by-layer}}
 program: {{post: {post}}}
 """
-POINTS = {"ur-ur10e": (700.0, 0.0, 300.0)}
-CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]")]
+POINTS = {"ur-ur10e": (700.0, 0.0, 300.0), "fanuc-crx10ia": (710.0, 0.0, 839.0)}
+CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]"), ("fanuc-crx10ia", "[front, up, noflip]")]
 
 
 @pytest.mark.parametrize(("name", "branch"), CELLS, ids=[f"{name} {branch.split(',')[0]}" for name, branch in CELLS])
 def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branch):
     point = POINTS[name]
     cell = f"deposition_point: [{', '.join(map(str, point))}, 0, 0, 0], branch: {branch}"
-    workshop.write_job(JOB.format(machine=name, cell=cell, post="none"))
+    workshop.write_job(JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "none"))
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 0, done.err
+    assert ("note[FOLLOWED]" in done.err) == (name == "fanuc-crx10ia")
     files = workshop.files()
     rows, points = deposit(files["waypoints.csv"].decode())
     report = json.loads(files["report.json"])
     assert report["status"] == "ok" and report["joints"]["feasible"] is True
     assert len(report["joints"]["branch"]) == 3
-    assert branch == "auto" or report["joints"]["branch"] == ["front", "up", "flip"]
+    assert branch == "auto" or f"[{', '.join(report['joints']['branch'])}]" == branch
     q = np.radians([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
     arm = machine.load(name)
     limits = arm.limits("maker")
@@ -46,14 +47,20 @@ def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branc
     seen = frames.inverse(platform) @ station
     # the hemisphere's rim is its first layer, on the platform
     np.testing.assert_allclose(seen[:, :3, 3], points, atol=1e-4)
+    if name.startswith("fanuc"):
+        assert "program/CUP.LS" in files  # written where what is read back is as planned alone
     layers = np.array([int(row["layer"]) for row in rows])
     for layer in range(layers.max() + 1):
         step = np.abs(np.diff(q[layers == layer], axis=0))
         assert step.max() < np.radians(15.0)
 
 
-def test_cartesian_programs_are_refused(workshop):
+def test_programs_that_nobody_can_check_are_refused(workshop):
     cell = "deposition_point: [700, 0, 300, 0, 0, 0], branch: auto"
     workshop.write_job(JOB.format(machine="ur-ur10e", cell=cell, post="fanuc"))
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 2 and "error[WRONG_CONTROLLER]" in done.err and "no post for it yet" in done.err
+    cell = "deposition_point: [710, 0, 839, 0, 0, 0], branch: [front, up, noflip]"
+    workshop.write_job(JOB.format(machine="fanuc-crx10ia", cell=cell, post="fanuc, motion: cartesian"))
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 2 and "error[NOT_FOR_WRIST]" in done.err and "use joint" in done.err

@@ -52,4 +52,5 @@ def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, worksh
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
     done = planned("arm.urdf")
     assert done.status == 2 and "error[NO_CLOSED_FORM]" in done.err
-    assert "arm.urdf from base_link to tool0: this cannot be planned for: the wrist is not spherical: axis 6" in done.err
+    assert "arm.urdf from base_link to tool0: this cannot be planned for: the wrist is not spherical, and" in done.err
+    assert "axis 2 is 150 mm ahead of axis 1" in done.err

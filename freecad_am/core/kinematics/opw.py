@@ -119,6 +119,11 @@ class OpwArm:
         )
         return bent
 
+    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
+        found = self.inverse(poses)
+        return found, np.where(np.isnan(found[..., 0]), -1, np.arange(8)[:, None])
+
     def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
         """The branch index (...) that joint angles `q` (..., 6) are in."""
         angles = np.asarray(q, float)

@@ -50,14 +50,14 @@ def recognise(chain: Chain) -> OpwArm:
     """
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
-        raise _refused(f"it has {chain.axes} axes, {slides} of which slide; a robot that can be planned has six that turn")
+        raise refused(f"it has {chain.axes} axes, {slides} of which slide; a robot that can be planned has six that turn")
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
     arm = _arm(at_rest, centre)
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     off = np.abs(arm.forward(q) - chain.forward(q))
     if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
-        raise _refused(f"its closed form is {off[:, :3, 3].max():.3g} mm and {off[:, :3, :3].max():.2g} (entries of the "
+        raise refused(f"its closed form is {off[:, :3, 3].max():.3g} mm and {off[:, :3, :3].max():.2g} (entries of the "
                        "rotation) off; give the geometry with more digits")
     return arm
 
@@ -79,16 +79,16 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
     z, p = at_rest.directions, at_rest.origins
     foot = p[0] - z[0] * float(z[0] @ p[0])
     if np.hypot(z[0, 0], z[0, 1]) > STRAIGHT or np.linalg.norm(foot) > NEAR_MM:
-        raise _refused("axis 1 is not the Z of the base frame")
+        raise refused("axis 1 is not the Z of the base frame")
     if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < STRAIGHT for axis in (2, 3)):
-        raise _refused("the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots")
+        raise refused("the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots")
     for first, second in ((0, 1), (2, 3), (3, 4), (4, 5)):
         off = math.asin(min(1.0, abs(float(z[first] @ z[second]))))
         if off > STRAIGHT:
-            raise _refused(f"axes {first + 1} and {second + 1} are {90.0 - math.degrees(off):.6g} deg apart, not 90 deg")
+            raise refused(f"axes {first + 1} and {second + 1} are {90.0 - math.degrees(off):.6g} deg apart, not 90 deg")
     off = math.asin(min(1.0, float(np.linalg.norm(np.cross(z[1], z[2])))))
     if off > STRAIGHT:
-        raise _refused(f"axes 2 and 3 are not parallel, but {math.degrees(off):.6g} deg apart")
+        raise refused(f"axes 2 and 3 are not parallel, but {math.degrees(off):.6g} deg apart")
     # the point of axis 5 next to axis 4, and how far both others pass it by
     across = p[3] - p[4]
     centre: Array = p[4] + z[4] * float(z[4] @ across)
@@ -96,7 +96,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         to = centre - p[axis]
         off = float(np.linalg.norm(to - z[axis] * float(z[axis] @ to)))
         if off > NEAR_MM:
-            raise _refused(f"the wrist is not spherical: axis {axis + 1} passes {off:.6g} mm beside the point where axes "
+            raise refused(f"the wrist is not spherical: axis {axis + 1} passes {off:.6g} mm beside the point where axes "
                            f"{'5 and 6' if axis == 3 else '4 and 5'} meet")
     return centre
 
@@ -111,25 +111,25 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     ahead, above = float(to_elbow @ x), float(to_elbow @ up)
     upper = math.hypot(ahead, above)
     if upper < NEAR_MM:
-        raise _refused("axes 2 and 3 are the same line")
+        raise refused("axes 2 and 3 are the same line")
     turn2 = math.atan2(ahead, above)
     to_wrist = centre - p[2]
     length = float(to_wrist @ z[3])
     if abs(length) < NEAR_MM:
-        raise _refused("the wrist centre lies above axis 3, without a forearm along axis 4")
+        raise refused("the wrist centre lies above axis 3, without a forearm along axis 4")
     sign4 = 1 if length > 0.0 else -1
     forearm = z[3] * sign4
     turn23 = math.atan2(float(forearm @ x), float(forearm @ up))
     across = np.cos(turn23) * x - np.sin(turn23) * up
     out = flange[:3, 2]
     if np.linalg.norm(np.cross(out, z[5])) > STRAIGHT:
-        raise _refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
+        raise refused("the Z of the flange does not lie along axis 6; take the frame tool0 of a URDF, or turn the flange",
                        FLANGE)
     beside = flange[:3, 3] - centre
     if np.linalg.norm(beside - out * float(beside @ out)) > NEAR_MM:
-        raise _refused("the flange's origin does not lie on axis 6", FLANGE)
+        raise refused("the flange's origin does not lie on axis 6", FLANGE)
     if float(beside @ out) < -NEAR_MM and float(out @ forearm) < 0.0:
-        raise _refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
+        raise refused("the Z of the flange points back into the wrist, not out of it; take another link of a URDF, such as "
                        "tool0 or fanuc_flange, or turn the flange", FLANGE)
     # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
     turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
@@ -182,5 +182,5 @@ def clean(value: float) -> float:
     return rounded + 0.0 if abs(rounded - value) < 1e-11 else value
 
 
-def _refused(reason: str, where: str = "geometry") -> InputError:
+def refused(reason: str, where: str = "geometry") -> InputError:
     return InputError("NO_CLOSED_FORM", where, f"this cannot be planned for: {reason}")

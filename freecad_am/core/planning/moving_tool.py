@@ -19,6 +19,7 @@ from ..geometry import frames
 from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..toolpath import Bead
+from . import following
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -109,6 +110,6 @@ def _joints(motion: Motion, cell: Cell, flange: Array, near: Array) -> Array:
     arm = cell.machine.arm
     assert arm is not None
     branch = int(np.bincount(arm.branch_of(motion.joints[motion.reachable])).argmax())
-    joints = arm.inverse_branch(flange, branch)
+    joints = following.from_before(arm, flange, branch, near) if arm.followed else arm.inverse_branch(flange, branch)
     turned: Array = joints + 2.0 * np.pi * np.round((near - joints) / (2.0 * np.pi))
     return turned

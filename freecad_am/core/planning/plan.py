@@ -75,6 +75,11 @@ def plan_joints(
         if not has_errors(found[1]):
             task, (paths, issues) = other, found
             break
+    if task.arm.followed:
+        issues = [*issues, Issue(
+            NOTE, "FOLLOWED", "several solutions of this arm bear the same configuration; along each bead the one it begins "
+            "with is followed",
+        )]
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
     )

@@ -71,7 +71,7 @@ def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -
 
 def _near(task: Task, at: Points, phi: Array, before: Array) -> Array:
     """Joints at phi in the turns nearest to the joints before; NaN where unreachable."""
-    joints = task.raw_joints(at, phi)
+    joints = task.raw_joints(at, phi, before)
     joints -= TURN * np.nan_to_num(np.round((joints - before) / TURN))
     return joints
 
@@ -85,7 +85,7 @@ def _searched(task: Task, at: Points, threshold: Array, before: Array | None) ->
     """The best of a whole turn of candidates: the least motion among the feasible, else the largest margin."""
     turn = np.arange(CANDIDATES) * (TURN / CANDIDATES) - np.pi
     phi = np.repeat(turn[:, None], len(at), axis=1)
-    joints = task.raw_joints(at, phi)
+    joints = task.raw_joints(at, phi, before)
     if before is None:
         joints = task.in_range(joints, at)
     else:

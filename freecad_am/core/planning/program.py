@@ -60,9 +60,11 @@ def build(
     waits: s that the machine stands before each layer (`Layer.wait`), none when left out; `between_layers.wait` counts
     towards them. Before the first layer that is run there is nothing to wait for.
 
-    Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read.
+    Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read,
+    NOT_FOR_WRIST.
     """
     check_controller(cell.machine, parameters.post)
+    check_wrist(cell.machine, parameters.motion)
     blocks = _blocks(motion, cell, process, parameters, waits, returns)
     return Program(
         name=name,
@@ -117,6 +119,15 @@ def check_controller(machine: Machine, post: str) -> None:
     known = f"use one of {', '.join(machine.posts)}" if machine.posts else (
         "there is no post for it yet: plan without a program; waypoints.csv has its axes")
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
+
+
+def check_wrist(machine: Machine, motion: str) -> None:
+    """InputError NOT_FOR_WRIST for Cartesian programs of robots without a spherical wrist."""
+    if motion == "cartesian" and not machine.is_table and machine.opw is None:
+        raise InputError(
+            "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
+            "configurations of cartesian positions is not known; use joint",
+        )
 
 
 def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:

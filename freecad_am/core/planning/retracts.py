@@ -22,6 +22,7 @@ from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..kinematics.five_axis import FiveAxis
 from ..parameters.joints import JointParameters
+from . import following
 from .retract_ways import (
     ASKED,
     LEANS_RAD,
@@ -211,7 +212,11 @@ class Retracts:
         arm = self.cell.machine.arm
         assert arm is not None
         phi = self.ends.phi[ways.end, None] + share * ways.turn[:, None]
-        raw = arm.inverse_branch(self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel()), self.branch).reshape(shape)
+        flange = self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel())
+        if arm.followed:
+            raw = following.step_by_step(arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints)
+        else:
+            raw = arm.inverse_branch(flange, self.branch).reshape(shape)
         before = np.concatenate([joints[:, None], raw[:, :-1]], axis=1)
         return raw + TURN * np.cumsum(np.round((before - raw) / TURN), axis=1), tip
 

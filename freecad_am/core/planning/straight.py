@@ -65,7 +65,7 @@ def _halved(task: Task, path: BeadPath, segments: NDArray[np.int64]) -> BeadPath
     new = at + np.arange(len(at))
     flange = task.cell.flange_poses(finer.points[new], finer.tool[new], phi[new])
     joints = middle(path.joints)
-    found = task.inverse(flange)
+    found = task.inverse(flange, joints[new])
     joints[new] = found - 2.0 * np.pi * np.round((found - joints[new]) / (2.0 * np.pi))
     condition = np.insert(path.condition, at, task.condition_at(flange, joints[new]))
     return dataclasses.replace(

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
+from ..kinematics.inverse.serial_arm import SerialArm
 from ..kinematics.limits import Limits
 from ..parameters.joints import JointParameters
+from . import following
 from .points import TURN, Points, unwrapped
 
 Array = NDArray[np.float64]
@@ -130,16 +132,35 @@ class Task:
             return value, ones
         return self.cell.phi_of_rz(points.tool, value)
 
-    def raw_joints(self, points: Points, phi: Array) -> Array:
-        """(..., T, axes) joint values of the branch as the closed form gives them; NaN where unreachable."""
-        joints = self.inverse(points.frames.at(phi).reshape(-1, 4, 4))
-        return joints.reshape(*phi.shape, -1)
-
-    def inverse(self, flange: Array) -> Array:
-        """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable."""
+    @property
+    def arm(self) -> SerialArm:
+        """The inverse of the robot."""
         arm = self.cell.machine.arm
         assert arm is not None  # resolve() refuses other machines
-        joints: Array = arm.inverse_branch(flange, self.branch)
+        return arm
+
+    def raw_joints(self, points: Points, phi: Array, before: Array | None = None) -> Array:
+        """(..., T, axes) joint values of the branch as the inverse gives them; NaN where unreachable.
+
+        Arms whose solutions have to be followed go on from joints `before` (T, axes), or else from point to point of beads.
+        """
+        flange = points.frames.at(phi)
+        if self.arm.followed and before is not None:
+            return following.from_before(self.arm, flange, self.branch, before)
+        if self.arm.followed:
+            rows = flange.reshape(-1, *flange.shape[-3:])
+            return following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
+        joints = self.inverse(flange.reshape(-1, 4, 4))
+        return joints.reshape(*phi.shape, -1)
+
+    def inverse(self, flange: Array, near: Array | None = None) -> Array:
+        """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable.
+
+        `near`: joints (N, axes) next to which they are looked for, of arms of which several solutions bear the same words.
+        """
+        if self.arm.followed and near is not None:
+            return following.from_before(self.arm, flange, self.branch, near)
+        joints: Array = self.arm.inverse_branch(flange, self.branch)
         return joints
 
     def joints(self, points: Points, phi: Array) -> Array:

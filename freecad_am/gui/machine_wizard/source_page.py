@@ -30,8 +30,8 @@ class SourcePage(Page):
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(wizard, "SourcePage", tr("Where the geometry comes from"), tr(
-            "Lengths are in mm, angles in degrees. Robots need six axes with a spherical wrist, machine tools three axes "
-            "that slide and two that turn; whether yours is one is looked at when you go on."))
+            "Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide "
+            "and two that turn; whether yours is one is looked at when you go on."))
         self.kind = choice("source", [
             (tr("A URDF file"), "urdf"), (tr("A table of Denavit and Hartenberg"), "table"),
             (tr("Figures of an arm with a spherical wrist (OPW)"), "opw"), (tr("A copy of another machine"), "copy"),

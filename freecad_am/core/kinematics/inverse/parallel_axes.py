@@ -76,6 +76,11 @@ class ParallelAxesArm:
         result: Array = self._solved(poses, (branch,))[0]
         return result
 
+    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
+        found = self.inverse(poses)
+        return found, np.where(np.isnan(found[..., 0]), -1, np.arange(8)[:, None])
+
     def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
         """The configuration (...) that joint angles `q` (..., 6) are in."""
         angles = np.asarray(q, float)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ...issues import InputError
 from .. import opw_recognition
 from ..chain import Chain
 from ..opw_recognition import NEAR_MM, POSITION, ROTATION, STRAIGHT, clean
+from .offset_wrist import OffsetWristArm
 from .parallel_axes import ParallelAxesArm
 from .serial_arm import SerialArm
 
@@ -27,10 +29,7 @@ def arm_of(chain: Chain) -> SerialArm:
     except InputError as error:
         if chain.axes != 6 or chain.sliding.any() or error.where == opw_recognition.FLANGE:
             raise
-        found = parallel_axes(chain)
-        if found is None:
-            raise error
-        return found
+        return parallel_axes(chain) or offset_wrist(chain)
 
 
 def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
@@ -65,11 +64,62 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
         ahead=float(shoulder[0]), above=float(shoulder[1]), upper=float(np.hypot(*upper)), fore=float(np.hypot(*fore)),
         wrist=(float(away[0] * cosine - away[1] * sine), float(away[0] * sine + away[1] * cosine)),
         beside=float(normal @ meeting), tip=frames.inverse(last) @ at_rest.flange,
-        signs=(1 if z[0, 2] > 0.0 else -1, *(1 if float(axis @ normal) > 0.0 else -1 for axis in z[1:4]), 1,
-               1 if float(six @ z[5]) > 0.0 else -1),
+        signs=(_sign(z[0, 2]), *(_sign(axis @ normal) for axis in z[1:4]), 1, _sign(six @ z[5])),
         zeros=tuple(clean(turn) for turn in (turn1, turn2, turn23 - turn2, turn234 - turn23, bent, 0.0)),
     )
     return arm if _agrees(arm, chain) else None
+
+
+def offset_wrist(chain: Chain) -> OffsetWristArm:
+    """The inverse of a chain of six revolute joints with a wrist that is not spherical. InputError NO_CLOSED_FORM with what
+    does not hold."""
+    at_rest = chain.frames(np.zeros(6))
+    z, p = at_rest.directions, at_rest.origins
+    if not _upright(z, p):
+        raise opw_recognition.refused("axis 1 is not the Z of the base frame")
+    for first, second in ((0, 1), (2, 3)):
+        if not _square(z[first], z[second]):
+            off = math.degrees(math.acos(min(1.0, abs(float(z[first] @ z[second])))))
+            raise opw_recognition.refused(f"axes {first + 1} and {second + 1} are {off:.6g} deg apart, not 90 deg")
+    if not _parallel(z[1], z[2]):
+        raise opw_recognition.refused("axes 2 and 3 are not parallel")
+    point = None if _parallel(z[3], z[4]) else _meeting(p[3], z[3], p[4], z[4])
+    if point is None:
+        raise opw_recognition.refused("neither is the wrist spherical nor do axes 4 and 5 meet")
+    normal = _normal(z[1], point)
+    ahead = np.cross(normal, (0.0, 0.0, 1.0))
+    plane = np.stack([ahead, (0.0, 0.0, 1.0)])
+    shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
+    if abs(shoulder[0]) > NEAR_MM:
+        raise opw_recognition.refused(f"the wrist is not spherical, and axis 2 is {abs(shoulder[0]):.6g} mm ahead of axis 1")
+    beside = float(normal @ point)
+    if abs(beside) > NEAR_MM:
+        raise opw_recognition.refused(f"the wrist is not spherical, and axis 4 passes {abs(beside):.6g} mm beside axis 1")
+    upper, fore = elbow - shoulder, centre - elbow
+    away = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
+    if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(away)) < NEAR_MM:
+        raise opw_recognition.refused("axes that follow each other are the same line")
+    turn3 = math.atan2(*fore)
+    arm = OffsetWristArm(
+        chain=chain, above=float(shoulder[1]), upper=float(np.hypot(*upper)), fore=float(np.hypot(*fore)),
+        turns=(math.atan2(ahead[1], ahead[0]), math.atan2(*upper), turn3),
+        signs=(_sign(z[0, 2]), _sign(z[1] @ normal), _sign(z[2] @ normal)),
+        lean=math.atan2(*(plane @ z[3])) - turn3, point=point, flips=(True,) * 4,
+    )
+    arm = replace(arm, flips=_flips(arm))
+    if not _agrees(arm, chain):
+        raise opw_recognition.refused("its solutions do not give back its poses; give the geometry with more digits")
+    return arm
+
+
+def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
+    """For each shoulder and elbow whether solutions with q5 < 0 mostly pass zero upwards."""
+    q = np.random.default_rng(7).uniform(-math.pi, math.pi, (512, 6))
+    words = arm.branch_of(q)
+    back, left = words >> 2, (words >> 1 & 1) == words >> 2
+    rising, bent = (words & 1).astype(bool), q[:, 4] < 0.0
+    found = [np.mean((rising == bent)[2 * back + left == kind]) > 0.5 for kind in range(4)]
+    return bool(found[0]), bool(found[1]), bool(found[2]), bool(found[3])
 
 
 def _agrees(arm: SerialArm, chain: Chain) -> bool:
@@ -96,6 +146,10 @@ def _normal(axis: Array, wrist: Array) -> Array:
     flat: Array = np.array([axis[0], axis[1], 0.0]) / np.hypot(axis[0], axis[1])
     ahead = float(np.cross(flat, (0.0, 0.0, 1.0)) @ wrist)
     return -flat if ahead < -NEAR_MM else flat
+
+
+def _sign(value: float) -> int:
+    return 1 if value > 0.0 else -1
 
 
 def _parallel(one: Array, other: Array) -> bool:

@@ -36,6 +36,9 @@ class SerialArm(Protocol):
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
         """Joint angles (n, 6) of one configuration of words; else as `inverse`."""
 
+    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        """All of `inverse`, and the configuration (configurations, n) whose words each bears, -1 where there is none."""
+
     def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
         """The configuration (...) of joint angles `q` (..., 6)."""
 

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kinematics of arms whose wrist is not spherical, such as FANUC's CRX, Yaskawa's HC10 and ABB's GoFa.
+
+Axes 4 and 5 meet in a point that axis 6 turns about itself. For each angle of axis 6 the triangle of shoulder, elbow and
+that point gives axis 4, for either side of axis 1 and either elbow; what is left is the angle between axes 4 and 5, one
+function of axis 6 whose zeros are all solutions, at most 16 of them. `offset_wrist_search` finds them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...geometry import frames
+from ...geometry.frames import Array
+from ..chain import Chain
+from . import offset_wrist_search as search
+from .offset_wrist_search import Curves, Zeros
+
+Mask = NDArray[np.bool_]
+
+CHUNK = 2048
+MOST = 16  # solutions of six revolute joints
+TURN = 2.0 * math.pi
+STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
+
+
+@dataclass(frozen=True, eq=False)
+class OffsetWristArm:
+    """Lengths (mm) and zeros (rad) of the arm of a `chain` seen from a base_link whose Z is axis 1.
+
+    Axis 2 is `above` base_link on axis 1, `upper` and `fore` go from there to axis 3 and to the point where axes 4 and 5
+    meet, in the arm's plane. `turns` are the angles at all q 0 of plane, upper arm and forearm (rad, from X, and from Z
+    towards the plane's front), `signs` those of axes 1 to 3, `lean` turns the way from elbow to that point to axis 4. At
+    q 0 that `point` (3,) is in base_link. `flips` tells for each of the four shoulders and elbows which way of passing zero
+    is that with q5 < 0.
+
+    Front, back, up and down are as of a spherical wrist, with the point where axes 4 and 5 meet for the wrist centre. Flip
+    and noflip are parted by the singularities of the wrist, which need not be where q5 is 0; mostly q5 < 0 is flip. More
+    than one solution may bear the same words.
+    """
+
+    chain: Chain
+    above: float
+    upper: float
+    fore: float
+    turns: tuple[float, float, float]
+    signs: tuple[int, int, int]
+    lean: float
+    point: Array
+    flips: tuple[bool, bool, bool, bool]
+
+    followed = True
+
+    @property
+    def shoulder(self) -> tuple[float, float]:
+        """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
+        return 0.0, self.above
+
+    @property
+    def reach(self) -> float:
+        """From axis 2 to the point of axes 4 and 5 of the stretched arm, mm."""
+        return self.upper + self.fore
+
+    def inverse(self, poses: ArrayLike) -> Array:
+        """Joint angles (16, n, 6) of all solutions for flange poses (n, 4, 4), in [-pi, pi] rad.
+
+        The first eight are one of each configuration, the least singular one; then those that are left. NaN where there are
+        no more.
+        """
+        return self.solutions(poses)[0]
+
+    def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
+        """Joint angles (n, 6) of one configuration, of several solutions the least singular one; else as `inverse`."""
+        result: Array = self.inverse(poses)[branch]
+        return result
+
+    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        """All of `inverse`, and the configuration (16, n) whose words each bears, -1 where there is none."""
+        given = np.asarray(poses, float)
+        result, words = np.full((MOST, len(given), 6), np.nan), np.full((MOST, len(given)), -1, dtype=np.intp)
+        for start in range(0, len(given), CHUNK):
+            piece = slice(start, start + CHUNK)
+            self._solve_piece(given[piece], result[:, piece], words[:, piece])
+        return result, words
+
+    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+        """The configuration (...) that joint angles `q` (..., 6) are in."""
+        angles = np.asarray(q, float)
+        flat = angles.reshape(-1, 6)
+        back, left = self._sides(flat)
+        curves = self._curves(self.chain.forward(flat))
+        each = np.arange(len(flat))
+        side, elbow = np.where(back, -1.0, 1.0), np.where(left, 1.0, -1.0)
+        ahead, behind = (search.values(curves, each, flat[:, 5] + step, side, elbow) for step in (STEP_RAD, -STEP_RAD))
+        found = self._words(back, left, ahead > behind)
+        return found.reshape(angles.shape[:-1])
+
+    def bend(self, q: ArrayLike) -> Array:
+        """(...) how far angles `q` (..., 6) are from where elbow or wrist is stretched: 0 there, 1 square to it."""
+        angles = np.asarray(q, float)
+        two, three = self._plane(angles)
+        bent: Array = np.minimum(np.abs(np.sin(three - two)), np.abs(np.sin(angles[..., 4])))
+        return bent
+
+    def _plane(self, q: Array) -> tuple[Array, Array]:
+        """The angles (...) of upper arm and forearm from Z towards the plane's front."""
+        two = q[..., 1] * self.signs[1] + self.turns[1]
+        return two, two - self.turns[1] + self.turns[2] + q[..., 2] * self.signs[2]
+
+    def _sides(self, q: Array) -> tuple[Mask, Mask]:
+        """Whether the arm (n,) is at the back, and its elbow on the left of the way to the wrist."""
+        two, three = self._plane(q)
+        back = self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
+        return np.asarray(back), np.asarray(np.sin(three - two) >= 0.0)
+
+    def _words(self, back: Mask, left: Mask, rising: Mask) -> NDArray[np.intp]:
+        down = back == left
+        flip = rising == np.array(self.flips)[2 * back.astype(int) + left.astype(int)]
+        result: NDArray[np.intp] = 4 * back.astype(np.intp) + 2 * down + flip
+        return result
+
+    def _curves(self, poses: Array) -> Curves:
+        """Where the point of axes 4 and 5, and axis 5, are for each angle of axis 6."""
+        at_rest = self.chain.frames(np.zeros(6))
+        axis, through = at_rest.directions[5], at_rest.origins[5]
+        back = frames.inverse(at_rest.flange)
+        moved = poses @ back
+        parts = []
+        for vector, anchor in ((self.point - through, through), (at_rest.directions[4], np.zeros(3))):
+            along = axis * float(axis @ vector)
+            across = vector - along
+            parts.append((along + anchor, across, np.cross(axis, across)))
+        rotation = moved[:, :3, :3]
+        point = [rotation @ parts[0][0] + moved[:, :3, 3], rotation @ parts[0][1], -(rotation @ parts[0][2])]
+        five = [rotation @ parts[1][0], rotation @ parts[1][1], -(rotation @ parts[1][2])]
+        point[0][:, 2] -= self.above
+        square = float(at_rest.directions[3] @ at_rest.directions[4])
+        return Curves(
+            np.stack(point).transpose(0, 2, 1).copy(), np.stack(five).transpose(0, 2, 1).copy(), self.upper, self.fore,
+            (math.cos(self.lean), math.sin(self.lean)), square,
+        )
+
+    def _solve_piece(self, poses: Array, out: Array, named: NDArray[np.intp]) -> None:
+        """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
+        curves = self._curves(poses)
+        zeros = search.zeros(curves)
+        if not len(zeros.pose):
+            return
+        q = self._angles(poses, curves, zeros)
+        words = self._words(zeros.side < 0.0, zeros.elbow > 0.0, zeros.slope > 0.0)
+        # the least singular of each configuration first, all others after the eight
+        order = np.lexsort((-np.abs(zeros.slope), words, zeros.pose))
+        pose, words = zeros.pose[order], words[order]
+        first = np.ones(len(order), dtype=bool)
+        first[1:] = (pose[1:] != pose[:-1]) | (words[1:] != words[:-1])
+        slot = words.copy()
+        further = np.flatnonzero(~first)
+        begins = np.ones(len(further), dtype=bool)
+        begins[1:] = pose[further[1:]] != pose[further[:-1]]
+        number = np.arange(len(further))
+        slot[further] = 8 + number - np.maximum.accumulate(np.where(begins, number, 0))
+        kept = slot < MOST
+        out[slot[kept], pose[kept]] = q[order[kept]]
+        named[slot[kept], pose[kept]] = words[kept]
+
+    def _angles(self, poses: Array, curves: Curves, zeros: Zeros) -> Array:
+        """Joint angles (k, 6) of zeros, in [-pi, pi]."""
+        at_rest = self.chain.frames(np.zeros(6))
+        z = at_rest.directions
+        spot = search.geometry(curves, zeros.pose, zeros.angle, zeros.side, zeros.bent)
+        one = np.arctan2(spot.sine, spot.cosine)
+        three = np.arctan2(spot.fore_ahead, spot.fore_above)
+        two = np.arctan2(spot.ahead - self.fore * spot.fore_ahead, spot.above - self.fore * spot.fore_above)
+        q = np.empty((len(one), 6))
+        q[:, 0] = (one - self.turns[0]) * self.signs[0]
+        q[:, 1] = (two - self.turns[1]) * self.signs[1]
+        q[:, 2] = (three - two - (self.turns[2] - self.turns[1])) * self.signs[2]
+        normal = z[1] * self.signs[1]
+        before = frames.rotation_about((0.0, 0.0, 1.0), one - self.turns[0]) @ frames.rotation_about(
+            normal, three - self.turns[2])
+        q[:, 3] = _turned(before, z[3], z[4], spot.five)
+        before = before @ frames.rotation_about(z[3], q[:, 3])
+        six = poses[zeros.pose, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])
+        q[:, 4] = _turned(before, z[4], z[5], six)
+        q[:, 5] = zeros.angle
+        q -= TURN * np.rint(q * (1.0 / TURN))
+        return q
+
+
+def _turned(before: Array, axis: Array, vector: Array, wanted: Array) -> Array:
+    """The angles (k,) about an axis (3,) that bring a vector (3,) to those wanted (k, 3), both seen after `before`
+    (k, 3, 3)."""
+    seen = np.einsum("kji,kj->ki", before, wanted)
+    across = vector - axis * float(axis @ vector)
+    result: Array = np.arctan2(seen @ np.cross(axis, across), seen @ across)
+    return result

@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""All zeros of one function of axis 6, for many poses of an arm with an offset wrist at once.
+
+The function is smooth on closed loops: all turns of axis 6 where the triangle of shoulder, elbow and wrist closes for all of
+them, one loop for each elbow; else from where the arm is stretched with one elbow to the other end, and back with the
+other, along the cosine of which the root at the ends is smooth. Loops are sampled, finer where the arm swings fast, and
+zeros are looked for between samples of different sign and where samples nearly touch zero.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.frames import Array
+
+Index = NDArray[np.intp]
+
+SAMPLES = 36
+PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
+FLAT = (0.02, 4e-4)  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
+SWING = 0.9  # cosine of the most that arm or axis 4 may turn in a step
+ROUNDS, PEAKS = 60, 8  # of the search for a zero, and for an extreme
+TOUCHES = 1e-11  # of the cosine between axes 4 and 5: an extreme so near is a zero
+EDGE = 1e-12  # of the cosine of axis 6: by how much rounding may take a stretched arm out of reach
+TINY = 1e-150
+SAME_RAD = 1e-7  # nearer zeros are one: where two meet, rounding parts them by its root
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Of n poses: `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point where axes 4 and 5
+    meet, from the shoulder, and of the direction of axis 5, by components. `lean` is cosine and sine of the turn from the
+    forearm to axis 4, `square` the cosine between axes 4 and 5. mm."""
+
+    point: Array
+    five: Array
+    upper: float
+    fore: float
+    lean: tuple[float, float]
+    square: float
+
+
+class Spot(NamedTuple):
+    """The arm for given angles of axis 6 (k,): sine and cosine of the plane, the point ahead and above in it, and the
+    direction from elbow to point; axis 5 (k, 3); `value`: the function whose zeros are solutions; `along` (2, k): axis 4."""
+
+    sine: Array
+    cosine: Array
+    ahead: Array
+    above: Array
+    fore_ahead: Array
+    fore_above: Array
+    five: Array
+    value: Array
+    along: tuple[Array, Array]
+
+
+class Zeros(NamedTuple):
+    """Zeros (k,): the pose, the angle of axis 6, side 1 or -1 of axis 1, elbow 1 on the left or -1, sine and cosine of the
+    elbow's bend (2, k), and the slope by the angle."""
+
+    pose: Index
+    angle: Array
+    side: Array
+    elbow: Array
+    bent: Array
+    slope: Array
+
+
+class Loops(NamedTuple):
+    """Loops (k,): pose and side; `elbow` 1 or -1 of whole turns, 0 of others. The angle of axis 6 is middle - half cos t, or
+    middle + t of whole turns. `near`, `far`: the angles, from where the point is farthest out, at which the arm is stretched
+    and folded; whether it ever is. `mean`, `swing`: mean and half the difference of squared distances from the shoulder."""
+
+    pose: Index
+    side: Array
+    elbow: Array
+    middle: Array
+    half: Array
+    near: Array
+    far: Array
+    stretched: NDArray[np.bool_]
+    folded: NDArray[np.bool_]
+    mean: Array
+    swing: Array
+
+    def of(self, some: Index) -> Loops:
+        """Some of them."""
+        columns: tuple[Any, ...] = self
+        return Loops(*(column[some] for column in columns))
+
+
+def zeros(curves: Curves) -> Zeros:
+    """All zeros, in no order."""
+    loops = _loops(curves)
+    t = np.arange(-1, SAMPLES + 2) * (2.0 * math.pi / SAMPLES)
+    loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), np.broadcast_to(t, (len(loops.pose), len(t))), 0)
+    at = loops.of(loop)
+    root = _refined(curves, at, low, high)
+    angle, bent = _angle(curves, at, root)
+    elbow = np.where(at.elbow != 0.0, at.elbow, np.where(np.sin(root) >= 0.0, 1.0, -1.0))
+    found = Zeros(at.pose, angle, at.side, elbow, bent, _slope(curves, at, angle, elbow))
+    columns: tuple[Any, ...] = found
+    once = _once(found)
+    return Zeros(*(column[..., once] for column in columns))
+
+
+def _once(found: Zeros) -> Index:
+    """Which zeros are left when those found twice, in a step and in one of its pieces, count once."""
+    angle = found.angle - 2.0 * math.pi * np.round(found.angle / (2.0 * math.pi))
+    order = np.lexsort((angle, found.elbow, found.side, found.pose))
+    twice = np.abs(np.diff(angle[order])) < SAME_RAD
+    for column in (found.pose, found.side, found.elbow):
+        twice &= column[order][1:] == column[order][:-1]
+    return np.asarray(order[np.concatenate([np.ones(min(1, len(order)), dtype=bool), ~twice])])
+
+
+def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
+    """The function (k,) at angles of axis 6 with an elbow 1 or -1."""
+    return geometry(curves, pose, angle, side, _bent(curves, pose, angle, elbow)).value
+
+
+def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array) -> Spot:
+    """The arm at angles of axis 6 (k,), on a side, with sine and cosine (2, k) of the elbow's bend."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    x, y, above = (part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2))
+    five = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.five.transpose(1, 0, 2)]
+    x = x + TINY
+    ahead = side * np.sqrt(x * x + y * y)
+    cosine, sine = x / ahead, y / ahead
+    # the forearm from the point: turned from the way to the shoulder by sine and cosine of the triangle
+    squared = ahead * ahead + above * above + TINY
+    common = (curves.fore + curves.upper * bent[1]) / squared
+    turn = curves.upper * bent[0] / squared
+    fore_ahead = common * ahead + turn * above
+    fore_above = common * above - turn * ahead
+    along = (
+        fore_ahead * curves.lean[0] + fore_above * curves.lean[1], fore_above * curves.lean[0] - fore_ahead * curves.lean[1],
+    )
+    value = along[0] * (cosine * five[0] + sine * five[1]) + along[1] * five[2] - curves.square
+    return Spot(sine, cosine, ahead, above, fore_ahead, fore_above, np.stack(five, axis=-1), value, along)
+
+
+def _bent(curves: Curves, pose: Index, angle: Array, elbow: Array) -> Array:
+    """Sine and cosine (2, k) of the elbow's bend."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    point = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2)]
+    squared = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
+    scale = 1.0 / (2.0 * curves.upper * curves.fore)
+    cosine = (squared - (curves.upper**2 + curves.fore**2)) * scale
+    return np.stack([elbow * np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0)), cosine])
+
+
+def _loops(curves: Curves) -> Loops:
+    """The loops of all poses, on both sides."""
+    constant, cos, sin = curves.point
+    radius = 0.5 * ((cos * cos).sum(axis=0) + (sin * sin).sum(axis=0))
+    mean = (constant * constant).sum(axis=0) + radius
+    by_cos, by_sin = 2.0 * (constant * cos).sum(axis=0), 2.0 * (constant * sin).sum(axis=0)
+    swing, out = np.hypot(by_cos, by_sin) + TINY, np.arctan2(by_sin, by_cos)
+    near = ((curves.upper + curves.fore) ** 2 - mean) / swing
+    far = ((curves.upper - curves.fore) ** 2 - mean) / swing
+    stretched, folded = near < 1.0, far > -1.0
+    reached = (near > -1.0 - EDGE) & (far < 1.0 + EDGE)
+    near_at, far_at = np.arccos(np.clip(near, -1.0, 1.0)), np.arccos(np.clip(far, -1.0, 1.0))
+    whole, both = reached & ~stretched & ~folded, reached & stretched & folded
+    none, middle_of, half_of = np.zeros(len(mean)), 0.5 * (near_at + far_at), 0.5 * (far_at - near_at)
+    kinds = [
+        (whole, 1.0, out, none), (whole, -1.0, out, none),
+        (reached & stretched & ~folded, 0.0, out + math.pi, math.pi - near_at),
+        (reached & folded & ~stretched, 0.0, out, far_at),
+        (both, 0.0, out + middle_of, half_of), (both, 0.0, out - middle_of, -half_of),
+    ]
+    loops = []
+    for some, elbow, at, half in kinds:
+        pose = np.flatnonzero(some)
+        one = np.ones(len(pose))
+        of_pose = (column[pose] for column in (at, half, near_at, far_at, stretched, folded, mean, swing))
+        loops += [Loops(pose, side * one, elbow * one, *columns) for columns in [tuple(of_pose)] for side in (1.0, -1.0)]
+    return Loops(*(np.concatenate(columns) for columns in zip(*loops)))
+
+
+def _angle(curves: Curves, at: Loops, t: Array) -> tuple[Array, Array]:
+    """The angle of axis 6 (k,) at t along loops, and sine and cosine (2, k) of the elbow's bend, exact to its last digits
+    where the arm is stretched or folded."""
+    whole = at.elbow != 0.0
+    begun, left = np.sin(0.5 * t), np.cos(0.5 * t)
+    course = begun * begun
+    half = np.abs(at.half)
+    since = 2.0 * half * course
+    angle = np.where(whole, at.middle + t, at.middle - at.half * (1.0 - 2.0 * course))
+    from_out = np.where(whole, t, np.where(at.stretched, at.near + since, since - half))
+    scale = 1.0 / (2.0 * curves.upper * curves.fore)
+    squared = at.mean + at.swing * np.cos(from_out)
+    begin, end = np.sin(half * course), np.sin(half * left * left)
+    # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
+    other = np.where(at.folded, np.sin(0.5 * (from_out + at.near)), end)
+    to_stretched = np.where(at.stretched, 2.0 * at.swing * other * begin, (curves.upper + curves.fore) ** 2 - squared)
+    other = np.where(at.stretched, np.sin(0.5 * (from_out + at.far)), begin)
+    to_folded = np.where(at.folded, 2.0 * at.swing * other * end, squared - (curves.upper - curves.fore) ** 2)
+    cosine = 1.0 - to_stretched * scale
+    sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
+    sign = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
+    return angle, np.stack([sign * sine, cosine])
+
+
+def _at(curves: Curves, at: Loops, t: Array) -> Spot:
+    angle, bent = _angle(curves, at, t)
+    return geometry(curves, at.pose, angle, at.side, bent)
+
+
+def _steps(curves: Curves, loops: Loops, which: Index, t: Array, level: int) -> tuple[Index, Array, Array]:
+    """Loops (k,) and ends (k,), (k,) of steps with a zero in them, from samples t (m, s) along loops `which` (m,), of which
+    the first and the last are there for extremes beside them alone."""
+    count = t.shape[1]
+    flat = loops.of(np.repeat(which, count))
+    spot = _at(curves, flat, t.ravel())
+    value = spot.value.reshape(t.shape)
+    above = value >= 0.0
+    change = above[:, 1:] != above[:, :-1]
+    found = _touching(curves, loops, which, t, value)
+    if level < LEVELS:
+        arm = (spot.cosine * np.roll(spot.cosine, -1) + spot.sine * np.roll(spot.sine, -1)).reshape(t.shape)[:, :-1]
+        four = (spot.along[0] * np.roll(spot.along[0], -1) + spot.along[1] * np.roll(spot.along[1], -1)).reshape(t.shape)
+        fast = (arm < SWING) | (four[:, :-1] < SWING)
+        # steps beside fast ones are not even either, and where the function is flat it may pass zero more than once
+        fast[:, 1:] |= fast[:, :-1]
+        fast[:, :-1] |= fast[:, 1:]
+        size = np.abs(value)
+        if level < len(FLAT):
+            fast |= np.maximum(size[:, :-1], size[:, 1:]) < FLAT[level]
+        change &= ~fast
+        fast[:, [0, -1]] = False
+        row, at = np.nonzero(fast)
+        if len(row):
+            share = np.arange(-1, PIECES + 2) / PIECES
+            finer = t[row, at][:, None] + share * (t[row, at + 1] - t[row, at])[:, None]
+            found.append(_steps(curves, loops, which[row], finer, level + 1))
+    change[:, [0, -1]] = False
+    row, at = np.nonzero(change)
+    found.append((which[row], t[row, at], t[row, at + 1]))
+    return tuple(np.concatenate(columns) for columns in zip(*found))  # type: ignore[return-value]
+
+
+def _touching(
+    curves: Curves, loops: Loops, which: Index, t: Array, value: Array
+) -> list[tuple[Index, Array, Array]]:
+    """Steps about extremes between samples of one sign that reach zero: two with a zero each, or one without length."""
+    size = np.abs(value)
+    same = (value[:, 1:-1] >= 0.0) == (value[:, :-2] >= 0.0)
+    same &= (value[:, 1:-1] >= 0.0) == (value[:, 2:] >= 0.0)
+    least = (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] <= size[:, 2:])
+    curve = size[:, :-2] - 2.0 * size[:, 1:-1] + size[:, 2:]
+    fall = (size[:, :-2] - size[:, 2:]) ** 2 / (8.0 * np.maximum(curve, TINY))
+    row, at = np.nonzero(same & least & (size[:, 1:-1] - fall < 0.25 * curve))
+    if not len(row):
+        return []
+    loop = loops.of(which[row])
+    sign = np.where(value[row, at + 1] >= 0.0, 1.0, -1.0)
+    a, b, c = t[row, at], t[row, at + 1], t[row, at + 2]
+    fa, fb, fc = (sign * value[row, at + k] for k in range(3))
+    for _ in range(PEAKS):
+        # the least of the parabola through three samples, kept inside
+        one, other = (b - a) * (fb - fc), (b - c) * (fb - fa)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            x = b - 0.5 * ((b - a) * one - (b - c) * other) / (one - other)
+        wide = np.where(c - b > b - a, b + 0.3 * (c - b), b - 0.3 * (b - a))
+        x = np.where((x > a) & (x < c) & (np.abs(x - b) > 1e-12), x, wide)
+        fx = sign * _at(curves, loop, x).value
+        x, fx = np.where(fb < 0.0, b, x), np.where(fb < 0.0, fb, fx)  # which lies between two zeros already
+        lower, right = fx < fb, x > b
+        above = ~lower & (x != b)
+        a, fa = np.where(lower & right, b, np.where(above & ~right, x, a)), np.where(
+            lower & right, fb, np.where(above & ~right, fx, fa))
+        c, fc = np.where(lower & ~right, b, np.where(above & right, x, c)), np.where(
+            lower & ~right, fb, np.where(above & right, fx, fc))
+        b, fb = np.where(lower, x, b), np.where(lower, fx, fb)
+    through, touch = fb < 0.0, (fb >= 0.0) & (fb < TOUCHES)
+    return [
+        (which[row][through], a[through], b[through]), (which[row][through], b[through], c[through]),
+        (which[row][touch], b[touch], b[touch]),
+    ]
+
+
+def _refined(curves: Curves, at: Loops, low: Array, high: Array) -> Array:
+    """The zero t (k,) in each step: Chandrupatla's method, which does not leave the step."""
+    a, b = high.copy(), low.copy()
+    fa, fb = _at(curves, at, a).value, _at(curves, at, b).value
+    c, fc = a.copy(), fa.copy()
+    share = np.full(len(a), 0.5)
+    best = np.where(np.abs(fa) < np.abs(fb), a, b)
+    active = np.flatnonzero((a != b) & (fa != 0.0) & (fb != 0.0))
+    for _ in range(ROUNDS):
+        if not len(active):
+            break
+        k = active
+        x = a[k] + share[k] * (b[k] - a[k])
+        fx = _at(curves, at.of(k), x).value
+        kept = (fx >= 0.0) == (fa[k] >= 0.0)
+        c[k], fc[k] = np.where(kept, a[k], b[k]), np.where(kept, fa[k], fb[k])
+        b[k], fb[k] = np.where(kept, b[k], a[k]), np.where(kept, fb[k], fa[k])
+        a[k], fa[k] = x, fx
+        nearer = np.abs(fa[k]) < np.abs(fb[k])
+        best[k] = np.where(nearer, a[k], b[k])
+        width = np.abs(b[k] - a[k])
+        done = (fx == 0.0) | (width <= 4e-16 * np.maximum(np.abs(a[k]), 1.0)) | (np.abs(fx) < 2e-16)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            xi, phi = (a[k] - b[k]) / (c[k] - b[k]), (fa[k] - fb[k]) / (fc[k] - fb[k])
+            bowed = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+            step = fa[k] / (fb[k] - fa[k]) * fc[k] / (fb[k] - fc[k]) + (c[k] - a[k]) / (b[k] - a[k]) * fa[k] / (
+                fc[k] - fa[k]) * fb[k] / (fc[k] - fb[k])
+            least = np.minimum(0.5, 2e-16 * np.maximum(np.abs(a[k]), 1.0) / np.maximum(width, TINY))
+        share[k] = np.where(bowed, np.clip(np.nan_to_num(step, nan=0.5), least, 1.0 - least), 0.5)
+        active = k[~done]
+    return best
+
+
+def _slope(curves: Curves, at: Loops, angle: Array, elbow: Array) -> Array:
+    """The slope (k,) of the function by the angle of axis 6."""
+    step = 1e-6
+    ahead, behind = (values(curves, at.pose, angle + way, at.side, elbow) for way in (step, -step))
+    result: Array = (ahead - behind) / (2.0 * step)
+    return result

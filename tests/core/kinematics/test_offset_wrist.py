@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Arms with an offset wrist: every solution, near singularities too."""
+
+import numpy as np
+import pytest
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.kinematics.chain import Chain
+from freecad_am.core.kinematics.inverse import offset_wrist, recognition
+from freecad_am.core.kinematics.inverse.offset_wrist import OffsetWristArm
+from tests.core.kinematics.arms import CROOKED_CRX, CRX_10IA, GOFA_5, HC10, apart, chain, numeric, second_opinion
+
+pytest.importorskip("PyKDL")
+ARMS = {"CRX-10iA": CRX_10IA, "HC10": HC10, "GoFa 5": GOFA_5, "crooked": CROOKED_CRX}
+
+
+@pytest.fixture(params=ARMS, scope="module")
+def arm(request):
+    of = chain(ARMS[request.param])
+    found = recognition.arm_of(of)
+    assert isinstance(found, OffsetWristArm) and found.followed
+    return of, found, second_opinion(of)
+
+
+def _check(arm, q, exact=1e-6):
+    """All solutions of the poses of q give them back, and q is among them under its own words."""
+    _, inverse, kdl = arm
+    poses = kdl.forward(q)
+    found, words = inverse.solutions(poses)
+    assert found.shape == (16, len(q), 6) and np.array_equal(inverse.inverse(poses), found, equal_nan=True)
+    reached = np.isfinite(found).all(axis=2)
+    assert np.array_equal(reached, words >= 0) and (reached == np.isfinite(found).any(axis=2)).all()
+    assert np.nanmax(np.abs(found)) <= np.pi + 1e-12
+    # the first eight are those of the words
+    assert (words[:8] == np.where(reached[:8], np.arange(8)[:, None], -1)).all()
+    for row, there, pose in zip(found.transpose(1, 0, 2), reached.T, poses):
+        off = np.abs(kdl.forward(row[there]) - pose)
+        assert off[:, :3, 3].max() < 1e-6 and off[:, :3, :3].max() < 1e-9
+    nearest = np.nanargmin(apart(found, q), axis=0)
+    each = np.arange(len(q))
+    assert apart(found[nearest, each], q).max() < exact
+    return found, words, words[nearest, each]
+
+
+def test_every_pose_is_given_back_under_its_words(arm):
+    q = np.random.default_rng(3).uniform(-np.pi, np.pi, (500, 6))
+    *_, own = _check(arm, q)
+    assert np.array_equal(arm[1].branch_of(q), own)
+    for branch in (0, 5):
+        assert np.array_equal(arm[1].inverse_branch(arm[0].forward(q[:50]), branch), arm[1].inverse(
+            arm[0].forward(q[:50]))[branch], equal_nan=True)
+
+
+@pytest.mark.long
+def test_ten_thousand_poses_are_given_back(arm):
+    _check(arm, np.random.default_rng(4).uniform(-np.pi, np.pi, (10000, 6)), 1e-4)
+
+
+def test_no_solution_is_lost_that_a_numeric_solver_finds(arm):
+    of, inverse, kdl = arm
+    rng = np.random.default_rng(5)
+    several = 0
+    for pose in kdl.forward(rng.uniform(-np.pi, np.pi, (5, 6))):
+        closed = inverse.inverse(pose[None])[:, 0]
+        for one in numeric(of, pose, rng, 80):
+            several += 1
+            assert np.nanmin(apart(closed, one)) < 1e-4
+    assert several > 12
+
+
+@pytest.mark.parametrize("near", [0.0, 1e-9, 1e-6, 1e-3])
+def test_solutions_stay_near_singularities(arm, near):
+    """The stretched elbow, and where solutions of the wrist meet: the determinant of PyKDL's Jacobian is zero."""
+    of, inverse, kdl = arm
+    rng = np.random.default_rng(6)
+    q = rng.uniform(-np.pi, np.pi, (60, 6))
+    # the determinant over axis 5 changes its sign where two solutions meet
+    for row in q[:30]:
+        around = np.tile(row, (73, 1))
+        around[:, 4] = np.linspace(-np.pi, np.pi, 73)
+        size = np.linalg.det(kdl.jacobian(around))
+        where = np.flatnonzero(size[1:] * size[:-1] < 0.0)
+        if not len(where):
+            continue
+        low, high = around[where[0]], around[where[0] + 1]
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            same = np.linalg.det(kdl.jacobian(middle[None]))[0] * np.linalg.det(kdl.jacobian(low[None]))[0] > 0.0
+            low, high = (middle, high) if same else (low, middle)
+        row[:] = low
+        row[4] += near
+    rest = of.frames(np.zeros(6))
+    normal = rest.directions[2]
+    upper, fore = rest.origins[2] - rest.origins[1], inverse.point - rest.origins[2]
+    upper, fore = upper - normal * (normal @ upper), fore - normal * (normal @ fore)
+    q[30:, 2] = np.arctan2(np.cross(fore, upper) @ normal, fore @ upper) + near
+    poses = kdl.forward(q)
+    found = inverse.inverse(poses)
+    away = np.nanmin(apart(found, q), axis=0)
+    # where two solutions meet they move by the root of what the pose does
+    assert (away < 1e-4).all()
+    for row, pose in zip(found.transpose(1, 0, 2), poses):
+        row = row[np.isfinite(row).all(axis=1)]
+        assert np.abs(kdl.forward(row) - pose).max() < 1e-6
+
+
+def test_poses_out_of_reach_and_pieces(arm, monkeypatch):
+    of, inverse, _ = arm
+    q = np.random.default_rng(7).uniform(-np.pi, np.pi, (40, 6))
+    poses = of.forward(q)
+    whole = inverse.inverse(poses)
+    monkeypatch.setattr(offset_wrist, "CHUNK", 16)
+    np.testing.assert_allclose(inverse.inverse(poses), whole, atol=1e-6)
+    poses[:, :3, 3] += 5000.0
+    assert np.isnan(inverse.inverse(poses)).all() and inverse.inverse(poses[:0]).shape == (16, 0, 6)
+
+
+def test_words_change_at_singularities_alone(arm):
+    """Of one shoulder and elbow, flip and noflip change where the determinant of PyKDL's Jacobian passes zero."""
+    _, inverse, kdl = arm
+    rng = np.random.default_rng(8)
+    for begin, end in rng.uniform(-2.5, 2.5, (10, 2, 6)):
+        q = begin + np.linspace(0.0, 1.0, 400)[:, None] * (end - begin)
+        words = inverse.branch_of(q)
+        size = np.linalg.det(kdl.jacobian(q))
+        same = words[1:] >> 1 == words[:-1] >> 1
+        assert np.array_equal((words[1:] != words[:-1])[same], (size[1:] * size[:-1] < 0.0)[same])
+
+
+@pytest.mark.parametrize(("joint", "shift", "reason"), [
+    (1, (30, 0, 0), "axis 2 is 30 mm ahead of axis 1"), (3, (0, 12, 0), "axis 4 passes 12 mm beside axis 1"),
+    (4, (0, 0, 5), "neither is the wrist spherical nor do axes 4 and 5 meet"),
+])
+def test_what_does_not_hold_is_told(joint, shift, reason):
+    of = chain(CRX_10IA)
+    origins = of.origins.copy()
+    origins[joint, :3, 3] += shift
+    with pytest.raises(InputError, match=reason):
+        recognition.arm_of(Chain(origins, of.directions, of.flange))
