@@ -2773,8 +2773,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
-        <source>Lengths are in mm, angles in degrees. Robots need six axes with a spherical wrist, machine tools three axes that slide and two that turn; whether yours is one is looked at when you go on.</source>
-        <translation>Les longueurs sont en mm, les angles en degrés. Les robots doivent avoir six axes et un poignet sphérique, les machines-outils trois axes de translation et deux de rotation ; on regarde si la vôtre en est une lorsque vous continuez.</translation>
+        <source>Lengths are in mm, angles in degrees. Robots need six axes that turn, machine tools three axes that slide and two that turn; whether yours is one is looked at when you go on.</source>
+        <translation>Les longueurs sont en mm, les angles en degrés. Les robots doivent avoir six axes rotatifs, les machines-outils trois axes de translation et deux de rotation ; on regarde si la vôtre en est une lorsque vous continuez.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/quantity.py"/>
@@ -5732,6 +5732,11 @@
         <translation>auto ne trouve pas de ligne médiane de {0} à partir de son appui : {1} ; choisissez une arête, un fil ou une esquisse comme guide, ou réglez strategy.direction pour que la pièce repose sur l&apos;une de ses extrémités</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>axes 2 and 3 are not parallel</source>
+        <translation>les axes 2 et 3 ne sont pas parallèles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>axes 2 and 3 are not parallel, but {0} deg apart</source>
         <translation>les axes 2 et 3 ne sont pas parallèles, mais à {0} deg l&apos;un de l&apos;autre</translation>
@@ -5747,7 +5752,12 @@
         <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>axes that follow each other are the same line</source>
+        <translation>deux axes qui se suivent sont la même droite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
         <source>axes {0} and {1} are {2} deg apart, not 90 deg</source>
         <translation>les axes {0} et {1} sont à {2} deg l&apos;un de l&apos;autre, et non à 90 deg</translation>
     </message>
@@ -5757,7 +5767,7 @@
         <translation>axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
         <source>axis 1 is not the Z of the base frame</source>
         <translation>l&apos;axe 1 n&apos;est pas le Z du repère de base</translation>
     </message>
@@ -7157,6 +7167,11 @@
         <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>its solutions do not give back its poses; give the geometry with more digits</source>
+        <translation>ses solutions ne redonnent pas ses poses ; donnez la géométrie avec plus de chiffres</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>its speed is limited, or its tool fixed, in a way that is not understood</source>
         <translation>sa vitesse est limitée, ou son outil fixé, d&apos;une façon qui n&apos;est pas comprise</translation>
@@ -7555,6 +7570,11 @@
         <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
         <source>neighbouring triangles face opposite ways, for instance at {0}; turn them alike (Mesh, Harmonize normals)</source>
         <translation>des triangles voisins regardent en sens opposés, par exemple en {0} ; tournez-les pareillement (Mesh, Harmoniser les normales)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>neither is the wrist spherical nor do axes 4 and 5 meet</source>
+        <translation>le poignet n&apos;est pas sphérique et les axes 4 et 5 ne se coupent pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_table.py"/>
@@ -8185,6 +8205,11 @@
         <location filename="../../freecad_am/gui/guess.py"/>
         <source>several objects are selected; they grow on the one with faces picked, else on the last one</source>
         <translation>plusieurs objets sont sélectionnés ; ils croissent sur celui dont des faces sont choisies, sinon sur le dernier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <source>several solutions of this arm bear the same configuration; along each bead the one it begins with is followed</source>
+        <translation>plusieurs solutions de ce bras ont la même configuration ; le long de chaque cordon, celle du début est suivie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -9132,6 +9157,16 @@
         <translation>le centre du poignet est au-dessus de l&apos;axe 3, sans avant-bras le long de l&apos;axe 4</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>the wrist is not spherical, and axis 2 is {0} mm ahead of axis 1</source>
+        <translation>le poignet n&apos;est pas sphérique, et l&apos;axe 2 est à {0} mm en avant de l&apos;axe 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>the wrist is not spherical, and axis 4 passes {0} mm beside axis 1</source>
+        <translation>le poignet n&apos;est pas sphérique, et l&apos;axe 4 passe à {0} mm à côté de l&apos;axe 1</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots</source>
         <translation>le poignet n’est pas sphérique : l’axe 4 est parallèle aux axes 2 et 3, comme sur les bras d’Universal Robots</translation>
@@ -9885,6 +9920,11 @@
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>{0} has no number</source>
         <translation>{0} n&apos;a pas de numéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>{0} has no spherical wrist, and what its controller calls the configurations of cartesian positions is not known; use joint</source>
+        <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/view_joint_path.py"/>
