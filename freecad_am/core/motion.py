@@ -12,6 +12,7 @@ What is straight within a bead, joints or tip, the program decides.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,11 +70,14 @@ class Motion:
         """(n,) bool: the rows a controller moves to; the first row of a bead repeats where it already stands."""
         return np.asarray(~(self.deposit & (self.point == 0)), dtype=np.bool_)
 
-    @property
+    @cached_property
     def stops(self) -> NDArray[np.bool_]:
         """(n,) bool: the rows at which the machine comes to a stop: all of a rapid, and the last of each bead."""
+        # kept, as every bead of a program asks for its own rows
         last = np.append(~self.deposit[1:] | (self.point[1:] == 0), True)[: len(self)]
-        return np.asarray(~self.deposit | last, dtype=np.bool_)
+        stops: NDArray[np.bool_] = ~self.deposit | last
+        stops.setflags(write=False)
+        return stops
 
     @property
     def reachable(self) -> NDArray[np.bool_]:
