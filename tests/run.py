@@ -263,7 +263,15 @@ def all_parts(arguments: list[str]) -> list[Part]:
     return [*windows, *others[:1], *in_version, *others[1:]]
 
 
+def compile_modules() -> None:
+    """Once for all processes of the tests, several hundred, each of which would do it again: they write none. A file that
+    is changed is noticed by what it holds."""
+    words = ["-m", "compileall", "-q", "--invalidation-mode", "checked-hash", "freecad_am"]
+    subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, check=False)
+
+
 def main() -> int:
+    compile_modules()
     parts = all_parts(sys.argv[1:])
     began = time.monotonic()
     with tempfile.NamedTemporaryFile(prefix="freecad-am-times-") as times:

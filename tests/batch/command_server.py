@@ -7,9 +7,11 @@ largest process, go to the descriptor named by the first argument. This process 
 one thread: OpenCASCADE 7.8 would wait in a copy of one that has meshed for threads that are not copied.
 """
 
+import contextlib
 import importlib
 import json
 import os
+import pkgutil
 import resource
 import sys
 import traceback
@@ -17,9 +19,22 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+import freecad_am
 from freecad_am.batch import cli, host
 
-NEEDED = ("Part", "Mesh", *(f"freecad_am.batch.{name}" for name in ("run", "rows", "export", "measured", "machines")))
+# what a command imports beside our own modules; a part of it may not be there
+BESIDE = ("Part", "Mesh", "MeshPart", "PyKDL", "yaml", "shapely", "matplotlib.backends.backend_svg")
+NOT_OF_COMMANDS = ("freecad_am.gui", "freecad_am.batch.boot")  # a window's, and what starts a command
+
+
+def load_all():
+    """Every module a command may import: a second of each otherwise."""
+    for name in BESIDE:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    for module in pkgutil.walk_packages(freecad_am.__path__, "freecad_am."):
+        if not module.name.startswith(NOT_OF_COMMANDS):
+            importlib.import_module(module.name)
 
 
 def be_command(folder, environment, out, err, words, seconds, memory):
@@ -50,8 +65,7 @@ def main():
     host.find_freecad()
     import FreeCAD  # noqa: F401  before Part
 
-    for name in NEEDED:
-        importlib.import_module(name)
+    load_all()
     answer = int(sys.argv[1])
     for line in sys.stdin:
         assert len(os.listdir("/proc/self/task")) == 1, "this process is to have one thread"

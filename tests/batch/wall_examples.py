@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The shipped examples of walls on existing parts: what the tests know of them, and a folder in which they are planned."""
 
-import os
 import re
 import shutil
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +11,7 @@ import numpy as np
 
 from freecad_am.batch.job import read_job
 from tests.batch import row_limits, wall_checks
+from tests.batch.conftest import COMMANDS
 
 
 def rod(x, z, radius):
@@ -80,10 +79,10 @@ LONG = (Example("walls/spatial-pipe-on-cone", "walls/spatial-pipe.step", 4.0, co
 
 
 class Plans:
-    """A copy of the examples, planned with the launcher; each job once."""
+    """A copy of the examples, planned by the command; each job once."""
 
     def __init__(self, root: Path, folder: Path):
-        self.launcher, self.folder = root / "freecad-am", folder / "examples"
+        self.folder = folder / "examples"
         shutil.copytree(root / "resources" / "examples", self.folder, ignore=shutil.ignore_patterns("out", "__pycache__"))
         self._done = {}
 
@@ -115,12 +114,8 @@ class Plans:
         if text is not None:
             path = path.with_name(f"{out.name}.yaml")
             path.write_text(text, encoding="utf-8")
-        done = subprocess.run(
-            [str(self.launcher), "plan", str(path), "-o", str(out), "--no-page"], cwd=self.folder, capture_output=True,
-            env={**os.environ, "FREECAD_USER_HOME": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}, text=True,
-            encoding="utf-8", timeout=300, check=False, stdin=subprocess.DEVNULL,
-        )
-        assert done.returncode == 0, done.stderr
+        done = COMMANDS.run(self.folder, ["plan", str(path), "-o", str(out), "--no-page"])
+        assert done.status == 0, done.err
         cell = read_job(str(path)).cell
         assert cell is None or row_limits.over_all(out, cell.machine, cell.limits) <= 0.0
         return wall_checks.read(out)
