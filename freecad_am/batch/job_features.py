@@ -13,7 +13,7 @@ from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import LayerParameters
-from freecad_am.core.strategies.families import KINDS, NEEDED, NONE, family_of
+from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, Family, family_of
 
 from . import fields, quantity, tree
 from .part_source import PartSource, absolute, fixtures_of, guide_of, part_of
@@ -39,6 +39,7 @@ class JobFeature:
     build_direction: BuildDirectionParameters
     process: ProcessParameters
     guide: PartSource | None = None
+    sections: Any = dataclasses.field(default=None, repr=False, compare=False)  # of the job, where the family is left to us
 
 
 def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = False) -> JobFeature:
@@ -47,6 +48,9 @@ def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = Fa
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
     part_section = fields.mapping(values["part"], "part")
+    section = values.get("strategy")
+    if isinstance(section, dict) and section.get("kind") == AUTO.kind:
+        return _left_open(values, section, name, path)
     strategy = _strategy(_with_fuse(values.get("strategy") or {}, part_section))
     process = _process(values.get("process") or {}, strategy)
     process = _with_bead_model(process, strategy, path)
@@ -60,6 +64,38 @@ def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = Fa
         name, part, _substrate(values.get("substrate"), strategy, part, path, earlier),
         fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide,
     )
+
+
+def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path: str) -> JobFeature:
+    """A feature whose family is chosen once its part is known; keys may be those of any family."""
+    fields.known_keys(section, ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})), "strategy")
+    common = {key: value for key, value in section.items() if key in _keys(AUTO)}
+    part = {key: value for key, value in fields.mapping(values["part"], "part").items() if key != "fuse"}
+    ground = values.get("substrate")
+    substrate = None if ground is None else part_of(fields.mapping(ground, "substrate"), path, "substrate")
+    return JobFeature(
+        name, part_of(part, path), substrate,
+        fixtures_of(values.get("fixtures"), path), fields.build(LayerParameters, common, "strategy"),
+        fields.build(BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"),
+        _with_path(fields.build(ProcessParameters, fields.mapping(values.get("process") or {}, "process"), "process"), path),
+        sections=values,
+    )
+
+
+def chosen(feature: JobFeature, kind: str, layers: str, path: str, earlier: bool) -> JobFeature:
+    """The feature with the family that was left open: of its keys those that the family has. Raises InputError as any."""
+    values, family = dict(feature.sections), KINDS[kind]
+    section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
+    values["strategy"] = {**({"layers": layers} if layers else {}), **section, "kind": kind}
+    if family.substrate == NONE:
+        values.pop("substrate", None)
+    if kind != "solid" and isinstance(values["part"], dict):
+        values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
+    return one_feature(values, feature.name, path, earlier)
+
+
+def _keys(family: Family) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(family.parameters))
 
 
 def process_of_all(section: Any, path: str) -> ProcessParameters:
@@ -125,7 +161,7 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
         kind = "developable"
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
-    known = ("kind", *(field.name for field in dataclasses.fields(family.parameters)))
+    known = ("kind", *(("guide",) if kind == "solid" else ()), *_keys(family))
     known = ("guide", *known) if kind == "solid" else known
     mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
     if "substrate" not in own and family.substrate == NONE:
@@ -215,7 +251,7 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier
 def _strategy(section: Any) -> LayerParameters:
     kind = fields.mapping(section, "strategy").get("kind", "revolution")
     if not isinstance(kind, str) or kind not in KINDS:
-        raise f.unknown_choice("strategy.kind", kind, tuple(KINDS))
+        raise f.unknown_choice("strategy.kind", kind, (*KINDS, AUTO.kind))
     if kind == "solid" and section.get("layers") == "developable":  # which has a name of its own
         kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
     if kind == "developable":

@@ -11,11 +11,11 @@ from typing import Any
 from freecad_am import api
 from freecad_am.brep.chosen import owners_of
 from freecad_am.brep.overlap import touching
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import NOTE, InputError, Issue
 from freecad_am.core.strategies.families import NONE, family_of
 
 from .job import Job
-from .job_features import about_feature
+from .job_features import about_feature, chosen
 from .part import bring
 from .part_source import PartSource
 
@@ -44,6 +44,24 @@ class Shapes:
         if len(self.job.features) == 1:
             return error
         return about_feature(error, self.number, self.of.name, self.job.tree)
+
+    def choose(self, earlier: Sequence[Any]) -> Issue | None:
+        """Choose the family where the job leaves it open; a note that says what and why. Raises InputError."""
+        if self.of.sections is None:
+            return None
+        from freecad_am.objects.proposed_family import proposed
+        from freecad_am.objects.shapes import taken
+
+        ground = next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
+        try:
+            found = proposed(
+                taken(self.part), self.faces, None if ground is None else taken(ground), bool(self.of.part.start_edges),
+                self.of.process.bead_width, self.job.cell is not None,
+            )
+            self.of = chosen(self.of, found.kind, found.layers, self.job.path, bool(earlier))
+        except InputError as error:
+            raise self.placed(error) from None
+        return Issue(NOTE, "PROPOSED", found.told())
 
     def make_feature(self, earlier: Sequence[Any]) -> Any:
         """The feature, of the family of its strategy. earlier: parts that are deposited before; those that it touches are
@@ -84,12 +102,17 @@ class Shapes:
         """Whether what is deposited is known as a solid, which others may stand on: not where faces of one are chosen."""
         return _has_shape(self.part) and bool(self.part.Shape.Solids) and not self.faces
 
+    def _touched(self, earlier: Sequence[Any]) -> list[Any]:
+        if not _has_shape(self.part):
+            return []
+        return [one for one in earlier if touching(self.part.Shape, one.Shape, TOUCHING)]
+
     def _standing(self, earlier: Sequence[Any]) -> Any:
         """What it grows on: its substrate and the earlier parts that it touches, as one object; None without any."""
         own = [] if self.substrate is None else [self.substrate]
         if not earlier or family_of(self.of.strategy).substrate == NONE:
             return self.substrate
-        touched = [one for one in earlier if _has_shape(self.part) and touching(self.part.Shape, one.Shape, TOUCHING)]
+        touched = self._touched(earlier)
         if len(own + touched) < 2:
             return next(iter(own + touched), None)
         whole = self.document.addObject("Part::Compound", "Standing")

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,6 +34,7 @@ class Stages:
     """The stages as far as they got: document objects and the findings about them."""
 
     document: Any
+    job: Any = None  # with the families chosen that it left open
     features: list[Any] = field(default_factory=list)
     toolpath: Any = None
     joint_path: Any = None
@@ -84,7 +86,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
             try:
                 document.Label, document.UndoMode = job.name, 0
                 stages = plan(job, document, session)
-                result = _write(job, stages, cell, files, session, started, page)
+                result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
                 FreeCAD.closeDocument(document.Name)
             from freecad_am.core.strategies.size import LARGE
@@ -140,7 +142,11 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
             cell = api.make_cell(document, parameters=job.cell)
     with stages.timed("feature", session):
         for one in shapes:
-            stages.features.append(one.make_feature([other.part for other in shapes[: one.number] if other.solid]))
+            earlier = [other.part for other in shapes[: one.number] if other.solid]
+            proposal = one.choose(earlier)
+            stages.issues += [] if proposal is None else [proposal]
+            stages.features.append(one.make_feature(earlier))
+    job = stages.job = _as_chosen(job, shapes)
     for feature in stages.features:
         stages.issues += api.issues(feature)
     session.issues(issue for issue in stages.issues if issue.code == LARGE)  # before the work that takes long
@@ -171,6 +177,12 @@ def plan(job: Job, document: Any, session: Any) -> Stages:
         except InfeasibleError as error:
             stages.issues += error.issues or [Issue("error", error.code, error.message)]
     return stages
+
+
+def _as_chosen(job: Job, shapes: Sequence[Any]) -> Job:
+    """The job with the features as they were chosen."""
+    features = tuple(one.of for one in shapes)
+    return dataclasses.replace(job, features=features, process=features[0].process if len(features) == 1 else job.process)
 
 
 def _write(

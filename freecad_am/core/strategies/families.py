@@ -48,9 +48,11 @@ FAMILIES = (
     Family("solid", SolidParameters, OPTIONAL, True, True, ("local", "layer", "fixed"),
            "{} is for walls; plane layers grow along their normal: use local or fixed", faces=False),
 )
+# what `kind: auto` is until its part is known: it may have whatever one of the families takes
+AUTO = Family("auto", LayerParameters, OPTIONAL, True, False, ("local", "layer", "symmetry-plane", "fixed"), "", True)
 KINDS = {family.kind: family for family in FAMILIES}
 
 
 def family_of(parameters: Any) -> Family:
     """The family of parameters of a strategy."""
-    return next(family for family in FAMILIES if type(parameters) is family.parameters)
+    return next(family for family in (*FAMILIES, AUTO) if type(parameters) is family.parameters)

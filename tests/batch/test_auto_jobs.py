@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`kind: auto`: family and layers that suit a part, with the reason, and the job that comes of it."""
+
+import csv
+import json
+
+import FreeCAD
+import Mesh
+import MeshPart
+import numpy as np
+import Part
+import pytest
+from FreeCAD import Vector
+
+from freecad_am.batch import job as jobs
+from freecad_am.core.issues import InputError
+from freecad_am.objects.proposed_family import proposed
+from freecad_am.objects.shapes import Taken
+
+UP = Vector(0, 0, 1)
+
+
+def tube(outer, inner, height):
+    return Part.makeCylinder(outer, height).cut(Part.makeCylinder(inner, height))
+
+
+def tee():
+    return Part.makeBox(20, 20, 40).fuse(Part.makeBox(90, 20, 12, Vector(-35, 0, 40))).removeSplitter()
+
+
+def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True):
+    under = None if substrate is None else Taken("ground", substrate)
+    return proposed(Taken("part", shape), faces, under, edges, width, tilts)
+
+
+@pytest.mark.parametrize(("shape", "kind", "layers", "why"), [
+    (lambda: Part.makeSphere(45, Vector(), UP, 0, 90, 360).Faces[0], "revolution", "", "skin that turns about one axis"),
+    (lambda: tube(40, 32, 50), "revolution", "", "its wall is one bead of 8 mm"),
+    (lambda: Part.makeCylinder(30, 20), "solid", "planes", "would leave out"),
+    (lambda: Part.makeBox(60, 40, 10).fuse(Part.makeBox(10, 40, 40)), "solid", "planes", "a solid, and 0% of its surface"),
+    (tee, "solid", "geodesic", "hang over by more than 45 deg"),
+    (lambda: Part.makeCompound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, Vector(20, 0, 0))]), "solid", "planes",
+     "holds 2 solids"),
+])
+def test_a_part_alone(shape, kind, layers, why):
+    found = of(shape())
+    assert (found.kind, found.layers) == (kind, layers) and why in found.told(), found
+
+
+def test_what_would_be_left_out_is_the_middle():
+    """A wall of one bead, 8 mm wide, leaves all within it."""
+    found = of(Part.makeCylinder(30, 20))
+    told = float(found.reason.split("leave out ")[1].split()[0])
+    assert told == pytest.approx(np.pi * 22.0**2 * 20.0 / 1000.0, rel=0.03)
+
+
+def test_without_a_machine_nothing_tilts():
+    found = of(tee(), tilts=False)
+    assert (found.kind, found.layers) == ("solid", "planes") and "layers: geodesic" in found.reason
+
+
+def test_a_part_on_another():
+    hub = Part.makeCylinder(25, 80)
+    fin = Part.makeBox(24, 30, 30, Vector(10, -15, 20)).cut(hub)
+    assert of(fin, hub).kind == "developable" and "of ground" in of(fin, hub).reason
+    assert of(Part.makeCylinder(12, 40).Faces[0], Part.makeBox(40, 40, 10, Vector(-20, -20, -10))).kind == "surface"
+    assert of(Part.makeBox(9, 9, 9), Part.makeBox(40, 40, 10, Vector(0, 0, -10))).kind == "solid"
+    assert of(Part.makeCylinder(12, 40).Faces[0], edges=True).kind == "surface"
+    whole = of(Part.makeCompound([hub, fin, fin.rotated(Vector(), UP, 180.0)]))
+    assert whole.kind == "developable" and "another of them" in whole.reason
+
+
+def test_what_nothing_serves_gets_the_nearest():
+    bent = Part.makeSphere(30).Faces[0].toNurbs().Faces[0].Surface.toShape(0.1, 2.0, 0.1, 0.9)
+    bent = bent.transformGeometry(FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1))
+    found = of(bent)
+    assert found.kind == "surface" and "needs a substrate, or part.start_edges" in found.reason
+
+
+def test_a_mesh_is_filled():
+    mesh = MeshPart.meshFromShape(Shape=Part.makeBox(20, 20, 20), LinearDeflection=1, AngularDeflection=1)
+    found = proposed(Taken("scan", None, mesh, np.eye(4)), (), None, False, 8.0, True)
+    assert (found.kind, found.layers) == ("solid", "planes") and "is a mesh" in found.reason
+    assert isinstance(mesh, Mesh.Mesh)
+
+
+AUTO = "part: {file: part.step}\nstrategy: {kind: auto, layer_height: 5 mm, chord_error: 0.1 mm}\n"
+
+
+def planned(workshop, text):
+    (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
+    done = workshop.launch("plan", "job.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = list(csv.reader(stream))
+    return json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8")), rows
+
+
+def test_the_job_is_that_of_what_is_proposed(workshop):
+    Part.makeCylinder(30, 20).exportStep(str(workshop.folder / "part.step"))
+    report, rows = planned(workshop, AUTO)
+    (issue,) = [issue for issue in report["issues"] if issue["code"] == "PROPOSED"]
+    assert issue["level"] == "note" and issue["message"].startswith("kind: solid, layers: planes: ")
+    assert planned(workshop, AUTO.replace("auto", "solid"))[1] == rows
+    several = AUTO.replace("part:", "features:\n  - {name: a, part:").replace("part.step}", "part.step}}")
+    assert planned(workshop, several)[1] == rows
+
+
+def test_keys_that_no_family_has_are_refused(tmp_path):
+    (tmp_path / "part.step").write_text("")
+    path = tmp_path / "job.yaml"
+    path.write_text(AUTO.replace("chord_error", "bananas"), encoding="utf-8")
+    with pytest.raises(InputError, match="no key 'bananas'"):
+        jobs.read_job(str(path))
