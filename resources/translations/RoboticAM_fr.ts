@@ -9937,6 +9937,11 @@
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} holds {1} solids</source>
+        <translation>{0} contient {1} solides</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>{0} in a loop that waits for an input</source>
         <translation>{0} dans une boucle qui attend une entrée</translation>
@@ -9962,9 +9967,24 @@
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a mesh, which is filled</source>
+        <translation>{0} est un maillage, qui est rempli</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>{0} is a program of this very job; call another one, or rename the job</source>
         <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a solid</source>
+        <translation>{0} est un solide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a solid; it turns about one axis, but a wall of one bead would leave out {1} of its {2} cm3</source>
+        <translation>{0} est un solide ; il tourne autour d&apos;un axe, mais une paroi d&apos;un cordon laisserait de côté {1} de ses {2} cm3</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
