@@ -38,7 +38,13 @@ from .core.parameters.inspection import InspectionParameters
 from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
-from .core.parameters.strategy import DevelopableParameters, RevolutionParameters, SolidParameters, SurfaceParameters
+from .core.parameters.strategy import (
+    CurvesParameters,
+    DevelopableParameters,
+    RevolutionParameters,
+    SolidParameters,
+    SurfaceParameters,
+)
 from .objects import stage as stages
 from .objects import user_machines
 from .objects.cell import Cell
@@ -55,7 +61,7 @@ from .objects.toolpath import Toolpath, own_process
 from .posts import written
 
 __all__ = (
-    "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
+    "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell", "make_curves_feature",
     "make_developable_feature", "make_feature", "make_feature_of", "make_joint_path", "make_program", "make_solid_feature",
     "make_surface_feature", "make_toolpath", "make_trajectory", "open_part", "proposed_name", "recompute", "result",
     "stages_of", "told_to",
@@ -147,6 +153,20 @@ def make_solid_feature(
     }
     return make_feature_of(doc, "solid", source, label=label, links=links, parameters=[strategy, build_direction],
                            values=values)
+
+
+def make_curves_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
+    fixtures: Sequence[Any] = (), strategy: CurvesParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Edges, a wire, a sketch, or a table of points that `open_part` has read, laid as beads as they are.
+
+    `am.make_curves_feature(doc, doc.Sketch, repeat=3, layer_height=2)`; faces: names of faces whose normals are the
+    directions, and of edges where not all are laid; substrate: what they are laid on.
+    """
+    return make_feature_of(doc, "curves", source, faces, label=label, parameters=[strategy, build_direction],
+                           links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)
 
 
 def make_toolpath(
@@ -398,10 +418,18 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
 
 def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
-    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of.
+    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), which are laid
+    as beads.
 
     scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
     """
+    if path.lower().endswith(".csv"):
+        from .objects.table_part import open_table
+
+        with _one_step(doc, "Open part"):
+            table = open_table(doc, path)
+            table.purgeTouched()
+        return table
     from .objects.part_file import part_shape
 
     shape, label = part_shape(path, object, scale)

@@ -227,6 +227,13 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier
     if part.start_edges and not family.edges:
         raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
         "them out")
+    table = part.file.lower().endswith(".csv")
+    if family.kind != "curves" and (part.edges or table):
+        where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
+        raise InputError("NOT_FOR_FAMILY", where, f"only strategy.kind curves lays {what} as beads; use it")
+    if table and (part.edges or part.faces):
+        raise InputError("NOT_FOR_FAMILY", "part.edges" if part.edges else "part.faces", "a table of points has no edges "
+                         "and no faces; leave them out")
     if part.faces and not family.faces:
         raise InputError("NOT_FOR_FAMILY", "part.faces", "solids are deposited as a whole; leave the faces out")
     if family.substrate == NEEDED:
@@ -256,7 +263,7 @@ def _strategy(section: Any) -> LayerParameters:
         kind, section = "developable", {key: value for key, value in section.items() if key != "layers"}
     if kind == "developable":
         section = _with_base(section)
-    if kind == "solid":
+    if kind in ("solid", "curves"):
         section = _with_direction(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
     return fields.build(factory, section, "strategy", also=("kind", "guide") if kind == "solid" else ("kind",))

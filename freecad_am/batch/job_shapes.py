@@ -32,7 +32,7 @@ class Shapes:
             self.part = bring(document, self.of.part, meshes=family_of(self.of.strategy).meshes)
             self.substrate = None if self.of.substrate is None else bring(document, self.of.substrate, "substrate")
             self.guide = None if self.of.guide is None else self._guide(self.of.guide)
-            self.faces = self.of.part.faces
+            self.faces = (*self.of.part.edges, *self.of.part.faces)
             if len(job.features) > 1:
                 self._set_apart()
             self.fixtures = [bring(document, one, f"fixtures[{k}]") for k, one in enumerate(self.of.fixtures)]

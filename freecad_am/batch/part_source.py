@@ -53,7 +53,7 @@ def fixtures_of(section: Any, path: str) -> tuple[PartSource, ...]:
 
 def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource:
     """The source of a section such as `part` of the job file `path`. InputError naming key and what to do."""
-    further = ("start_edges",) if key == "part" else ()
+    further = ("start_edges", "edges") if key == "part" else ()
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
         raise InputError("NO_PART", f"{key}.file", f"there is no file; write {key}: {{file: shape.step}}")
@@ -80,6 +80,7 @@ def part_of(section: dict[str, Any], path: str, key: str = "part") -> PartSource
         start_edges=_names(section.get("start_edges"), f"{key}.start_edges", _EDGE),
         scale=_scale(section.get("scale"), file, f"{key}.scale"),
         solids=solids,
+        edges=_names(section.get("edges"), f"{key}.edges", _EDGE),
     )
 
 

@@ -80,7 +80,7 @@ class Tool:
 # In the order of the work; between groups stands a separator. A tool that is in none comes last.
 GROUPS = (
     ("OpenPart", "NewJob"),
-    ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub"),
+    ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Curves"),
     ("Toolpath", "JointPath", "SpinMap"),
     ("Path", "Simulate"),
     ("Program", "Plots", "Inspect", "ExportPath"),
@@ -118,6 +118,10 @@ def register() -> list[str]:
             "solids_on_hub", marked("Solids on Hub…"),
             marked("Takes the selected solids to be deposited on the cylinder or cone that is selected last"), _hub,
             needs.part,
+        ),
+        "Curves": Tool(
+            "curves", marked("Curves…"), marked("Takes the selected edges, wires, sketches or tables to be laid as beads"),
+            _curves, needs.document,
         ),
         "Toolpath": Tool(
             "toolpath", marked("Toolpath…"), marked("Cuts a feature into layers and beads"), _toolpath, needs.feature
@@ -217,6 +221,12 @@ def _solid() -> None:
     from . import solid_panel, stage_panel
 
     stage_panel.show(solid_panel.SolidPanel())
+
+
+def _curves() -> None:
+    from . import curves_panel, stage_panel
+
+    stage_panel.show(curves_panel.CurvesPanel())
 
 
 def _hub() -> None:

@@ -369,6 +369,7 @@ def _panel_of(proxy: type[Stage]) -> Any:
     """The panel of a kind of stage."""
     from . import (
         cell_panel,
+        curves_panel,
         feature_panel,
         hub_panel,
         joint_path_panel,
@@ -381,6 +382,7 @@ def _panel_of(proxy: type[Stage]) -> Any:
 
     panels = (
         cell_panel.CellPanel, feature_panel.FeaturePanel, wall_panel.WallPanel, hub_panel.HubPanel, solid_panel.SolidPanel,
+        curves_panel.CurvesPanel,
         toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
     )
     return next(panel for panel in panels if panel.stage is proxy)

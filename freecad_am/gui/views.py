@@ -9,6 +9,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore
 
+from ..objects.curves_feature import CurvesFeature
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.job_group import is_group
 from ..objects.solid_feature import SolidFeature
@@ -18,6 +19,7 @@ from .busy import carry_out
 from .inspection.view import InspectionView
 from .view_base import MODE, StageView
 from .view_cell import CellView
+from .view_curves import CurvesView
 from .view_feature import FeatureView
 from .view_hub import HubView, SolidView
 from .view_joint_path import JointPathView
@@ -30,7 +32,9 @@ VIEWS: dict[str, type[StageView]] = {
     "cell": CellView, "feature": FeatureView, "toolpath": ToolpathView, "joint path": JointPathView,
     "program": ProgramView, "inspection": InspectionView,
 }
-OF_SOLIDS: dict[type[Stage], type[StageView]] = {DevelopableFeature: HubView, SolidFeature: SolidView}
+OF_FAMILIES: dict[type[Stage], type[StageView]] = {
+    DevelopableFeature: HubView, SolidFeature: SolidView, CurvesFeature: CurvesView,
+}
 
 _to_be_seen: set[str] = set()
 
@@ -49,7 +53,7 @@ preference_watch.listen(_preferences_changed)
 
 def view_of(stage: Stage) -> type[StageView]:
     """The view provider of a stage."""
-    return OF_SOLIDS.get(type(stage), VIEWS[stage.kind])
+    return OF_FAMILIES.get(type(stage), VIEWS[stage.kind])
 
 
 def attach(obj: Any) -> None:

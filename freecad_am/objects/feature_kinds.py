@@ -14,6 +14,7 @@ _PROXIES = {
     "revolution": ("feature", "RevolutionFeature"),
     "surface": ("surface_feature", "SurfaceFeature"),
     "developable": ("developable_feature", "DevelopableFeature"),
+    "curves": ("curves_feature", "CurvesFeature"),
     "solid": ("solid_feature", "SolidFeature"),
 }
 

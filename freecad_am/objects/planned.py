@@ -110,6 +110,8 @@ def bases_of(of: Given) -> list[Any]:
 
 def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> CoreToolpath:
     """The toolpath with whether it lies on the shapes that it was made for; nobody looks where these have no faces."""
+    if family_of(of.strategy).kind == "curves":  # they are the part
+        return toolpath
     progress.report(LOOKED, "looking whether the deposit lies on the part")
     places = on_part.places(toolpath)
     if hasattr(of.strategy, "share_of_cut"):  # where the part was cut, above the surface that beads of the layer lie on
@@ -178,6 +180,23 @@ def _of_solids(of: Given) -> CoreToolpath:
     return solids_plan.plan(of.wall, of.strategy, of.build, of.process, of.model, _share)
 
 
+def _of_curves(of: Given) -> CoreToolpath:
+    from ..core.strategies import curves
+
+    made = curves.plan(of.wall, of.strategy, of.build, of.process, _share)
+    if of.cell is not None:
+        points = np.vstack([bead.points for _, _, bead in made])
+        stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
+        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter)
+    return made
+
+
+def _curves_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+    from ..core.strategies import wall_clearance
+
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature)
+
+
 def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     """It is looked at what stands around; the rest was settled with the layers, but for what is deposited of others."""
     if feature is None:
@@ -223,5 +242,5 @@ class _Planner:
 _SOLIDS = _Planner(_of_solids, _solids_cleared)
 _PLANNERS = {
     "revolution": _Planner(_of_revolution, _revolution_cleared), "surface": _Planner(_of_wall, _wall_cleared),
-    "developable": _SOLIDS, "solid": _SOLIDS,
+    "developable": _SOLIDS, "solid": _SOLIDS, "curves": _Planner(_of_curves, _curves_cleared),
 }

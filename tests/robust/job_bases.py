@@ -31,6 +31,9 @@ FAMILIES = {
         "part": {"file": "boxes.brep"}, "substrate": {"file": "hub.step"},
         "strategy": {"kind": "developable", "layer_height": "4 mm", "bead_spacing": "6 mm"},
     },
+    "curves": {
+        "part": {"file": "beads.csv"}, "strategy": {"kind": "curves", "layer_height": "3 mm", "repeat": 2},
+    },
     "solid": {
         "part": {"file": "bracket.step"}, "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "7 mm"},
     },
@@ -48,6 +51,7 @@ def write_parts(folder):
     Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(str(folder / "block.step"))
     angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40))
     angle.cut(Part.makeCylinder(8, 60, FreeCAD.Vector(32, 20, -5))).exportStep(str(folder / "bracket.step"))
+    (folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n30,20,0,1\n0,6,0,2\n20,6,0,2\n", encoding="utf-8")
     hub = Part.makeCylinder(25.0, 80.0)
     hub.exportStep(str(folder / "hub.step"))
     hub.exportStl(str(folder / "hub.stl"))

@@ -14,6 +14,17 @@ MEND = "Holes of meshes up to this size across are closed, which is told; larger
 MOST_LAYERS = 20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 
 
+def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, float]:
+    """Three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
+    try:
+        x, y, z = (float(word) for word in text.replace(",", " ").split())
+    except ValueError:
+        x = y = z = math.nan
+    if not 0.0 < math.hypot(x, y, z) < math.inf:
+        raise InputError("BAD_VALUE", where, f"{text!r} is not a direction; {remedy}")
+    return x, y, z
+
+
 @dataclass(frozen=True)
 class LayerParameters:
     """What every family cuts its layers by. mm."""
@@ -88,6 +99,28 @@ class SurfaceParameters(LayerParameters):
         for spacing in self.compare:
             if spacing not in SPACINGS:
                 raise f.unknown_choice("strategy.compare", spacing, SPACINGS)
+
+
+@dataclass(frozen=True)
+class CurvesParameters(LayerParameters):
+    """How curves are laid as beads. mm."""
+
+    direction: str = f.parameter(
+        "0 0 1", f.TEXT, "Direction x y z from the deposit towards the tool, in the part's coordinates, where neither the "
+        "curves nor faces say one.",
+    )
+    repeat: int = f.parameter(1, f.COUNT, "How many times the curves are laid, one layer height over the other.", low=1,
+                              high=MOST_LAYERS)
+
+    def __post_init__(self) -> None:
+        f.check(self, "strategy")
+        self.way()
+
+    def way(self) -> tuple[float, float, float]:
+        """`direction` as a unit vector. InputError BAD_VALUE for what is no direction."""
+        x, y, z = direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]")
+        size = math.hypot(x, y, z)
+        return x / size, y / size, z / size
 
 
 @dataclass(frozen=True)
@@ -290,16 +323,7 @@ class SolidParameters(FilledParameters):
         """`direction` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no direction."""
         if self.direction == "auto":
             return None
-        try:
-            x, y, z = (float(word) for word in self.direction.replace(",", " ").split())
-        except ValueError:
-            x = y = z = math.nan
-        if not 0.0 < math.hypot(x, y, z) < math.inf:
-            raise InputError(
-                "BAD_VALUE", "strategy.direction",
-                f"{self.direction!r} is not a direction; give three numbers such as [0, 0, 1], or auto",
-            )
-        return x, y, z
+        return direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto")
 
     @property
     def share_of_cut(self) -> float:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..parameters.strategy import (
+    CurvesParameters,
     DevelopableParameters,
     LayerParameters,
     RevolutionParameters,
@@ -45,6 +46,8 @@ FAMILIES = (
     Family("surface", SurfaceParameters, NEEDED, True, False, ("local", "layer", "symmetry-plane", "fixed"), "", True),
     Family("developable", DevelopableParameters, OPTIONAL, True, True, ("local",),
            "{} is not for solids on a hub, which grow along its normals; use local"),
+    Family("curves", CurvesParameters, OPTIONAL, False, False, ("local", "fixed"),
+           "{} is for walls; curves are laid along their own directions or one: use local or fixed"),
     Family("solid", SolidParameters, OPTIONAL, True, True, ("local", "layer", "fixed"),
            "{} is for walls; plane layers grow along their normal: use local or fixed", faces=False),
 )

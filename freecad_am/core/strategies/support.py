@@ -22,7 +22,7 @@ Mask = NDArray[np.bool_]
 STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
-BY_ITSELF = "surface"  # a family whose first layer lies where it begins by its making
+BY_ITSELF = ("surface", "curves")  # families whose first layer lies where it begins by its making
 
 
 def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:
@@ -33,7 +33,7 @@ def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], ba
     hub is known by its surface alone. The first layer of a wall lies by its making where the wall begins, and is carried.
     """
     ground = _Ground(toolpath, planes, bodies, bases)
-    open_, issues = support.carried(toolpath, ground, toolpath.family == BY_ITSELF)
+    open_, issues = support.carried(toolpath, ground, toolpath.family in BY_ITSELF)
     return replace(toolpath, unsupported=math.fsum(open_.values()), issues=(*toolpath.issues, *issues))
 
 
@@ -45,7 +45,7 @@ def of_feature(
     part, numbers = toolpath.parts[number]
     ground = _Ground(part, planes, bodies, bases)
     whole = replace(toolpath, layer_height=part.layer_height)
-    return support.carried(whole, ground, part.family == BY_ITSELF, numbers)
+    return support.carried(whole, ground, part.family in BY_ITSELF, numbers)
 
 
 class _Ground:

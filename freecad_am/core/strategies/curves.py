@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Curves laid as beads as they are, once or several times one over the other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..geometry.curves import Array, BeadCurve, Curves
+from ..geometry.told import place
+from ..issues import InputError
+from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import CurvesParameters
+from ..slicing.wall_direction import held
+from ..toolpath import Bead, Layer, Toolpath
+from .progress import Progress, silent
+
+TURN = 2.0 * np.pi
+ALONG = np.cos(np.radians(5.0))  # a bead runs along the direction in which it is laid if the angle between them is less
+
+
+def plan(
+    given: Curves, strategy: CurvesParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    progress: Progress = silent,
+) -> Toolpath:
+    """The toolpath of curves, in part coordinates: layer k is that of the curves k layer heights further along the
+    directions in which they are laid. InputError ALONG_DIRECTION."""
+    fixed = np.array(strategy.way())
+    numbers = sorted({curve.layer for curve in given.curves})
+    layers: list[Layer] = []
+    for again in range(strategy.repeat):
+        progress(again / strategy.repeat, f"layer {len(layers)}")
+        for number in numbers:
+            beads = [
+                _bead(curve, fixed, again * strategy.layer_height, len(layers) + k, build, process, given.label)
+                for k, curve in enumerate(given.curves) if curve.layer == number
+            ]
+            layers.append(Layer(tuple(beads)))
+    return Toolpath(
+        tuple(layers), np.eye(4), strategy.layer_height, strategy.chord_error, given.issues, process.overlap, "curves",
+        given.surroundings, bead_width=process.bead_width,
+    )
+
+
+def _bead(
+    curve: BeadCurve, fixed: Array, up: float, index: int, build: BuildDirectionParameters, process: ProcessParameters,
+    label: str,
+) -> Bead:
+    away = np.tile(fixed, (len(curve.points), 1))
+    if curve.directions is not None and build.mode == "local":
+        away = curve.directions
+    points = curve.points + up * away
+    if process.direction == "alternate" and index % 2:
+        points, away = points[::-1], away[::-1]
+    forward = np.gradient(points, axis=0) if len(points) > 2 else np.tile(points[1] - points[0], (2, 1))
+    forward /= np.linalg.norm(forward, axis=1, keepdims=True)
+    worst = int(np.abs((forward * away).sum(axis=1)).argmax())
+    if abs(float(forward[worst] @ away[worst])) > ALONG:
+        raise InputError(
+            "ALONG_DIRECTION", label, f"a bead runs along the direction in which it is laid, at {place(points[worst])}: the "
+            "nozzle would be in its own way; give another strategy.direction, faces, or directions in the table",
+        )
+    across = np.cross(forward, away)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    tool = held(away, np.cross(away, across), across, build.lead, build.tilt)
+    way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    if curve.closed:
+        points, away, tool = (np.vstack([rows[:-1], rows[:1]]) for rows in (points, away, tool))
+    return Bead(points, away, tool, TURN * way / way[-1], np.full(len(points), process.travel_speed), curve.closed)

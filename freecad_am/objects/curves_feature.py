@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Curves in a document that are laid as beads: edges, wires, sketches, or the points of a table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..brep.curves import curves_of
+from ..core.geometry import curve_table
+from ..core.geometry.curves import Curves
+from ..core.issues import InputError
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.strategy import CurvesParameters
+from .fingerprints import fingerprint, shape_fingerprint
+from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
+from .stage import Link, Outcome, Section, Stage, Work
+from .table_part import table_of
+
+
+class CurvesFeature(Stage):
+    """Result: core.geometry.curves.Curves, in the coordinates of the document."""
+
+    kind = "feature"
+    sections = (
+        Section(CurvesParameters, "strategy", "Layers"),
+        Section(BuildDirectionParameters, "build_direction", "Build direction"),
+    )
+    links = (
+        Link(
+            "Source", "", "The edges, wire, sketch or table of points to lay as beads; faces beside edges give the "
+            "directions.", type_name="App::PropertyLinkSub",
+        ),
+        Link("Substrate", "", "The part that they are laid on; none is needed on a platform.", required=False),
+        FIXTURES,
+    )
+    figures = (("Curves", "App::PropertyInteger", "Number of curves."),)
+
+    def prepare(self, obj: Any) -> Work:
+        self.linked(obj)
+        strategy = self.parameters(obj, CurvesParameters)
+        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        source, names = _source(obj)
+        edges = tuple(name for name in names if name.startswith("Edge"))
+        faces = tuple(name for name in names if name.startswith("Face"))
+        label, table = source.Label, table_of(source)
+        shape = None if table is not None else global_shape(source)
+        ground = () if obj.Substrate is None else (taken(obj.Substrate),)
+        fixtures = fixtures_of(obj)
+
+        def work() -> Outcome:
+            if table is not None:
+                found = curve_table.curves_of(table, label)
+            else:
+                found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
+            curves = Curves(label, found, bodies((*ground, *fixtures)))
+            return Outcome(curves, (), (("Curves", len(found)),))
+
+        return work
+
+    def further_inputs(self, obj: Any) -> list[str]:
+        source, names = _source(obj)
+        table = table_of(source)
+        ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
+        return [
+            shape_fingerprint(source) if table is None else table, " ".join(names), *ground, "|",
+            *(fingerprint(fixture) for fixture in obj.Fixtures),
+        ]
+
+
+def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
+    """The object of Source and the names of the edges and faces chosen. InputError NO_INPUT."""
+    if not obj.Source:
+        raise InputError("NO_INPUT", obj.Label, "Source is missing; choose edges, a wire, a sketch or a table of points")
+    source, names = obj.Source
+    return source, tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name)

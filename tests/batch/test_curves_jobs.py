@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jobs of curves that are laid as they are: what is in the table, and on the shape, is in waypoints.csv."""
+
+import csv
+import json
+
+import FreeCAD
+import numpy as np
+import Part
+import pytest
+
+V = FreeCAD.Vector
+TABLE = """\
+x,y,z,i,j,k,bead
+0,0,0,0,0,1,1
+30,0,0,0,0.1,1,1
+30,20,0,0,0.2,1,1
+0,5,0,0,0,2,2
+20,5,0.5,0,0,2,2
+"""
+JOB = """\
+part: {{file: {file}{part}}}
+strategy: {{kind: curves, layer_height: 2 mm, chord_error: 0.05 mm{more}}}
+process: {{bead_width: 4 mm}}
+build_direction: {{clearance: none{mode}}}
+"""
+
+
+@pytest.fixture
+def planned(workshop):
+    def run(file="beads.csv", text=TABLE, part="", more="", mode=""):
+        if file.endswith(".csv"):
+            (workshop.folder / file).write_bytes(text if isinstance(text, bytes) else text.encode())
+        job = workshop.write_job(JOB.format(file=file, part=part, more=more, mode=mode))
+        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        if done.status:
+            return done, None, None
+        out = workshop.folder / "out"
+        with open(next(out.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+        return done, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
+
+    return run
+
+
+def column(rows, *names):
+    return np.array([[float(row[name]) for name in names] for row in rows])
+
+
+def test_a_table_is_laid_as_it_is_and_over_itself(planned):
+    done, report, rows = planned(more=", repeat: 3")
+    assert done.status == 0, done.err
+    told = np.array([[float(cell) for cell in line.split(",")] for line in TABLE.splitlines()[1:]])
+    away = told[:, 3:6] / np.linalg.norm(told[:, 3:6], axis=1)[:, None]
+    expected = np.vstack([told[:, :3] + 2.0 * k * away for k in range(3)])
+    np.testing.assert_allclose(column(rows, "x_mm", "y_mm", "z_mm"), expected, atol=2e-6)
+    np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile(away, (3, 1)), atol=1e-8)
+    assert [(row["layer"], row["bead"]) for row in rows[:5]] == [("0", "0")] * 3 + [("0", "1")] * 2
+    assert report["counts"] == {"layers": 3, "beads": 6, "points": 15} and report["unsupported_mm"] == 0.0
+
+
+@pytest.mark.parametrize("text", [
+    "0;0;0\n10;0;0\n10;10;0\n", "X_mm,Y_mm,Z_mm\n0,0,0\n10,0,0\n10,10,0\n\n", "﻿x,y,z,bead\n0,0,0,7\n10,0,0,7\n10,10,0,7\n",
+])
+def test_forms_of_a_table(planned, text):
+    done, _, rows = planned(text=text, more=", direction: [0, 1, 1]")
+    assert done.status == 0, done.err
+    np.testing.assert_allclose(column(rows, "x_mm", "y_mm", "z_mm"), [[0, 0, 0], [10, 0, 0], [10, 10, 0]], atol=1e-9)
+    np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile([0, 0.5**0.5, 0.5**0.5], (3, 1)), atol=1e-8)
+
+
+@pytest.mark.parametrize(("text", "line", "words"), [
+    ("x,y,z\n0,0,0\n1,,0\n2,0,0\n", "line 3", "2 numbers in place of 3"), ("0,0,0\n\n1,0,0\n", "line 2", "it is empty"),
+    ("0,0,0\n1,nan,0\n", "line 2", "y is nan"), ("0,0,0\n1,inf,0\n", "line 2", "y is inf"),
+    ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "leave it out"), ("0,0,0\n", "line 1", "one point"),
+    ("0,0,0,1\n1,0,0,1\n2,0,0,2\n", "line 3", "one point"), ("0,0,0\n1,0,zero\n", "line 2", "'zero' is not a number"),
+    ("0,0,0,1\n1,0,0,1\n0,1,0,2\n1,1,0,2\n5,0,0,1\n6,0,0,1\n", "line 5", "begins again"), ("", "beads.csv", "no points"),
+    ("x,y\n0,0\n", "line 1", "columns"), ("x,y,w\n0,0,0\n1,0,0\n", "line 1", "columns"),
+    ("0,0,0,0,0,0\n1,0,0,0,0,1\n", "line 1", "give a direction"), (b"\xff\xfe\x00", "beads.csv", "not text"),
+])
+def test_bad_tables_are_told_with_their_line(planned, text, line, words):
+    done, _, _ = planned(text=text)
+    assert done.status == 2 and line in done.err and words in done.err and done.err.count("error[") == 1, done.err
+
+
+@pytest.mark.parametrize(("part", "more", "mode", "code"), [
+    (", edges: [Edge1]", "", "", "NOT_FOR_FAMILY"), (", faces: [Face1]", "", "", "NOT_FOR_FAMILY"),
+    ("", ", repeat: 0", "", "BAD_VALUE"), ("", ", direction: [0, 0, 0]", "", "BAD_VALUE"),
+    ("", "", ", mode: symmetry-plane", "NOT_FOR_FAMILY"), ("", ", fill: lines", "", "UNKNOWN_KEY"),
+])
+def test_keys_that_do_not_fit_are_told(planned, part, more, mode, code):
+    done, _, _ = planned(part=part, more=more, mode=mode)
+    assert done.status == 2 and f"error[{code}]" in done.err, done.err
+
+
+def test_a_bead_along_its_own_direction_is_refused(planned):
+    done, _, _ = planned(text="0,0,0\n0,0,10\n")
+    assert done.status == 2 and "error[ALONG_DIRECTION]" in done.err, done.err
+
+
+def test_edges_lie_on_their_shape_with_the_normals_of_its_faces(planned, workshop):
+    """The ends of a cylinder lying down, with the normals of its side."""
+    Part.makeCylinder(20, 60, V(), V(1, 0, 0)).exportStep(str(workshop.folder / "rod.step"))
+    part = Part.read(str(workshop.folder / "rod.step"))
+    round_ones = [f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.Closed]
+    side = next(f"Face{k}" for k, face in enumerate(part.Faces, 1) if face.Surface.TypeId == "Part::GeomCylinder")
+    more = f", edges: [{', '.join(round_ones)}], faces: [{side}]"
+    done, report, rows = planned("rod.step", part=more, more=", repeat: 2")
+    assert done.status == 0, done.err
+    points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
+    layer = column(rows, "layer")[:, 0]
+    radius = np.hypot(points[:, 1], points[:, 2])
+    np.testing.assert_allclose(radius, 20.0 + 2.0 * layer, atol=1e-5)
+    np.testing.assert_allclose(build[:, 1:], points[:, 1:] / radius[:, None], atol=1e-6)
+    assert report["counts"]["beads"] == 4
+    chord = np.linalg.norm(np.diff(points[:10], axis=0), axis=1).max()
+    assert chord**2 / (8.0 * 20.0) < 0.06  # within the chord error, or as near as directions ask for
+
+
+def test_edges_off_the_faces_are_refused(planned, workshop):
+    Part.makeBox(20, 20, 20).exportStep(str(workshop.folder / "box.step"))
+    part = Part.read(str(workshop.folder / "box.step"))
+    top = next(f"Face{k}" for k, face in enumerate(part.Faces, 1) if abs(face.CenterOfMass.z - 20) < 1e-6)
+    low = next(f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.BoundBox.ZMax < 1e-6)
+    done, _, _ = planned("box.step", part=f", edges: [{low}], faces: [{top}]")
+    assert done.status == 2 and "error[OFF_FACE]" in done.err and "20 mm off" in done.err, done.err
