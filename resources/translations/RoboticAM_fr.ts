@@ -494,6 +494,11 @@
         <translation>Nombre de cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>Number of curves.</source>
+        <translation>Nombre de courbes.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Number of layers.</source>
         <translation>Nombre de couches.</translation>
@@ -782,6 +787,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>The joint path to write.</source>
         <translation>La trajectoire articulaire à écrire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>The points as they were read.</source>
+        <translation>Les points tels qu&apos;ils ont été lus.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -1702,6 +1712,21 @@
         <translation>Courbe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>Curves</source>
+        <translation>Courbes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>Curves as beads</source>
+        <translation>Courbes en cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Curves…</source>
+        <translation>Courbes…</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
         <source>Cut into layers…</source>
         <translation>Découper en couches…</translation>
@@ -2022,6 +2047,16 @@
         <translation>FANUC : valeur CNT des mouvements au sein d&apos;un cordon.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>Faces</source>
+        <translation>Faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>Faces of the same object that the curves lie on, whose normals are the directions; none: the table&apos;s own, or the direction below.</source>
+        <translation>Faces du même objet sur lesquelles reposent les courbes, dont les normales sont les directions ; aucune : celles du tableau, ou la direction ci-dessous.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Faces of the wall, from the platform up.</source>
         <translation>Faces de la paroi, du plateau vers le haut.</translation>
@@ -2177,7 +2212,7 @@
         <translation>Ajustement des largeurs de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
         <source>Fixtures</source>
         <translation>Montages</translation>
     </message>
@@ -3152,6 +3187,11 @@
         <translation>Nombre de cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>Number of curves.</source>
+        <translation>Nombre de courbes.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Number of layers.</source>
         <translation>Nombre de couches.</translation>
@@ -4037,6 +4077,11 @@
         <translation>Source</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/curves_feature.py"/>
+        <source>Source is missing; choose edges, a wire, a sketch or a table of points</source>
+        <translation>Source manque ; choisissez des arêtes, un fil, une esquisse ou un tableau de points</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Source is missing; choose the shape to deposit, or some of its faces</source>
         <translation>Source manque ; choisissez la forme à déposer, ou certaines de ses faces</translation>
@@ -4137,7 +4182,7 @@
         <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
         <source>Stands on</source>
         <translation>Repose sur</translation>
     </message>
@@ -4215,6 +4260,11 @@
         <location filename="../../freecad_am/gui/feature_order.py"/>
         <source>Takes the chosen feature out of this toolpath</source>
         <translation>Retire l&apos;élément choisi de ce parcours</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected edges, wires, sketches or tables to be laid as beads</source>
+        <translation>Prend les arêtes, fils, esquisses ou tableaux sélectionnés pour les déposer en cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -4335,6 +4385,11 @@
         <location filename="../../freecad_am/gui/solid_panel.py"/>
         <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
         <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>The edges, wire, sketch or table of points to lay as beads.</source>
+        <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -4520,6 +4575,11 @@
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>The part that they are laid on; none is needed on a platform.</source>
+        <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/solid_panel.py"/>
@@ -5262,6 +5322,16 @@
         <translation>un modèle de cordon ne règle que la vitesse d&apos;avance des solides ; choisissez none</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>a bead of one point has no way to go; give it two points or more</source>
+        <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/curves.py"/>
+        <source>a bead runs along the direction in which it is laid, at {0}: the nozzle would be in its own way; give another strategy.direction, faces, or directions in the table</source>
+        <translation>un cordon suit la direction dans laquelle il est déposé, en {0} : la buse se gênerait elle-même ; donnez une autre strategy.direction, des faces, ou des directions dans le tableau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/wall_direction.py"/>
         <source>a build direction of {0} is normal to its plane of symmetry; use local</source>
         <translation>une direction de dépôt de {0} est normale à son plan de symétrie ; utilisez local</translation>
@@ -5275,6 +5345,11 @@
         <location filename="../../freecad_am/core/inspection/mesh_file.py"/>
         <source>a coordinate of its vertices is no number; export it again</source>
         <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>a curve is {0} mm off the faces whose normals it is to have, at {1}; choose the faces that it lies on, or give strategy.direction</source>
+        <translation>une courbe est à {0} mm des faces dont elle doit avoir les normales, en {1} ; choisissez les faces sur lesquelles elle repose, ou donnez strategy.direction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved.py"/>
@@ -5430,6 +5505,11 @@
         <location filename="../../freecad_am/core/planning/room.py"/>
         <source>a spiral turns an axis without end, and this set of limits ends it; use path: layers, or a limit set with an endless axis</source>
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>a table has the columns x,y,z, then i,j,k where directions are given, then bead where there are several</source>
+        <translation>un tableau a les colonnes x,y,z, puis i,j,k si des directions sont données, puis bead s&apos;il y en a plusieurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -5855,6 +5935,11 @@
         <location filename="../../freecad_am/gui/choices.py"/>
         <source>bead width</source>
         <translation>largeur de cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>bead {0} begins again; keep the lines of a bead together</source>
+        <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/table.py"/>
@@ -6422,6 +6507,16 @@
         <translation>donnez d&apos;abord la valeur basse, ou laissez les deux vides</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>give three numbers such as [0, 0, 1]</source>
+        <translation>donnez trois nombres comme [0, 0, 1]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>give three numbers such as [0, 0, 1], or auto</source>
+        <translation>donnez trois nombres comme [0, 0, 1], ou auto</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/point_by_point.py"/>
         <source>going from point to point</source>
         <translation>passage de point en point</translation>
@@ -6470,6 +6565,11 @@
         <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
         <source>however the tool is tilted, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}; use a slimmer nozzle, a larger build_direction.max_tilt or another place for what is in the way</source>
         <translation>de quelque façon que l&apos;outil soit incliné, la buse touche substrat, montage, plateau ou dépôt en {0} point(s) des couches {1} à {2} ; utilisez une buse plus fine, un plus grand build_direction.max_tilt ou une autre place pour ce qui gêne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>i, j, k are 0; give a direction, such as 0, 0, 1</source>
+        <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance_notes.py"/>
@@ -6732,6 +6832,11 @@
         <translation>il n&apos;a pas de colonne {0} ; sa première ligne nomme {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>it has no edges to lay as beads; choose edges, a wire or a sketch</source>
+        <translation>il n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>it has no face of any width; choose another object</source>
         <translation>il n&apos;a aucune face de quelque largeur ; choisissez un autre objet</translation>
@@ -6767,6 +6872,11 @@
         <translation>il n&apos;a pas de points ; il n&apos;y a rien à jouer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>it has no points; {0}</source>
+        <translation>il n&apos;a pas de points ; {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/shapes.py"/>
         <source>it has no shape; choose an object with a shape</source>
         <translation>il n&apos;a pas de forme ; choisissez un objet qui a une forme</translation>
@@ -6775,6 +6885,11 @@
         <location filename="../../freecad_am/brep/hub.py"/>
         <source>it has no solid; choose solids or closed meshes to deposit</source>
         <translation>il n&apos;a pas de solide ; choisissez des solides ou des maillages fermés à déposer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>it has no {0}, but {1} {2}(s); name others, from {3}1 on</source>
+        <translation>il n&apos;a pas de {0}, mais {1} {2}(s) ; nommez-en d&apos;autres, à partir de {3}1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/guide.py"/>
@@ -6802,6 +6917,11 @@
         <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>it has {0} columns; {1}</source>
+        <translation>il a {0} colonnes ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/guide.py"/>
         <source>it has {0} edges, of which a guide takes some; name them, as in edges: [Edge1]</source>
         <translation>il a {0} arêtes, dont un guide prend quelques-unes ; nommez-les, comme dans edges: [Edge1]</translation>
@@ -6810,6 +6930,11 @@
         <location filename="../../freecad_am/brep/wall.py"/>
         <source>it has {0} faces that are not flat; name the wall&apos;s in part.faces</source>
         <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>it has {0} numbers in place of {1}; fill the gap, or leave the line out</source>
+        <translation>elle a {0} nombres au lieu de {1} ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -6902,6 +7027,11 @@
         <translation>il est vide ; exportez les points de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>it is empty; fill the gap, or leave the line out</source>
+        <translation>elle est vide ; remplissez le vide, ou enlevez la ligne</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
         <source>it is empty; give a number</source>
         <translation>c&apos;est vide ; donnez un nombre</translation>
@@ -6930,6 +7060,11 @@
         <location filename="../../freecad_am/core/layers/curved.py"/>
         <source>it is for plane layers, not for curved ones; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>it is larger than {0} MB; split it</source>
+        <translation>il dépasse {0} Mo ; divisez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/run.py"/>
@@ -7015,6 +7150,11 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>it is not said which axes the feed is the speed of</source>
         <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>it is not text; give a table of points as CSV</source>
+        <translation>ce n&apos;est pas du texte ; donnez un tableau de points en CSV</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
@@ -7130,6 +7270,11 @@
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>its code does not run from begin to end</source>
         <translation>son code ne va pas de begin à end</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>its columns are {0}; {1}</source>
+        <translation>ses colonnes sont {0} ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/guide_edges.py"/>
@@ -8532,11 +8677,6 @@
         <translation>le fichier manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>the first column is a running number</source>
-        <translation>la première colonne est un numéro courant</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
         <source>the first layer does not run once around the wall: choose one closed loop of edges that crosses each line up the wall once</source>
         <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
@@ -8840,6 +8980,11 @@
         <location filename="../../freecad_am/gui/touching.py"/>
         <source>the platform</source>
         <translation>le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>the point is that of the line before; leave it out</source>
+        <translation>le point est celui de la ligne d&apos;avant ; enlevez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
@@ -9707,21 +9852,6 @@
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>x, y and z are the first three columns</source>
-        <translation>x, y et z sont les trois premières colonnes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>x, y and z are the first three columns of the others</source>
-        <translation>x, y et z sont les trois premières colonnes des autres</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>x, y and z by their headings</source>
-        <translation>x, y et z d&apos;après leurs titres</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>zigzag</source>
         <translation>zigzag</translation>
@@ -10143,8 +10273,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>{0} is not a direction; give three numbers such as [0, 0, 1], or auto</source>
-        <translation>{0} n&apos;est pas une direction ; donnez trois nombres comme [0, 0, 1], ou auto</translation>
+        <source>{0} is not a direction; {1}</source>
+        <translation>{0} n&apos;est pas une direction ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/spiral.py"/>
@@ -10175,6 +10305,11 @@
         <location filename="../../freecad_am/gui/fields.py"/>
         <source>{0} is not a number; give one such as 0.1</source>
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>{0} is not a number; give {1} as a number with a point</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/rows.py"/>
@@ -10382,6 +10517,11 @@
         <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <source>{0} is {1}; give a number of at most {2}</source>
+        <translation>{0} est {1} ; donnez un nombre d&apos;au plus {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/support.py"/>
         <source>{0} layers more have beads over nothing, {1} mm of them</source>
         <translation>{0} autres couches ont des cordons au-dessus du vide, sur {1} mm</translation>
@@ -10490,11 +10630,6 @@
         <location filename="../../freecad_am/core/layers/overhang.py"/>
         <source>{0} mm^2 lean out over the layer below by more than {1} deg, the largest piece at {2}; deposit what carries it first, choose another strategy.direction, or raise strategy.max_overhang</source>
         <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>{0} more columns not used</source>
-        <translation>{0} autres colonnes non utilisées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
@@ -10957,7 +11092,7 @@
         <translation>{} ne peut pas être exécuté : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
         <source>{} cannot be taken for this.</source>
         <translation>{} ne convient pas ici.</translation>
     </message>
@@ -10970,6 +11105,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>{} counts the other way (sign)</source>
         <translation>{} compte dans l&apos;autre sens (signe)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <source>{} curves, {:.4g} mm in all</source>
+        <translation>{} courbes, {:.4g} mm en tout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/cell_panel.py"/>
@@ -11243,6 +11383,19 @@
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Cell…</source>
         <translation>Cellule…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Curves</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Curves…</source>
+        <translation>Courbes…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected edges, wires, sketches or tables to be laid as beads</source>
+        <translation>Prend les arêtes, fils, esquisses ou tableaux sélectionnés pour les déposer en cordons</translation>
     </message>
 </context>
 <context>
