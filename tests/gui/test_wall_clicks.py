@@ -192,7 +192,7 @@ def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trac
         person.press("Cancel")
 
 
-def test_a_panel_says_that_its_document_was_closed_whatever_is_clicked_then(person, bend):
+def test_a_panel_goes_with_its_document_whatever_is_clicked_then(person, bend):
     part, _ = bend
     other = App.newDocument("Other")
     ball = other.addObject("Part::Sphere", "Ball")
@@ -200,11 +200,9 @@ def test_a_panel_says_that_its_document_was_closed_whatever_is_clicked_then(pers
     App.setActiveDocument(part.Document.Name)
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_WallOnPart")
-    panel = person.panel(PANEL)
+    person.panel(PANEL)
     App.closeDocument(part.Document.Name)
     person.gui.Selection.addSelection(ball)  # a traceback in the report view would fail the test
-    person.until(lambda: "is gone" in person.panel_error(panel), "the panel to say so", 5)
-    person.press("Cancel")
     person.panel_closed()
 
 
