@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel curves of a region of 2,000 points, as arrays, against the bare library doing the same."""
+"""Parallel curves of a region of 2,000 points, as arrays, against the bare library doing the same; the distance through a
+solid that curved layers are levels of."""
 
 from __future__ import annotations
 
@@ -9,15 +10,23 @@ from time import process_time
 import numpy as np
 
 from freecad_am.core.geometry.region import regions, shapely
+from freecad_am.core.layers import eikonal
+from freecad_am.core.layers.voxels import voxels
 
 from rows import Row
 
 POINTS, OFFSETS, ROUNDS, DEEPEST, CHORD_ERROR = 2000, 100, 15, 20.0, 0.02
 WITHIN = 1.5  # times the bare library
+FEWER = 3
+BLOCK, STEPS, FIELD = (100.0, 80.0, 25.0), (1.0, 0.5848), 5.0  # mm; 200,000 and a million nodes; s
 
 
 def run() -> list[Row]:
-    """The only comparison of this file."""
+    """Offsets, and fields, the latter against the time asked for and against themselves."""
+    return [*_offsets(), *_fields()]
+
+
+def _offsets() -> list[Row]:
     angle = 2.0 * np.pi * np.arange(POINTS) / POINTS
     radius = 100.0 + 10.0 * np.sin(5.0 * angle)
     loop = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
@@ -40,3 +49,29 @@ def run() -> list[Row]:
         bare.append(process_time() - start)
     name = f"{OFFSETS} offsets of a region of {POINTS} points, against shapely alone"
     return [Row(name, median(ours), median(bare), "s", 1.0 / WITHIN)]
+
+
+def _fields() -> list[Row]:
+    corners = np.array([(x, y, z) for x in (0, BLOCK[0]) for y in (0, BLOCK[1]) for z in (0, BLOCK[2])], dtype=float)
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    faces = np.array([three for a, b, c, d in sides for three in ((a, c, b), (a, d, c))])
+    times, sizes = [], []
+    for step in STEPS:
+        rounds = []
+        for _ in range(FEWER):
+            start = process_time()
+            grid = voxels(corners, faces.astype(np.intp), step)
+            linked = eikonal.links(grid)
+            up = grid.places(linked.nodes)[:, 2]
+            seeds = np.flatnonzero(up < step)
+            found = eikonal.arrival(linked, step, seeds, up[seeds])
+            rounds.append(process_time() - start)
+        assert np.abs(found - up).max() < 1e-6
+        times.append(median(rounds))
+        sizes.append(len(linked.nodes))
+    few, many = sizes
+    return [
+        Row(f"distance through a solid at {few:,} nodes, against {FIELD:g} s", times[0], FIELD, "s", 1.0),
+        Row(f"distance through a solid at {many:,} nodes, against {many / few:.2f} times the time of {few:,}", times[1],
+            times[0] * many / few, "s", 0.5),
+    ]

@@ -17,6 +17,8 @@ ROUNDS = 12  # of beads within one gap
 FINE = 0.04  # of the spacing, mm between the places that the middle is found from
 LONGER = 8  # attempts to make a bead long enough
 COARSE = 0.01  # of the gap; what is open is found no finer
+NETWORK = 12.0  # squares of half a bead's width: a region that large, without room for contours, is not a dot but ribs
+RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
 ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 
 
@@ -76,24 +78,53 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
                 "THIN_REGION", "filling", f"the region at {beads.where(region.inside())} is {region.width:.3g} mm wide, "
                 f"less than a bead ({2.0 * beads.inset:.3g} mm); choose thin = single, a narrower bead or a margin",
             )
-        points, closed = _middle(region, beads, 0.15 * region.width)
-        if len(points) > 1:
-            found.append(PlaneCurve(points, closed, "centre", 0))
+        found += _network(region, beads)
     return found
 
 
+def _network(region: Region, beads: Beads) -> list[PlaneCurve]:
+    """Beads along the middle of all branches of a thin region, the longest first; none begins inside of others."""
+    found: list[PlaneCurve] = []
+    left: Sequence[Region] = (region,)
+    for _ in range(ROUNDS):
+        rest: list[Region] = []
+        for part in left:
+            points, closed = _middle(part, beads, 0.15 * part.width)
+            if len(points) > 1 and (not found or length(points, closed) >= beads.shortest):
+                found.append(PlaneCurve(points, closed, "centre", 0))
+                rest += part.without(along([(points, closed)], beads.inset, beads.chord_error))
+        left = [part for part in rest if part.grown(-0.5 * beads.gap, beads.chord_error)]
+        if not left:
+            break
+    return found
+
+
+def outermost(region: Region, beads: Beads) -> tuple[Region, ...]:
+    """What the middle of the outermost bead goes round. Places that are hardly wider than a bead, as where ribs meet, are
+    left to the beads along the middle of the ribs."""
+    inner = region.grown(-beads.inset, beads.chord_error)
+    if beads.thin == "refuse":
+        return inner
+    long = tuple(part for part in inner if length(part.rings()[0], True) >= beads.shortest)
+    return long if long or region.area > NETWORK * beads.inset**2 else inner
+
+
 def necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region, ...]:
-    """Pieces of a region that no bead inside of `inner` reaches and that join two places which beads do reach."""
+    """Pieces of a region that no bead inside of `inner` reaches and that join two places which beads do reach, or stand out
+    from one as ribs do: longer than a bead is wide and nearly as thick all along, not corners that run to a point."""
     error = beads.chord_error
     reached = [part for piece in inner for part in piece.grown(beads.inset, error)]
-    if len(reached) < 2:
-        return ()
     found = []
     for piece in region.without(reached):
         beside = [part for part in reached if part.distance(piece) < 2.0 * error]
-        if len(beside) > 1:
+        if len(beside) > 1 or (beside and _is_rib(piece, beside[0], beads)):
             found.append(piece)
     return tuple(found)
+
+
+def _is_rib(piece: Region, foot: Region, beads: Beads) -> bool:
+    out = float(foot.nearest(piece.rings()[0])[1].max())
+    return out > 2.0 * beads.inset and piece.area > RIB * 2.0 * beads.inset * out
 
 
 def _middle(region: Region, beads: Beads, least: float) -> tuple[Array, bool]:

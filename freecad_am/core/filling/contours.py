@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..geometry.plane_curve import length
 from ..geometry.region import Region
-from .centre import centre_beads, necks, single_beads
+from .centre import centre_beads, necks, outermost, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
 
 
@@ -24,7 +24,7 @@ def levels(region: Region, beads: Beads) -> Levels:
     """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Contours
     too short are left open, for the beads in the middle."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = region.grown(-beads.inset, error)
+    inner = outermost(region, beads)
     if not inner:
         return Levels((), (), (region,))
     thin = necks(region, inner, beads)

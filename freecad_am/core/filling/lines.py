@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.plane_curve import Array, length, turned
 from ..geometry.region import Region
-from .centre import closing, necks, single_beads
+from .centre import closing, necks, outermost, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .lattice import crossings
 
@@ -31,7 +31,7 @@ def frame(region: Region, beads: Beads, walls: int) -> Frame:
     """Where lines may run: half a bead inside the border, or a spacing inside of the last of so many contours that are laid
     first, onto which they end."""
     half, error = 0.5 * beads.spacing, beads.chord_error
-    inner = region.grown(-beads.inset, error)
+    inner = outermost(region, beads)
     if not inner:
         return Frame([], (), (), (region,))
     thin = necks(region, inner, beads)

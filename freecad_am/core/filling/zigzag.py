@@ -14,28 +14,33 @@ from .curve import Beads, PlaneCurve, long_enough
 from .lines import frame, rows
 
 LINK = 3.0  # of the spacing
+INSIDE = 0.4  # of the spacing; a link on the edge of a contour's bead lies half on it, one at 0.5 leaves its corners open
+BOWED = 1.02  # of the straight way between its ends; a longer link stays on the border, for farther in it might leave it
 FLOOR = 4.0  # chord errors; no edge is shorter
 
 
 def zigzag(
     region: Region, beads: Beads, angle: float = 0.0, walls: int = 0, longest_link: float = 0.0
 ) -> list[PlaneCurve]:
-    """Lines as of `lines`, each linked to the next along the border of the room that beads have, so that no link is outside.
+    """Lines as of `lines`, each linked to the next along the border of the room that beads have, so that no link is outside;
+    beside contours links lie inside of their beads, so that little is laid twice.
 
     longest_link: mm, by default LINK spacings; where a link would be longer another zigzag begins.
     """
     limit = longest_link if longest_link > 0.0 else LINK * beads.spacing
     place = frame(region, beads, walls)
     curves = single_beads(place.thin, beads) + place.curves
-    curves += linked(rows(place, beads, angle), place.ends, beads, walls, limit)
+    inside = beads.spacing * (INSIDE if walls else 0.0)
+    curves += linked(rows(place, beads, angle), place.ends, beads, walls, limit, inside)
     curves += closing(region, curves, beads, walls)
     return long_enough(curves, beads.shortest)
 
 
 def linked(
-    rows: Sequence[Sequence[Array]], ends: Sequence[Region], beads: Beads, ring: int, limit: float
+    rows: Sequence[Sequence[Array]], ends: Sequence[Region], beads: Beads, ring: int, limit: float, inside: float = 0.0
 ) -> list[PlaneCurve]:
-    """Zigzags of rows of lines (2, 2) that end on the borders of regions, links no longer than `limit` mm."""
+    """Zigzags of rows of lines (2, 2) that end on the borders of regions, links no longer than `limit` mm. inside: how far
+    (mm) links lie inside of a border square to the lines."""
     borders = [line for part in ends for line in part.rings()]
     least = max(FLOOR * beads.chord_error, 1e-6 * beads.spacing)
     levels = [[cut for cut in cuts if length(cut, False) > least] for cuts in rows]
@@ -43,7 +48,7 @@ def linked(
     curves = []
     for row in range(len(levels)):
         while open_[row]:
-            points = _chain(levels, open_, row, borders, limit, least)
+            points = _chain(levels, open_, row, borders, limit, least, inside)
             if length(points, False) >= beads.shortest:
                 curves.append(PlaneCurve(points, False, "zigzag", ring))
     return curves
@@ -51,7 +56,7 @@ def linked(
 
 def _chain(
     levels: Sequence[Sequence[Array]], open_: list[list[int]], row: int, borders: Sequence[Array], limit: float,
-    least: float,
+    least: float, inside: float,
 ) -> Array:
     """A zigzag from the first line open in a row up, without edges shorter than `least` mm; takes its lines off the list."""
     piece = levels[row][open_[row].pop(0)]
@@ -67,8 +72,25 @@ def _chain(
         _, number, way = min(links, key=lambda link: link[:2])
         open_[row].remove(number)
         far = 1 - far
-        parts += [_clean(way, least), levels[row][number][:: 1 if far else -1]]
+        line = levels[row][number][:: 1 if far else -1]
+        parts[-1], way, line = _moved_inside(parts[-1], way, line, inside)
+        parts += [_clean(way, least), line]
     return np.vstack(parts)
+
+
+def _moved_inside(line: Array, way: Array, following: Array, inside: float) -> tuple[Array, Array, Array]:
+    """A line (2, 2), the link (n, 2) after it and the line after that, moved back along the lines by `inside` mm where the
+    border is square to them, and less the more it is slanted, for what is left open beside its ends grows."""
+    back = line[0] - line[1]
+    long = float(np.hypot(*back))
+    back = back / max(long, 1e-300)
+    chord = way[-1] - way[0]
+    straight = max(float(np.hypot(*chord)), 1e-300)
+    by = inside * max(1.0 - abs(float(chord @ back)) / straight, 0.0)
+    if length(way, False) > BOWED * straight or min(long, length(following, False)) < 2.0 * by + inside:
+        return line, way, following
+    shift = by * back
+    return np.vstack([line[:1], line[1:] + shift]), way + shift, np.vstack([following[:1] + shift, following[1:]])
 
 
 def _clean(way: Array, least: float) -> Array:

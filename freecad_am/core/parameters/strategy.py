@@ -219,6 +219,10 @@ class FilledParameters(LayerParameters):
     wait: float = f.parameter(
         0.0, f.TIME, "Least time between the end of a solid's layer and the start of its next.", low=0.0
     )
+    min_layer_time: float = f.parameter(
+        0.0, f.TIME, "Least time of a layer, from its first bead to the next layer's; the machine waits for what is "
+        "missing, and islands come in the same order in every layer, so that each cools while the others are laid.", low=0.0,
+    )
     deflection: float = f.parameter(
         0.0, f.ANGLE, "Torch turned outwards about the bead on outer contours.", low=-math.pi / 3.0, high=math.pi / 3.0
     )

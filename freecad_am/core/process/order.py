@@ -61,17 +61,20 @@ def ordered(beads: Sequence[Laid], order: str) -> Course:
     return Course(tuple(made), tuple(tuple((laid.group, laid.solid) for laid in layer) for layer in layers))
 
 
-def waited(course: Course, wait: float, rapid_speed: float) -> tuple[Layer, ...]:
-    """The layers with so much time before each that no solid is returned to sooner than `wait` s after its layer before.
+def waited(course: Course, wait: float, rapid_speed: float, least: float = 0.0) -> tuple[Layer, ...]:
+    """The layers with so much time before each that no solid is returned to sooner than `wait` s after its layer before, and
+    that none begins sooner than `least` s after the one before it.
 
     Rapids count with the straight way between beads alone, so that what is waited is rather too long.
     """
     now, layers = 0.0, []
     ended: dict[tuple[int, int], float] = {}
     at: Array | None = None
+    time = least
     for layer, solids in zip(course.layers, course.solids, strict=True):
         starts: dict[tuple[int, int], float] = {}
         ends: dict[tuple[int, int], float] = {}
+        short = 0.0 if layer.first else least - time  # of the layer before
         time = 0.0
         for bead, solid in zip(layer.beads, solids, strict=True):
             if at is not None:
@@ -80,7 +83,7 @@ def waited(course: Course, wait: float, rapid_speed: float) -> tuple[Layer, ...]
             time += float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())
             ends[solid], at = time, bead.points[-1]
         pause = max((ended[solid] + wait - now - start for solid, start in starts.items() if solid in ended), default=0.0)
-        pause = max(pause, 0.0)
+        pause = max(pause, short, 0.0)
         layers.append(dataclasses.replace(layer, wait=pause))
         ended.update({solid: now + pause + end for solid, end in ends.items()})
         now += pause + time

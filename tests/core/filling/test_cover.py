@@ -194,3 +194,52 @@ def test_strips_of_beads_wider_than_their_spacing_stay_inside():
         assert open_places(strip, curves, beads) == []
         rows = np.unique(np.round([curve.points[:, 1].mean() for curve in curves if curve.turns], 2))
         assert np.diff(rows).max() <= 6.6 or angle
+
+
+@pytest.mark.parametrize("size", [(60.0, 43.0), (90.0, 63.0), (47.0, 31.0)])
+def test_links_of_zigzags_lie_inside_of_their_contour(size):
+    """What is laid, length times spacing, against the lines alone: links on the edge of the contour lay half on it."""
+    region, = regions(shapes.polygon((0, 0), (size[0], 0), size, (0, size[1])))
+    curves = fill(region, BEADS, "zigzag", 0.0, 1)
+    laid = sum(np.hypot(*np.diff(whole(curve), axis=0).T).sum() * S for curve in curves)
+    lines = sum(np.hypot(*np.diff(whole(curve), axis=0).T).sum() * S for curve in fill(region, BEADS, "lines", 0.0, 1))
+    ends = 2.0 * (size[1] - 2.0 * S)  # mm of the contour's inner edge that lines end on
+    assert laid - lines < 0.15 * S * ends
+    contour, corners = curves[0], np.vstack([curve.points[1:-1] for curve in curves if curve.kind == "zigzag"])
+    assert shapes.tree([(contour.points, True)], STEP).query(corners)[0].min() > 0.85 * S
+
+
+def ribs(thick, pitch=20.0, count=3, foot=0.0):
+    """A lattice of ribs, on a foot that beads fit into or without one."""
+    size = (count - 1) * pitch + thick
+    holes = [
+        np.array([(x, y), (x, y + pitch - thick), (x + pitch - thick, y + pitch - thick), (x + pitch - thick, y)])
+        for x in thick + pitch * np.arange(count - 1) for y in thick + pitch * np.arange(count - 1)
+    ]
+    outer = np.array([(0, -foot), (size, -foot), (size, size), (0, size)], dtype=float)
+    return [outer, *holes]
+
+
+@pytest.mark.parametrize("loops,least", [
+    (ribs(3.5), 0.99), (ribs(4.4), 0.95), (ribs(4.0, foot=15.0), 0.985),
+    (shapes.polygon(
+        (0, 0), (60, 0), (60, 12), (42, 12), (42, 40), (38, 40), (38, 12), (20, 12), (20, 40), (16, 40), (16, 12), (0, 12),
+    ), 0.99),
+    (shapes.polygon(
+        (0, 0), (30, 0), (30, 4), (17, 4), (17, 25), (30, 25), (30, 29), (0, 29), (0, 25), (13, 25), (13, 4), (0, 4),
+    ), 0.99),
+], ids=["lattice 3.5", "lattice 4.4", "lattice on a foot", "fins", "I"])
+@pytest.mark.parametrize("pattern", ["contours", "zigzag"])
+def test_ribs_thinner_than_a_bead_are_filled_in_all_their_branches(loops, least, pattern):
+    """Of the whole section, as no bead has its usual room in ribs; ribs of 4.4 mm meet in places of their own contours."""
+    curves = [curve for region in regions(loops) for curve in fill(region, BEADS, pattern, 0.0, 1)]
+    grid, within = shapes.raster(loops, PITCH)
+    away = shapes.tree([(curve.points, curve.closed) for curve in curves], STEP).query(grid)[0]
+    assert (within & (away <= 0.5 * S)).sum() >= least * within.sum()
+    assert away[within].max() < math.sqrt(0.5) * S + 0.02  # in a corner of 90 deg
+
+
+def test_points_of_a_region_get_no_bead_of_their_own():
+    """What runs to a point is no rib: beads there would stand out of it by half."""
+    region, = regions(shapes.polygon((0, 0), (20, 0), (20, 12), (0, 12), (-40, 6)))
+    assert min(curve.points[:, 0].min() for curve in fill(region, BEADS)) > -25.0

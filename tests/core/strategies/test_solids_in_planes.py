@@ -176,6 +176,33 @@ def test_islands_are_finished_one_after_the_other():
         assert rings == sorted(rings, reverse=True)
 
 
+def test_no_layer_takes_less_than_asked_for_and_islands_cool_alike():
+    """Rods of unequal height, so that upper layers are shorter; times along the beads and straight between them."""
+    process = ProcessParameters()
+    rods = [box((40 * k, 0, 0), (40 * k + 25 - 5 * k, 25, 24 - 8 * k), f"rod {k}") for k in (2, 0, 1)]
+    made = planned(*rods, fill="contours", process=process, min_layer_time=60.0)
+    took, at = [], None
+    for layer in made.layers:
+        seconds = 0.0
+        for bead in layer.beads:
+            if at is not None:
+                seconds += np.linalg.norm(bead.points[0] - at) / process.rapid_speed
+            seconds += (np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum()
+            at = bead.points[-1]
+        took.append(seconds)
+    waits = [layer.wait for layer in made.layers]
+    assert waits[0] == 0.0 and min(took) < 50.0 and max(took) > 60.0
+    np.testing.assert_allclose(waits[1:], np.maximum(60.0 - np.array(took[:-1]), 0.0), atol=1e-9)
+    for number, layer in enumerate(made.layers):
+        island = [int(bead.points[:, 0].mean() // 40) for bead in layer.beads]
+        first = [one for k, one in enumerate(island) if k == 0 or island[k - 1] != one]
+        assert first == [k for k in range(3) if 4 * number < 24 - 8 * k]  # the same in every layer, each once
+    (issue,) = [issue for issue in made.issues if issue.code == "WAITS"]
+    assert f"before {sum(wait > 0.0 for wait in waits)} of 6 layers" in issue.message and "60 s" in issue.message
+    usual = planned(*rods, fill="contours", process=process)
+    assert usual.length == pytest.approx(made.length) and not any(layer.wait for layer in usual.layers)
+
+
 @pytest.mark.parametrize("way", [(0, 0, 1), (1, 0, 0), (0, -1, 0), (1, 2, -3)])
 def test_any_direction(way):
     """The same part turned is deposited alike: as many layers, as long beads, the tool along the direction."""

@@ -29,7 +29,13 @@ def notes(
         found += _of_model(made, strategy, process, model)
     found += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
-    if waits:
+    if waits and strategy.min_layer_time > 0.0:
+        found.append(Issue(
+            NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
+            f"{sum(waits):.5g} s in all, so that no layer takes less than {strategy.min_layer_time:g} s and no solid is "
+            f"returned to sooner than after {strategy.wait:g} s",
+        ))
+    elif waits:
         found.append(Issue(
             NOTE, "WAITS", f"the machine waits before {len(waits)} of {len(layers)} layers, up to {max(waits):.4g} s and "
             f"{sum(waits):.5g} s in all, so that no solid is returned to sooner than after {strategy.wait:g} s",

@@ -27,7 +27,7 @@ from .. import size
 from ..progress import Progress, silent
 from .beads import Rolled, reversed_curve, rolled
 from .filling import Cover, Filled, Pictures, bead_width, spaced
-from .islands import island_by_island
+from .islands import as_below, island_by_island
 from .lean_notes import lean_notes
 from .notes import notes
 from .outlines import leaning
@@ -61,6 +61,7 @@ def plan(
              for number, piece in enumerate(pieces(one, solids.surroundings, strategy))]
     planes, at = on_planes(solids), None
     for done, (group, base, number, piece) in enumerate(found):
+        below: Array | None = None  # middles of the islands of the layer before
         before: Counter[int] = Counter()  # beads of the pieces that a curved layer has had
         for layer in piece.slices:
             mended += layer.issues
@@ -75,7 +76,10 @@ def plan(
             made += here
             ranks = [curve.ring for curve in beads.curves]
             if planes:
-                order = island_by_island([one.bead for one in here], beads.islands, at)
+                if strategy.min_layer_time > 0.0 and here:
+                    order, below = as_below([one.bead for one in here], beads.islands, below)
+                else:
+                    order = island_by_island([one.bead for one in here], beads.islands, at)
                 ranks = (-number * FEWER - before[layer.layer] - np.argsort(order)).tolist()
                 before[layer.layer] += len(here)
                 at = here[order[-1]].bead.points[-1] if order else at
@@ -86,7 +90,7 @@ def plan(
             "use a smaller bead spacing, or thin = single",
         )
     course = ordered(laid, strategy.order)
-    layers = waited(course, strategy.wait, process.rapid_speed)
+    layers = waited(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     issues = (*solids.issues, *notes(made, layers, mended, strategy, process, model), *lean_notes(made, layers, build))
     return Toolpath(
         layers, _frame(solids), strategy.layer_height, strategy.chord_error, issues, process.overlap,
