@@ -389,6 +389,16 @@
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante. (s)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid.</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid. (s)</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres. (s)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
@@ -2772,6 +2782,11 @@
         <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Least time of a layer, from its first bead to the next layer&apos;s; the machine waits for what is missing, and islands come in the same order in every layer, so that each cools while the others are laid.</source>
+        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/cell_panel.py"/>
         <source>Left as it was entered; for {} it would be {}.</source>
         <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
@@ -3035,6 +3050,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Min layer time</source>
+        <translation>Durée minimale de couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -8860,6 +8880,11 @@
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>the machine file tells no largest speeds</source>
         <translation>le fichier machine ne donne pas de vitesses maximales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in all, so that no layer takes less than {4} s and no solid is returned to sooner than after {5} s</source>
+        <translation>la machine attend avant {0} couches sur {1}, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;aucune couche ne dure moins de {4} s et qu&apos;on ne revienne à aucun solide avant {5} s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
