@@ -100,6 +100,8 @@ def make_feature_of(
     for name, owner in (("StartEdges", source), ("BaseFaces", given_links.get("Substrate"))):
         names = list(given_links.get(name) or ())
         given_links[name] = (owner, names) if names else None
+    start = given_links.get("StartFaces") or ()
+    given_links["StartFaces"] = (source, list(start)) if start and not isinstance(start, tuple) else start or None
     chosen = {name: value for name, value in given_links.items() if name in known}
     return _make(doc, proxy, "Feature", label, chosen, parameters, dict(values or {}))
 
@@ -139,17 +141,19 @@ def make_developable_feature(
 
 def make_solid_feature(
     doc: Any, source: Any, substrate: Any = None, label: str = "Feature", *, further: Sequence[Any] = (),
-    guide: Any = None, fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
+    guide: Any = None, start_faces: Any = (), fixtures: Sequence[Any] = (), strategy: SolidParameters | None = None,
     build_direction: BuildDirectionParameters | None = None, **values: Any,
 ) -> Any:
     """Any solids, or closed meshes, deposited in plane layers. `am.make_solid_feature(doc, doc.Bracket, layer_height=2)`
 
     further: more objects to deposit; substrate: what they stand on, where that is no platform; guide: of layers="along", an
-    object or (object, ["Edge1"]); fixtures: objects, solids or meshes, that the nozzle must not touch either.
+    object or (object, ["Edge1"]); start_faces: of layers="geodesic" and "offset", names of the source's faces, or (object,
+    ["Face1"]), that the first layer lies on; fixtures: objects, solids or meshes, that the nozzle must not touch either.
     """
     links = {
         "Substrate": substrate, "Further": list(further), "Fixtures": list(fixtures),
         "Guide": guide if guide is None or isinstance(guide, tuple) else (guide, [""]),
+        "StartFaces": start_faces,
     }
     return make_feature_of(doc, "solid", source, label=label, links=links, parameters=[strategy, build_direction],
                            values=values)

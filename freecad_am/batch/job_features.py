@@ -16,12 +16,12 @@ from freecad_am.core.parameters.strategy import LayerParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, Family, family_of
 
 from . import fields, quantity, tree
-from .part_source import PartSource, absolute, fixtures_of, guide_of, part_of
+from .part_source import PartSource, absolute, faces_of, fixtures_of, guide_of, part_of
 
 # what a job calls the links of a feature, which the window picks in a document
 _KEYS = {
     "Feature": "substrate", "Feature.BaseFaces": "substrate.faces", "Feature.Source": "part.faces",
-    "Feature.StartEdges": "part.start_edges",
+    "Feature.StartEdges": "part.start_edges", "Feature.StartFaces": "strategy.start_faces",
 }
 KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", "process")
 
@@ -29,7 +29,8 @@ KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", 
 @dataclass(frozen=True)
 class JobFeature:
     """What is deposited, and how. `substrate` is there as the family of the strategy has it (`core.strategies.families`), or
-    where what was deposited before may be it. `guide` of layers along one; None: their centre line."""
+    where what was deposited before may be it. `guide` of layers along one; None: their centre line. `start_faces` of the
+    part, that curved layers start on."""
 
     name: str
     part: PartSource
@@ -40,6 +41,7 @@ class JobFeature:
     process: ProcessParameters
     guide: PartSource | None = None
     sections: Any = dataclasses.field(default=None, repr=False, compare=False)  # of the job, where the family is left to us
+    start_faces: tuple[str, ...] = ()
 
 
 def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = False) -> JobFeature:
@@ -60,9 +62,15 @@ def one_feature(values: dict[str, Any], name: str, path: str, earlier: bool = Fa
     guide = guide_of((values.get("strategy") or {}).get("guide"), part_section, path)
     if guide is not None and getattr(strategy, "layers", "") != "along":
         raise InputError("NOT_FOR_FAMILY", "strategy.guide", "only layers: along have a guide; leave it out, or use them")
+    start_faces = faces_of((values.get("strategy") or {}).get("start_faces"), "strategy.start_faces")
+    if start_faces and getattr(strategy, "layers", "") not in ("geodesic", "offset"):
+        raise InputError(
+            "NOT_FOR_FAMILY", "strategy.start_faces", "only layers: geodesic and offset start from faces; leave them out, "
+            "or use those layers",
+        )
     return JobFeature(
         name, part, _substrate(values.get("substrate"), strategy, part, path, earlier),
-        fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide,
+        fixtures_of(values.get("fixtures"), path), strategy, build_direction, process, guide, start_faces=start_faces,
     )
 
 
@@ -162,7 +170,7 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
     known = ("kind", *(("guide",) if kind == "solid" else ()), *_keys(family))
-    known = ("guide", *known) if kind == "solid" else known
+    known = ("guide", "start_faces", *known) if kind == "solid" else known
     mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
     if "substrate" not in own and family.substrate == NONE:
         mixed.pop("substrate", None)
@@ -266,7 +274,8 @@ def _strategy(section: Any) -> LayerParameters:
     if kind in ("solid", "curves"):
         section = _with_direction(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
-    return fields.build(factory, section, "strategy", also=("kind", "guide") if kind == "solid" else ("kind",))
+    also = ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
+    return fields.build(factory, section, "strategy", also=also)
 
 
 def _with_fuse(section: Any, part: dict[str, Any]) -> Any:

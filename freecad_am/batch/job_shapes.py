@@ -71,7 +71,7 @@ class Shapes:
         bases = () if self.of.substrate is None else self.of.substrate.faces
         links = {
             "Substrate": substrate, "Fixtures": self.fixtures, "StartEdges": self.of.part.start_edges, "BaseFaces": bases,
-            "Guide": self.guide,
+            "Guide": self.guide, "StartFaces": list(self.of.start_faces),
         }
         try:
             return api.make_feature_of(

@@ -102,6 +102,11 @@ def guide_of(given: Any, part: dict[str, Any], path: str) -> PartSource | None:
     return replace(part_of(own, path, key), edges=_names(given.get("edges"), f"{key}.edges", _EDGE))
 
 
+def faces_of(value: Any, key: str) -> tuple[str, ...]:
+    """Names of faces. InputError BAD_VALUE."""
+    return _names(value, key, _FACE)
+
+
 def _scale(value: Any, file: str, key: str) -> float:
     """mm of one unit of a file."""
     if value is None:

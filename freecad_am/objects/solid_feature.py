@@ -8,6 +8,7 @@ from typing import Any
 
 from ..brep.guide import edges_of
 from ..brep.hub import bodies_of
+from ..brep.start_faces import triangles_of_faces
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from ..core.layers.guided import guided
@@ -40,6 +41,10 @@ class SolidFeature(Stage):
             "Guide", "", "The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
             "solid.", required=False, type_name="App::PropertyLinkSub",
         ),
+        Link(
+            "StartFaces", "", "The faces on which the first of geodesic and offset layers lies; none: where they stand.",
+            required=False, type_name="App::PropertyLinkSub",
+        ),
         FIXTURES,
     )
     figures = (
@@ -54,7 +59,7 @@ class SolidFeature(Stage):
         objects = tuple(taken(one) for one in (source_of(obj)[0], *obj.Further))
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
-        guide = _guide(obj, strategy)
+        guide, start = _guide(obj, strategy), _start(obj, strategy)
 
         def work() -> Outcome:
             solid: list[Body] = []
@@ -69,6 +74,11 @@ class SolidFeature(Stage):
                 solids = guided(solid, edges, strategy, label, issues)
             else:
                 solids = stacked(solid, strategy, label, issues)
+            if start is not None:
+                corners = triangles_of_faces(*start, strategy.chord_error)
+                solids = dataclasses.replace(
+                    solids, groups=tuple(dataclasses.replace(group, start=corners) for group in solids.groups)
+                )
             large = size.judged(size.of_solids(solids, strategy), strategy)
             solids = dataclasses.replace(solids, surroundings=bodies((*ground, *fixtures)))
             base = solids.groups[0].base
@@ -80,9 +90,11 @@ class SolidFeature(Stage):
     def further_inputs(self, obj: Any) -> list[str]:
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         guide = [shape_fingerprint(obj.Guide[0]), " ".join(obj.Guide[1])] if getattr(obj, "Guide", None) else []
+        faces = getattr(obj, "StartFaces", None)
+        start = [shape_fingerprint(faces[0]), " ".join(faces[1])] if faces else []
         return [
             fingerprint(source_of(obj)[0]), *(fingerprint(other) for other in obj.Further), "|", *ground, "|",
-            *(fingerprint(fixture) for fixture in obj.Fixtures), *guide,
+            *(fingerprint(fixture) for fixture in obj.Fixtures), *guide, *start,
         ]
 
 
@@ -97,4 +109,20 @@ def _guide(obj: Any, strategy: SolidParameters) -> tuple[Any, tuple[str, ...], s
             "the guide out",
         )
     owner, names = obj.Guide
+    return global_shape(owner), tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name), owner.Label
+
+
+def _start(obj: Any, strategy: SolidParameters) -> tuple[Any, tuple[str, ...], str] | None:
+    """The shape of the start faces, their names, none for all, and what it is called; None where none are chosen. InputError
+    NOT_FOR_FAMILY, NO_SHAPE."""
+    if not getattr(obj, "StartFaces", None):
+        return None
+    if strategy.layers not in ("geodesic", "offset"):
+        raise InputError(
+            "NOT_FOR_FAMILY", f"{obj.Label}.StartFaces", f"layers: {strategy.layers} have no start faces; use layers: "
+            "geodesic or offset, or leave the faces out",
+        )
+    owner, names = obj.StartFaces
+    if getattr(owner, "Mesh", None) is not None:
+        raise InputError("UNKNOWN_FACE", f"{obj.Label}.StartFaces", f"{owner.Label} is a mesh, which has no faces to choose")
     return global_shape(owner), tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name), owner.Label

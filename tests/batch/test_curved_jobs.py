@@ -10,6 +10,9 @@ import Part
 import pytest
 from scipy.spatial import cKDTree
 
+from freecad_am import api
+from freecad_am.core.issues import InputError
+
 HEIGHT, SPACING = 2.5, 4.0
 JOB = """\
 version: 1
@@ -145,3 +148,52 @@ def test_what_cannot_be_cut_is_told(planned, make, height, mode, code, word):
 def test_what_only_plane_layers_have_is_refused(planned, key):
     done, _, _ = planned(tee(), more=f", {key}")
     assert done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and key.split(":")[0] in done.err, done.err
+
+
+def shell_on_a_dome():
+    """A cap between balls of 40 and 50 mm, whose rim slants, and the name of its face on the inner ball."""
+    cap = Part.makeSphere(50).cut(Part.makeSphere(40)).common(Part.makeCylinder(25, 60))
+    (inner,) = [k for k, face in enumerate(cap.Faces, start=1)
+                if face.Surface.TypeId == "Part::GeomSphere" and face.Surface.Radius < 45.0 and face.CenterOfMass.z > 0.0]
+    return cap, f"Face{inner}"
+
+
+@pytest.mark.parametrize("layers", ["offset", "geodesic"])
+def test_layers_start_on_the_faces_that_are_named(planned, layers):
+    """Every point lies on the ball its layer says, though the part touches the plane under it with its rim alone."""
+    cap, inner = shell_on_a_dome()
+    done, _, rows = planned(cap, layers, 2.0, more=f", start_faces: [{inner}]")
+    assert done.status == 0, done.err
+    points, layer = column(rows, "x_mm", "y_mm", "z_mm"), np.array([int(row["layer"]) for row in rows])
+    assert set(layer) == set(range(5))
+    assert np.abs(np.linalg.norm(points, axis=1) - 40.0 - 2.0 * layer).max() < 0.3
+    assert (points[:, 2] > 25.0).all()
+
+
+def test_start_faces_that_are_none_are_refused(planned):
+    cap, inner = shell_on_a_dome()
+    for layers, named, code in (
+        ("planes", f"[{inner}]", "NOT_FOR_FAMILY"), ("offset", "[Face99]", "UNKNOWN_FACE"),
+        ("offset", "[Edge1]", "BAD_VALUE"),
+    ):
+        done, report, _ = planned(cap, layers, 2.0, more=f", start_faces: {named}")
+        assert done.status == 2 and report is None and done.err.count(f"error[{code}]") == 1, done.err
+
+
+def test_start_faces_of_another_object_must_be_touched():
+    cap, _ = shell_on_a_dome()
+    document = FreeCAD.newDocument("Dome")
+    try:
+        part, dome, away = (document.addObject("Part::Feature", name) for name in ("Cap", "Dome", "Away"))
+        part.Shape, dome.Shape = cap, Part.makeSphere(40)
+        away.Shape = Part.makeBox(10, 10, 10, FreeCAD.Vector(80, 0, 0))
+        values = {"layers": "offset", "layer_height": 2, "chord_error": 0.05, "bead_spacing": 4}
+        made = api.result(api.make_toolpath(document, api.make_solid_feature(
+            document, part, start_faces=(dome, ["Face1"]), **values)))
+        for index, _, bead in made:
+            assert np.abs(np.linalg.norm(bead.points, axis=1) - 40.0 - 2.0 * index).max() < 0.3
+        with pytest.raises(InputError) as caught:
+            api.make_toolpath(document, api.make_solid_feature(document, part, start_faces=(away, ["Face1"]), **values))
+        assert caught.value.code == "NOT_STANDING" and "mm away" in caught.value.message
+    finally:
+        FreeCAD.closeDocument(document.Name)

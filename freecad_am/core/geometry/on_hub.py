@@ -73,10 +73,12 @@ class Seat(NamedTuple):
 
 @dataclass(frozen=True)
 class Group:
-    """Solids on one base, in the order of their azimuths."""
+    """Solids on one base, in the order of their azimuths. start: triangles (k, 3, 3) of the faces, in part coordinates, that
+    curved layers start on; None: where the solids stand."""
 
     base: Base
     bodies: tuple[Body, ...]
+    start: Array | None = None
 
 
 @dataclass(frozen=True)

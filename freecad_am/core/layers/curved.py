@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..geometry.on_hub import Base
+from ..geometry.on_hub import Group
 from ..geometry.solid_mesh import Search, SolidMesh
 from ..geometry.surroundings import Body
 from ..issues import NOTE, WARNING, InputError, Issue
@@ -22,15 +22,18 @@ FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
 MOST = 2_000_000  # nodes, where that keeps below COARSE
 STANDING = 0.05  # layer heights from the plane or the substrate; facets so near to it stand there
 LOST = 0.002  # share of a part that no way need lead to: rounding at corners
+FACETS = 1.5  # chord errors between triangles of a face, however made
 TOLD = 0.05  # distortion of a piece that is told
 
 
-def slices(base: Base, bodies: Sequence[Body], ground: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
-    """The layers of bodies outwards from the plane of the base and the `ground` that they touch; several of one number where
-    a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
+def slices(group: Group, ground: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
+    """The layers of a group of solids outwards from the plane of its base and the `ground` that they touch, or from the
+    start faces; several of one number where a layer is in pieces. InputError TOO_FINE, NOT_STANDING, NOT_CONNECTED."""
     _refuse(strategy)
+    base, bodies = group.base, group.bodies
+    start = None if group.start is None else base.inside(group.start.reshape(-1, 3)).reshape(-1, 3, 3)
     solids = [SolidMesh(base.inside(body.vertices), np.asarray(body.triangles, dtype=np.intp)) for body in bodies]
-    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], bodies, strategy)
+    found = _field(solids, [base.inside(body.vertices)[body.triangles] for body in ground], bodies, start, strategy)
     worst = 0.0
     height, cut = strategy.layer_height, max(strategy.share_of_cut, 1e-3)
     number = int(np.ceil(found.top / height - cut + 1e-6))
@@ -57,11 +60,23 @@ def _refuse(strategy: SolidParameters) -> None:
 
 
 def _field(
-    solids: Sequence[SolidMesh], ground: Sequence[Array], bodies: Sequence[Body], strategy: SolidParameters
+    solids: Sequence[SolidMesh], ground: Sequence[Array], bodies: Sequence[Body], chosen: Array | None,
+    strategy: SolidParameters,
 ) -> GeodesicField:
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
     step = _step(sum(one.volume for one in solids), name, strategy)
-    start = np.concatenate([_standing(one, ground, STANDING * strategy.layer_height) for one in solids])
+    near = STANDING * strategy.layer_height
+    if chosen is None:
+        start = np.concatenate([_standing(one, ground, near) for one in solids])
+    else:
+        near = max(near, FACETS * strategy.chord_error)
+        start = np.concatenate([_standing(one, [chosen], near, plane=False) for one in solids])
+        if not len(start):
+            away = min(float(np.abs(_to(chosen, one.vertices, near)).min()) for one in solids)
+            raise InputError(
+                "NOT_STANDING", "strategy.start_faces", f"no face of {name} lies on the faces chosen to start from, which "
+                f"are {away:.4g} mm away; choose faces that it touches, or none",
+            )
     try:
         found = field(solids, start, step, through=strategy.layers == "geodesic")
     except ValueError:
@@ -90,19 +105,25 @@ def _step(volume: float, name: str, strategy: SolidParameters) -> float:
     return step
 
 
-def _standing(solid: SolidMesh, ground: Sequence[Array], near: float) -> Array:
-    """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the ground."""
+def _standing(solid: SolidMesh, ground: Sequence[Array], near: float, plane: bool = True) -> Array:
+    """The triangles (k, 3, 3) of a solid that lie on the plane z = 0 facing down, or on triangles of the ground, to `near`
+    mm."""
     corners = solid.vertices[solid.triangles]
-    chosen = (np.abs(corners[:, :, 2]) < near).all(axis=1) & (solid.units[:, 2] < -0.5)
+    chosen = plane & (np.abs(corners[:, :, 2]) < near).all(axis=1) & (solid.units[:, 2] < -0.5)
     for triangles in ground:
         low, high = triangles.min(axis=(0, 1)) - near, triangles.max(axis=(0, 1)) + near
         asked = np.flatnonzero(((corners > low) & (corners < high)).all(axis=(1, 2)))
         if len(asked):
-            under = SolidMesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
-            away = np.abs(Search(under, 4.0 * near).signed(corners[asked].reshape(-1, 3))[0]).reshape(-1, 3)
+            away = np.abs(_to(triangles, corners[asked].reshape(-1, 3), near)).reshape(-1, 3)
             chosen[asked[(away < near).all(axis=1)]] = True
     found: Array = corners[chosen]
     return found
+
+
+def _to(triangles: Array, points: Array, near: float) -> Array:
+    """Distances (n,) mm of points from triangles (k, 3, 3), with a sign."""
+    under = SolidMesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
+    return Search(under, 4.0 * near).signed(points)[0]
 
 
 def _stretched(piece: Piece, layer: int) -> Issue:

@@ -38,7 +38,7 @@ def pieces(group: Group, ground: Sequence[Body], strategy: FilledParameters) -> 
         ]
     assert isinstance(strategy, SolidParameters)
     if strategy.layers in ("geodesic", "offset"):
-        return [Piece(group.bodies[0].name, 0.0, curved.slices(group.base, group.bodies, ground, strategy))]
+        return [Piece(group.bodies[0].name, 0.0, curved.slices(group, ground, strategy))]
     lots = [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
     cut = along.slices if isinstance(surface, Guide) else planes.slices
     return [
