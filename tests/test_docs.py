@@ -29,7 +29,8 @@ SECTIONS = (
 )
 # keys that are not fields of a parameters dataclass
 BY_HAND = {"version", "name", "part.file", "part.object", "part.solids", "part.faces", "part.start_edges", "part.edges",
-           "part.scale", "part.set", "substrate", "fixtures", "strategy.kind", "strategy.guide", "features", "sequence"}
+           "part.scale", "part.set", "substrate", "fixtures", "strategy.kind", "strategy.guide",
+           "strategy.start_faces", "features", "sequence"}
 WORDS = {f.LENGTH: "length", f.ANGLE: "angle", f.SPEED: "speed", f.TIME: "time", f.RATIO: "percentage", f.NUMBER: "number",
          f.COUNT: "whole number", f.TEXT: "text", f.POSE: "pose", f.ANGLE_RANGE: "two angles",
          f.RATIO_RANGE: "two percentages",
