@@ -7527,6 +7527,11 @@
         <translation>les couches {0} n&apos;ont pas de guide ; utilisez layers: along, ou enlevez le guide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>layers: {0} have no start faces; use layers: geodesic or offset, or leave the faces out</source>
+        <translation>layers: {0} n&apos;a pas de faces de départ ; utilisez layers: geodesic ou offset, ou omettez les faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>laying the points onto the part</source>
         <translation>pose des points sur la pièce</translation>
@@ -7780,6 +7785,11 @@
         <location filename="../../freecad_am/core/layers/curved.py"/>
         <source>no face of it lies on the plane through its lowest place along strategy.direction, or on the substrate, so that there is nothing to begin on; turn the part, set strategy.direction, or give a substrate that it touches</source>
         <translation>aucune de ses faces ne repose sur le plan de son point le plus bas suivant strategy.direction, ni sur le substrat : rien où commencer ; tournez la pièce, donnez strategy.direction, ou un substrat qu&apos;elle touche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/curved.py"/>
+        <source>no face of {0} lies on the faces chosen to start from, which are {1} mm away; choose faces that it touches, or none</source>
+        <translation>aucune face de {0} ne repose sur les faces de départ choisies, qui sont à {1} mm ; choisissez des faces qu&apos;il touche, ou aucune</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -10120,6 +10130,11 @@
         <location filename="../../freecad_am/core/planning/program.py"/>
         <source>{0} is a URDF, which does not tell what the controller shows; plan without a program, or make a machine file of it with New Machine…</source>
         <translation>{0} est un URDF, qui ne dit pas ce que la commande affiche ; planifiez sans programme, ou faites-en un fichier de machine par Nouvelle machine…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/solid_feature.py"/>
+        <source>{0} is a mesh, which has no faces to choose</source>
+        <translation>{0} est un maillage, qui n&apos;a pas de faces à choisir</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
