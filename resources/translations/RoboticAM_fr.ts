@@ -7529,7 +7529,7 @@
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>layers: {0} have no start faces; use layers: geodesic or offset, or leave the faces out</source>
-        <translation>layers: {0} n&apos;a pas de faces de départ ; utilisez layers: geodesic ou offset, ou omettez les faces</translation>
+        <translation>`layers: {0}` n&apos;a pas de faces de départ ; utilisez layers: geodesic ou offset, ou omettez les faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
