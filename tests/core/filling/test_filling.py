@@ -44,11 +44,12 @@ def test_cover_gaps_and_nothing_outside(name, pattern):
     assert distance(border, points, S).min() > 0.5 * S - 2.0 * BEADS.chord_error - 1e-3
     grid, within = raster(loops, PITCH)
     away = distance(beads, grid, S)
-    covered = away <= np.hypot(0.5 * S, 0.5 * STEP)  # the beads are points up to a STEP apart
-    assert (covered & ~within).sum() < 0.01 * within.sum()
+    assert ((away <= 0.5 * S) & ~within).sum() < 0.01 * within.sum()
     # what beads inside can reach: within half a bead of a place that is half a bead inside
     core = within & (distance(border, grid, 0.5 * S) >= 0.5 * S)
     reach = distance(tree([(grid[core], False)], 1e9), grid, 0.5 * S) < 0.5 * S - PITCH
+    # the beads are points up to a STEP apart, and rows of the grid lie just between two of them
+    covered = away <= np.hypot(0.5 * S, 0.5 * STEP)
     assert (covered & reach).sum() > 0.99 * reach.sum()
     # an open circle of the gap's diameter would have a middle that is half of it away from all beads
     assert away[reach].max() < 0.5 * S + 0.5 * gap + PITCH
