@@ -43,6 +43,10 @@ GUIDE = Link(
                         "solid."),
     required=False, type_name="App::PropertyLinkSub",
 )
+START = Link(
+    "StartFaces", "", marked("The faces on which the first of geodesic and offset layers lies; none: where they stand."),
+    required=False, type_name="App::PropertyLinkSub",
+)
 
 
 class SolidNodes(HubNodes):
@@ -74,7 +78,9 @@ class SolidPanel(PickPanel):
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
         guide = None if obj is None else getattr(obj, "Guide", None)
         self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
-        picks = [self.solids, self.substrate, self.guide, self.fixtures]
+        start = None if obj is None else getattr(obj, "StartFaces", None)
+        self.start = PickField(START, tr("Starts on"), start, self._arm, picking.FACE)
+        picks = [self.solids, self.substrate, self.guide, self.start, self.fixtures]
         super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes())
         self._add_overhang()
 
@@ -124,25 +130,19 @@ class SolidPanel(PickPanel):
         solids = [pick.obj for pick in self.solids.picks]
         return {
             "Source": (solids[0], []), "Further": solids[1:], "Substrate": self.substrate.value(),
-            "Guide": self.guide.value(), "Fixtures": self.fixtures.value(),
+            "Guide": self.guide.value(), "StartFaces": self.start.value(), "Fixtures": self.fixtures.value(),
         }
 
     def _inputs(self) -> dict[str, str]:
         solids = [recorded.reference(pick.obj) for pick in self.solids.picks]
         found = {
             "source": solids[0] if solids else "None", "further": f"[{', '.join(solids[1:])}]",
-            **self.substrate.arguments(), "guide": self._guide(), **self.fixtures.arguments(),
+            **self.substrate.arguments(), "guide": _with_names(self.guide), "start_faces": _with_names(self.start),
+            **self.fixtures.arguments(),
         }
         return found if self.obj is not None else {
             key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
         }
-
-    def _guide(self) -> str:
-        """The guide as a macro gives it."""
-        if not self.guide.picks:
-            return "None"
-        pick = self.guide.picks[0]
-        return f"({recorded.reference(pick.obj)}, {list(pick.names) or ['']!r})"
 
     def _values(self) -> dict[str, Any]:
         """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
@@ -177,7 +177,7 @@ class SolidPanel(PickPanel):
     def _link_places(self) -> dict[str, str]:
         return {
             "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.substrate.label,
-            "Guide": self.guide.label, "Fixtures": self.fixtures.label,
+            "Guide": self.guide.label, "StartFaces": self.start.label, "Fixtures": self.fixtures.label,
         }
 
     def _placed(self, error: AmError) -> tuple[str, str]:
@@ -202,3 +202,11 @@ class SolidPanel(PickPanel):
         self.nodes.set(NOTHING)
         self.leaning = None
         self._show_overhang()
+
+
+def _with_names(field: PickField) -> str:
+    """An object with its edges or faces as a macro gives it."""
+    if not field.picks:
+        return "None"
+    pick = field.picks[0]
+    return f"({recorded.reference(pick.obj)}, {list(pick.names) or ['']!r})"

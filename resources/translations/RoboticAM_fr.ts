@@ -4227,6 +4227,11 @@
         <translation>Départs</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>Starts on</source>
+        <translation>Commence sur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/stage_panel.py"/>
         <source>Status: {}</source>
         <translation>État : {}</translation>
@@ -4410,6 +4415,11 @@
         <location filename="../../freecad_am/gui/curves_panel.py"/>
         <source>The edges, wire, sketch or table of points to lay as beads.</source>
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
+        <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>

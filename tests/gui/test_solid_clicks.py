@@ -70,6 +70,39 @@ def test_layers_along_a_guide_that_is_picked_or_found(person):
     assert feature.Height.Value == pytest.approx(15.0 * 3.14159265, abs=0.01)
 
 
+def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
+    doc = App.newDocument("Started")
+    part = bracket(doc)
+    person.select(part)
+    person.click("RoboticAM_Solid")
+    panel = person.panel("RoboticAM_SolidFeature")
+    told = person.field(panel, "preview")
+    person.until(lambda: "1 solids" in told.text(), "the preview", 30)
+    person.field(panel, "PickStartFaces").click()
+    person.gui.Selection.addSelection(part, "Face1")
+    chosen = person.field(panel, "StartFaces")
+    person.until(lambda: "Face1" in chosen.text(), "the face", 10)
+    person.until(lambda: "have no start faces" in all_text(person, panel), "that planes have none", 10)
+    person.choose(panel, "Layers", "geodesic")
+    person.until(lambda: "have no start faces" not in all_text(person, panel), "that curved layers have", 30)
+    person.screenshot("solid_panel_start")
+    person.press("Ok")
+    person.panel_closed()
+    (feature,) = api.stages_of(doc, "feature")
+    assert (feature.Status, feature.StartFaces, feature.Layers) == ("up to date", (part, ["Face1"]), "geodesic")
+    person.double_click(feature)
+    panel = person.panel("RoboticAM_SolidFeature")
+    person.field(panel, "ClearStartFaces").click()
+    person.press("Ok")
+    person.panel_closed()
+    assert feature.StartFaces is None and feature.Status == "up to date"
+
+
+def all_text(person, panel):
+    """What the labels say that are seen."""
+    return " ".join(label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible())
+
+
 def test_new_job_fills_what_is_no_wall(person, coarse):
     doc = App.newDocument("Job")
     part = bracket(doc)
