@@ -154,7 +154,7 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
     person.until(lambda: note.isVisible() and "cannot be worked with; give at least" in note.text(), "the note", 10)
     person.type(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
-    assert not note.isVisible()
+    person.until(lambda: not note.isVisible(), "that the note goes", 10)
     block = part.Document.addObject("Part::Box", "Far")
     block.Placement.Base = App.Vector(500, 0, 0)
     part.Document.recompute()
