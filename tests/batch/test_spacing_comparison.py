@@ -109,7 +109,7 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
 
 
 def test_parts_of_revolution_are_not_compared():
-    job, content = SimpleNamespace(strategy=RevolutionParameters()), {}
+    job, content = SimpleNamespace(strategy=RevolutionParameters(), features=(object(),)), {}
     assert run._compare_spacings(job, None, content, None, (), None, None, None) == ()
     assert content == {"spacing_comparison": []}
     assert spacing_comparison.rows((), job, None, []) == []
