@@ -73,7 +73,7 @@ def test_which_is_the_wall(person, assembly):
     faced = Pick(block, ("Face1",))
     assert picking.proposal([]) == (None, None, "")
     assert picking.proposal([Pick(ball)]) == (Pick(ball), None, "")
-    assert picking.proposal([Pick(scan)]) == (None, Pick(scan), "")
+    assert picking.proposal([Pick(scan)]) == (Pick(scan), None, "")
     assert picking.proposal([Pick(ball), faced]) == (faced, Pick(ball), "")
     assert picking.proposal([Pick(ball), Pick(block)]) == (Pick(ball), Pick(block), "")
     assert picking.proposal([Pick(scan), Pick(ball)]) == (Pick(ball), Pick(scan), "")

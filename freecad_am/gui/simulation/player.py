@@ -81,7 +81,7 @@ class Player:
         self.go_to_row(int(self.run.times.layer_rows[index]))
 
     def next_finding(self) -> Finding | None:
-        """To the next finding, the first one after the last; None when there are none."""
+        """To the next finding: after the one it was put on, else the first from here on; None when there are none."""
         findings = self.run.watch.findings
         if not findings:
             return None
@@ -89,7 +89,7 @@ class Player:
             index = (self.finding + 1) % len(findings)
         else:
             now = int(self.run.times.at(self.time).row) if self.row is None else self.row
-            later = [number for number, finding in enumerate(findings) if finding.row > now]
+            later = [number for number, finding in enumerate(findings) if finding.row >= now]
             index = later[0] if later else 0
         self.go_to_row(findings[index].row)
         self.finding = index
