@@ -9,27 +9,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.guide import Guide
-from .surface import Array, Index, Wrapped
+from .flat import Flat
+from .surface import Array, Wrapped
 
 
 @dataclass(frozen=True, eq=False)
-class AlongLayer:
+class AlongLayer(Flat):
     """pose: (4, 4) of the plane in the frame of the field, Z along the guide. As `LayerSurface`; its height (mm) at a place
     (x, y) of the plane is level + slope . (x, y)."""
 
     pose: Array
     level: float
     slope: Array
-
-    @property
-    def alike(self) -> tuple[float, ...]:
-        """Regions with the same borders are filled alike on all planes."""
-        return ()
-
-    @property
-    def period(self) -> None:
-        """Nothing goes round it."""
-        return None
 
     def unroll(self, points: Array) -> Array:
         """(n, 2) mm."""
@@ -49,14 +40,6 @@ class AlongLayer:
     def followed(self, flat: Array, sheet: float) -> AlongLayer:
         """The same plane."""
         return self
-
-    def turned(self, azimuth: float) -> float:
-        """It lies one way alone."""
-        return 0.0
-
-    def pieces(self, flat: Array, chord_error: float) -> Index:
-        """Chords are where they were."""
-        return np.ones(len(flat) - 1, dtype=np.intp)
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
         """The x and y of the plane."""

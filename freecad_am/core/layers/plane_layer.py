@@ -7,25 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .surface import Array, Index, Wrapped
+from .flat import Flat
+from .surface import Array, Wrapped
 
 
 @dataclass(frozen=True)
-class PlaneLayer:
+class PlaneLayer(Flat):
     """The plane at a height (mm) along the Z of its frame; the x and y of the frame are those of the plane. As
     `LayerSurface`."""
 
     height: float
-
-    @property
-    def alike(self) -> tuple[float, ...]:
-        """Planes are all alike."""
-        return ()
-
-    @property
-    def period(self) -> None:
-        """Nothing goes round it."""
-        return None
 
     def unroll(self, points: Array) -> Array:
         """(n, 2) mm."""
@@ -43,14 +34,6 @@ class PlaneLayer:
     def followed(self, flat: Array, sheet: float) -> PlaneLayer:
         """The same plane."""
         return self
-
-    def turned(self, azimuth: float) -> float:
-        """It lies one way alone."""
-        return 0.0
-
-    def pieces(self, flat: Array, chord_error: float) -> Index:
-        """Chords are where they were."""
-        return np.ones(len(flat) - 1, dtype=np.intp)
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
         """The x and y of the plane."""
