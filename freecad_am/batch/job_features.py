@@ -102,6 +102,11 @@ def chosen(feature: JobFeature, kind: str, layers: str, path: str, earlier: bool
     return one_feature(values, feature.name, path, earlier)
 
 
+def _beside(kind: str) -> tuple[str, ...]:
+    """The keys of `strategy` that are no parameters of the family: its kind, and what is picked of the part."""
+    return ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
+
+
 def _keys(family: Family) -> tuple[str, ...]:
     return tuple(field.name for field in dataclasses.fields(family.parameters))
 
@@ -169,8 +174,7 @@ def _with_defaults(own: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
         kind = "developable"
     family = KINDS[kind]
     given = own.get("strategy") if isinstance(own.get("strategy"), dict) else {}
-    known = ("kind", *(("guide",) if kind == "solid" else ()), *_keys(family))
-    known = ("guide", "start_faces", *known) if kind == "solid" else known
+    known = (*_beside(kind), *_keys(family))
     mixed["strategy"] = {key: value for key, value in strategy.items() if key in known or key in given}
     if "substrate" not in own and family.substrate == NONE:
         mixed.pop("substrate", None)
@@ -274,8 +278,7 @@ def _strategy(section: Any) -> LayerParameters:
     if kind in ("solid", "curves"):
         section = _with_direction(section)
     factory: type[LayerParameters] = KINDS[kind].parameters
-    also = ("kind", "guide", "start_faces") if kind == "solid" else ("kind",)
-    return fields.build(factory, section, "strategy", also=also)
+    return fields.build(factory, section, "strategy", also=_beside(kind))
 
 
 def _with_fuse(section: Any, part: dict[str, Any]) -> Any:

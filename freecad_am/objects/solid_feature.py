@@ -59,7 +59,12 @@ class SolidFeature(Stage):
         objects = tuple(taken(one) for one in (source_of(obj)[0], *obj.Further))
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
-        guide, start = _guide(obj, strategy), _start(obj, strategy)
+        guide = _picked(obj, "Guide", strategy, ("along",), (
+            f"layers: {strategy.layers} have no guide; use layers: along, or leave the guide out"
+        ))
+        start = _picked(obj, "StartFaces", strategy, ("geodesic", "offset"), (
+            f"layers: {strategy.layers} have no start faces; use layers: geodesic or offset, or leave the faces out"
+        ))
 
         def work() -> Outcome:
             solid: list[Body] = []
@@ -98,31 +103,16 @@ class SolidFeature(Stage):
         ]
 
 
-def _guide(obj: Any, strategy: SolidParameters) -> tuple[Any, tuple[str, ...], str] | None:
-    """The shape of the guide, the names of its edges, none for all, and what it is called; None where none is chosen.
-    InputError NOT_FOR_FAMILY, NO_SHAPE."""
-    if not getattr(obj, "Guide", None):
+def _picked(
+    obj: Any, name: str, strategy: SolidParameters, layers: tuple[str, ...], refusal: str
+) -> tuple[Any, tuple[str, ...], str] | None:
+    """The shape that a link of a feature is of, the names of its faces or edges, none for all, and what it is called; None
+    where nothing is chosen. layers: those that have it; others are refused. InputError NOT_FOR_FAMILY, NO_SHAPE."""
+    if not getattr(obj, name, None):
         return None
-    if strategy.layers != "along":
-        raise InputError(
-            "NOT_FOR_FAMILY", f"{obj.Label}.Guide", f"layers: {strategy.layers} have no guide; use layers: along, or leave "
-            "the guide out",
-        )
-    owner, names = obj.Guide
-    return global_shape(owner), tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name), owner.Label
-
-
-def _start(obj: Any, strategy: SolidParameters) -> tuple[Any, tuple[str, ...], str] | None:
-    """The shape of the start faces, their names, none for all, and what it is called; None where none are chosen. InputError
-    NOT_FOR_FAMILY, NO_SHAPE."""
-    if not getattr(obj, "StartFaces", None):
-        return None
-    if strategy.layers not in ("geodesic", "offset"):
-        raise InputError(
-            "NOT_FOR_FAMILY", f"{obj.Label}.StartFaces", f"layers: {strategy.layers} have no start faces; use layers: "
-            "geodesic or offset, or leave the faces out",
-        )
-    owner, names = obj.StartFaces
+    if strategy.layers not in layers:
+        raise InputError("NOT_FOR_FAMILY", f"{obj.Label}.{name}", refusal)
+    owner, names = getattr(obj, name)
     if getattr(owner, "Mesh", None) is not None:
-        raise InputError("UNKNOWN_FACE", f"{obj.Label}.StartFaces", f"{owner.Label} is a mesh, which has no faces to choose")
-    return global_shape(owner), tuple(name.rsplit(".", maxsplit=1)[-1] for name in names if name), owner.Label
+        raise InputError("NO_SHAPE", f"{obj.Label}.{name}", f"{owner.Label} is a mesh, which has no edges or faces")
+    return global_shape(owner), tuple(one.rsplit(".", maxsplit=1)[-1] for one in names if one), owner.Label

@@ -10143,8 +10143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
-        <source>{0} is a mesh, which has no faces to choose</source>
-        <translation>{0} est un maillage, qui n&apos;a pas de faces à choisir</translation>
+        <source>{0} is a mesh, which has no edges or faces</source>
+        <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
