@@ -17,6 +17,8 @@ host.find_freecad()
 
 import FreeCAD  # noqa: E402
 
+WHY, LONGEST = 6, 220  # lines of why a test failed, and characters of each
+
 
 def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="run what is marked as long too (docs/testing.md)")
@@ -44,6 +46,18 @@ def pytest_runtest_protocol(item):
         used = sum(after[:4]) - sum(before[:4])  # its own and that of processes that ended
         with open(file, "a", encoding="utf-8") as stream:
             stream.write(f"{time.monotonic() - began:.2f}\t{used:.2f}\t{item.nodeid}\n")
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Names what failed and the first lines of why, for the end of tests/run.py, which may be all that is seen of a run."""
+    for kind in ("failed", "error"):
+        for report in terminalreporter.stats.get(kind, ()):
+            crash = getattr(report.longrepr, "reprcrash", None)
+            shown = str(report.longrepr).splitlines()[-WHY:]
+            if crash:
+                shown = [f"{crash.path}:{crash.lineno}", *crash.message.splitlines()][:WHY]
+            told = "".join(f"\n    {line[:LONGEST]}" for line in shown)
+            terminalreporter.write_line(f"failed: {report.nodeid}{told}")
 
 
 @pytest.fixture

@@ -5,9 +5,10 @@ has taken."""
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -15,7 +16,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MORE = 0.25  # of a core, that parts at the same time may ask for beyond those that are there
+TIMES = "freecad-am: what the parts took, and s of processor"
 SLOWEST = 10  # tests told of with what they took
+EXPLAINED = 10  # tests that failed told of with why, and all the others by their names
+LAST = 8  # lines of a part that ended without telling what failed
+FAILURE = "failed: "  # before the name of a test in the lines of tests/conftest.py; why it failed stands below, indented
+# where parts run side by side, what nobody reads: a part's progress, and FreeCAD's banner
+NOISE = re.compile(
+    r"[.FEsxX]+ +\[ *\d+%\]|[ #]*#[ #]*|FreeCAD (?:\S+, Libs:|is free|wouldn't be) .*|© Juergen Riegel.*"
+)
 
 
 @dataclass
@@ -37,6 +46,8 @@ class Part:
         began = time.monotonic()
         self.status, self.text = self.run()
         self.wall = time.monotonic() - began
+        if PREFIXED:
+            say(f"freecad-am: ended after {self.wall:.0f} s with status {self.status}")
         return self
 
 
@@ -61,7 +72,8 @@ def watched(command: list[str], env: dict[str, str]) -> tuple[int, str]:
     assert process.stdout is not None
     for line in process.stdout:
         lines.append(line)
-        say(line)
+        if not (PREFIXED and NOISE.fullmatch(line.rstrip("\n"))):
+            say(line)
     _, ended, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(ended)
     part = AT_HAND.get()
@@ -93,7 +105,7 @@ def run_parts(parts: list[Part]) -> None:
 
 def tell_times(parts: list[Part], wall: float, tests: str) -> None:
     """What each part took, and the slowest tests, from the lines that tests/conftest.py wrote."""
-    print("freecad-am: what the parts took, and s of processor", flush=True)
+    print(TIMES, flush=True)
     for part in parts:
         print(f"  {part.wall:7.1f} s {part.used:7.1f} s  {part.name}")
     if len(parts) > 1:
@@ -104,3 +116,32 @@ def tell_times(parts: list[Part], wall: float, tests: str) -> None:
         print(f"freecad-am: the slowest of {len(rows)} tests")
     for took, used, name in slowest:
         print(f"  {took:7.1f} s {used:7.1f} s  {name[:160]}")
+
+
+def failures(text: str) -> dict[str, Sequence[str]]:
+    """The tests that failed and the first lines of why, as tests/conftest.py or a runner in another FreeCAD told of them."""
+    found: dict[str, Sequence[str]] = {}
+    for name, why in re.findall(rf"^{FAILURE}(.+)\n((?:    .*\n)*)", text, re.MULTILINE):
+        found[name] = [line[4:] for line in why.splitlines()] or found.get(name, [])
+    return found
+
+
+def told_of(found: Mapping[str, Sequence[str]]) -> str:
+    """The lines that `failures` reads."""
+    return "".join(f"{FAILURE}{name}\n" + "".join(f"    {line}\n" for line in why) for name, why in found.items())
+
+
+def tell_failures(parts: list[Part], sound: tuple[int, ...]) -> None:
+    """What failed in which part, and why; of a part that ended otherwise than with one of the statuses `sound` and told
+    nothing, its last lines. Tests that passed at their second try are named too."""
+    told = 0
+    for part in parts:
+        found = failures(part.text)
+        if not found and part.status not in sound:
+            lines = [line for line in part.text.splitlines() if line.strip() and not NOISE.fullmatch(line)]
+            found = {f"ended with status {part.status}": lines[-LAST:]}
+        for name, why in found.items():
+            told += 1
+            print(told_of({f"{name}  [{part.name}]" if len(parts) > 1 else name: why if told <= EXPLAINED else []}), end="")
+        for names in re.findall(r"^total: .* at the second try: (.*)", part.text, re.MULTILINE):
+            print(f"tried twice: {names}  [{part.name}]")

@@ -130,8 +130,11 @@ def test_an_end_without_a_summary_is_told_with_the_test_at_hand(monkeypatch, cap
         return status, text
 
     monkeypatch.setattr(run, "watched", watched)
-    assert run.in_window("freecad", ["tests/gui"]) == (status, text, [])
+    ended, found, failed = run.in_window("freecad", ["tests/gui"])
+    assert (ended, found[: len(text)], failed) == (status, text, [])
     assert capsys.readouterr().out.strip().removeprefix("freecad-am: ") == told
+    why, _, at = told.partition(" at ")
+    assert run_parts.failures(found) == ({at: [f"{why} here"]} if told else {})
 
 
 @pytest.fixture
@@ -162,6 +165,78 @@ def test_the_last_line_sums_up_all_parts(parts, capsys, ends, status, total):
     lines = capsys.readouterr().out.splitlines()
     assert lines[-1] == f"total: {total}"
     assert [line.split("s  ")[-1] for line in lines if "  part " in line] == ["part 0", "part 1"]
+
+
+BROKEN = """\
+import pytest
+
+@pytest.mark.parametrize("size", [1, 2])
+def test_a(size):
+    assert size == 1, "one\\ntwo"
+
+@pytest.fixture
+def cup():
+    raise OSError("no cup")
+
+def test_b(cup):
+    pass
+"""
+
+
+def test_the_end_names_what_failed_and_why(tmp_path, parts, capsys):
+    """All that may be seen of a run are its last lines."""
+    (tmp_path / "conftest.py").write_text((Path(__file__).parent / "conftest.py").read_text(encoding="utf-8").replace(
+        "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"), encoding="utf-8")
+    (tmp_path / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
+    (tmp_path / "test_it.py").write_text(BROKEN, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "."], cwd=tmp_path, capture_output=True, text=True,
+        check=False, env={name: value for name, value in os.environ.items() if name != "TEST_TIMES"},
+    )
+    killed = "freecad-am: tests in FreeCAD 1.0\n" + "a line\n" * 20 + "... [ 3%]\nKilled\n"
+    assert parts((1, done.stdout), (0, "2 passed in 1.00s"), (137, killed)) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1] == "total: 3 passed, 3 failed, 0 skipped"
+    last = lines[lines.index(next(line for line in lines if line.startswith("failed: "))) : -1]
+    assert [line for line in last if not line.startswith("    ")] == [
+        "failed: test_it.py::test_a[2]  [part 0]", "failed: test_it.py::test_b  [part 0]",
+        "failed: ended with status 137  [part 2]",
+    ]
+    assert last[1].startswith("    ") and last[1].endswith("test_it.py:5") and "      two" in last
+    assert any("OSError: no cup" in line for line in last) and last[-1] == "    Killed"
+    assert last.count("    a line") == run_parts.LAST - 1
+
+
+def test_of_a_test_that_failed_twice_the_end_tells_why(windows, monkeypatch, capsys):
+    waiting, _ = windows
+    first = run_parts.told_of({"a": ["late"], "b": ["broken"]}) + ENDED.format(2, 5)
+    waiting += [(1, first, ["a", "b"]), (1, run_parts.told_of({"b": ["broken again"]}) + ENDED.format(1, 1), ["b"])]
+    monkeypatch.setattr(run, "all_parts", lambda arguments: [run_parts.Part("window", lambda: run.run_window_tests(["a"]))])
+    assert run.main() == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-4:-1] == ["failed: b", "    broken again", "tried twice: a b  [window]"]
+    assert lines[-1] == "total: 6 passed, 1 failed, 0 skipped"
+
+
+def test_a_failure_in_another_version_is_told_once_with_its_part(monkeypatch, capsys):
+    """Those that passed there at the second try are not told as failed."""
+    inside = run_parts.told_of({"a": ["late"]}) + f"{run_parts.TIMES}\n" + run_parts.told_of({"b": ["why"]}) + (
+        "total: 6 passed, 1 failed, 0 skipped\n")
+    monkeypatch.setattr(run, "watched", lambda command, env: (1, inside))
+    status, text = run.run_in_version("1.0", [])
+    assert status == 1 and run_parts.failures(text) == {"b": ["why"]} and run.counts(text)["passed"] == 6
+
+
+def test_progress_is_not_told_where_parts_run_side_by_side(tmp_path, monkeypatch, capsys):
+    written = "....F.ss [ 31%]\n  #   ##  # \nE   assert 1 == 2\n\n# a comment\n3 passed in 2.00s\n"
+    (tmp_path / "text").write_text(written, encoding="utf-8")
+    command = ["cat", str(tmp_path / "text")]
+    monkeypatch.setattr(run_parts, "PREFIXED", True)
+    assert run_parts.watched(command, dict(os.environ)) == (0, written)
+    assert capsys.readouterr().out == "E   assert 1 == 2\n\n# a comment\n3 passed in 2.00s\n"
+    monkeypatch.setattr(run_parts, "PREFIXED", False)
+    assert run_parts.watched(command, dict(os.environ)) == (0, written)
+    assert capsys.readouterr().out == written
 
 
 def test_a_part_that_cannot_run_is_no_sound_end(parts):
