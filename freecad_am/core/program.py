@@ -42,7 +42,9 @@ class Moves:
     program's origin, of the tool or, with the part on the robot, of the deposition point; and configuration, one
     (shoulder, elbow, wrist) per point. On a rotary table, which has no rotation about the tool and no configuration:
     position of the tip, and direction (n, 3), unit vectors from the deposit towards the torch, seen from the program's
-    origin, which turns with the part. wire: (n,) mm/s of the wire on that move where the program has to tell it, else None.
+    origin, which turns with the part. flange: (n, 4, 4) its pose in the maker's base frame, mm, only for posts that need it
+    (`planning.program.FLANGE_TOLD`) where the part is on the robot. wire: (n,) mm/s of the wire on that move where the
+    program has to tell it, else None.
     """
 
     kind: str
@@ -56,6 +58,7 @@ class Moves:
     configuration: tuple[tuple[str, str, str], ...] | None = None
     direction: Array | None = None
     wire: Array | None = None
+    flange: Array | None = None
     interpolation: str = JOINT_MOVE
     stops: Mask = None  # type: ignore[assignment]
     role: tuple[str, ...] = ()
@@ -257,6 +260,9 @@ class ReadMoves:
     set none. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
     linear: (n,) bool, moves whose tip runs straight, where joints do not. stops: (n,) bool, moves at whose end the machine
     stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded where it does not, if the text says so.
+    blend_radius: (n,) mm about the end of a move in which it may be left for the next one, 0 where it stops, counted on the
+    way of the tool in `tool`. near: (n, axes) rad, joint values that those of a position are to be next to, NaN where the
+    text gives none, with near_digits.
     events: what happens between the moves, in order. configuration: of positions of robots.
     user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
     of moves of bare axes, which count on none, is left out.
@@ -290,6 +296,9 @@ class ReadMoves:
     wire_output: int | None = None
     blend: Array | None = None
     rounding: Array | None = None
+    blend_radius: Array | None = None
+    near: Array | None = None
+    near_digits: float = 0.0
     configuration: Configuration | None = None
     user_frame: Array | None = None
     tool_frame: Array | None = None

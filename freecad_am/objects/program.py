@@ -108,7 +108,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
         return
     post: Any = catalogue.load(parameters.post)
     programs.check_controller(cell.machine, parameters.post)
-    programs.check_wrist(cell.machine, parameters.motion)
+    programs.check_wrist(cell.machine, parameters.motion, parameters.post)
     post.refuse_setup(parameters.motion, cell.setup)
     carried = programs.on_table(cell, parameters)
     if parameters.post == "linuxcnc" and parameters.motion == "cartesian" and carried is not None:

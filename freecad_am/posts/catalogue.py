@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from ..core.issues import InputError
 from ..core.program import Program, ReadMoves
 
-NAMES = ("fanuc", "staubli", "siemens", "linuxcnc")  # of the modules beside this one
+NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur")  # of the modules beside this one
 
 
 class Post(Protocol):

@@ -13,7 +13,7 @@ import re
 # of every main program: remarks that it begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
 # endings of main programs, and those of their parts
-PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc"}
+PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script"}
 APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
 _HEAD = 4096  # characters of a program that hold the remarks it begins with
 _LARGEST = 1 << 20  # characters of a main program that are looked through for its parts

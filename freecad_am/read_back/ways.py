@@ -11,13 +11,15 @@ from ..core.issues import ERROR, Issue
 from ..core.kinematics import opw
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
 from ..core.program import LINEAR_MOVE, Configuration, Program, ReadMoves
-from .planned import COMPUTED_AXIS, Planned
+from .planned import COMPUTED_AXIS, Planned, pieces
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # mm by which a distance that a text rounds to thousandths may be off
 THOUSANDTH = 0.0011
+# of the shorter way beside a point, the largest blend radius there
+BLEND_SHARE = 0.4
 # rad: where an axis stands this near to half a turn, either number of turns is right
 HALF_TURN = np.radians(0.001)
 
@@ -31,16 +33,19 @@ def way_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves) 
             "the text moves straight in space where straight in the joints was planned, or the other way",
         ),
         *planned.issue(
-            "VERIFY_BLEND", _rounded_otherwise(planned, program, read),
+            "VERIFY_BLEND", _rounded_otherwise(cell, planned, program, read),
             "the text stops, or rounds the corner, otherwise than planned",
         ),
         *_frame_issues(cell, planned, program, read, linear),
         *_configuration_issues(cell, planned, program, read.configuration),
+        *_near_issues(cell, planned, read),
     ]
 
 
-def _rounded_otherwise(planned: Planned, program: Program, read: ReadMoves) -> Mask:
+def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
     """(n,) moves that do not stop where they should, or pass through where they should not, or by another rounding."""
+    if read.blend_radius is not None:
+        return _blended_otherwise(cell, planned, program, read)
     if read.blend is not None:
         return np.asarray((read.stops != planned.stops) | (~planned.stops & (read.blend != program.blend)))
     if read.rounding is None:
@@ -50,6 +55,21 @@ def _rounded_otherwise(planned: Planned, program: Program, read: ReadMoves) -> M
     rounding = np.full(len(read.stops), program.nc.tolerance) if table else _share_of_shortest(planned, program.blend)
     off = ~(np.abs(read.rounding - np.where(planned.deposit, rounding, 0.0)) <= (1e-5 if table else THOUSANDTH))
     return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (read.rounding > 0.0) | off)
+
+
+def _blended_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
+    """The same of a text with blend radii: in percent of BLEND_SHARE of the shorter way that the text's tool goes beside the
+    point, so that those of neighbours never meet."""
+    assert read.blend_radius is not None and read.tool is not None
+    tip = np.empty_like(planned.position)
+    for rows in pieces(np.arange(len(tip))):
+        flange = cell.machine.chain.forward(planned.joints[rows])
+        tip[rows] = np.einsum("nij,nj->ni", flange[:, :3, :3], read.tool[rows, :3, 3]) + flange[:, :3, 3]
+    way = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
+    radius = 0.01 * BLEND_SHARE * program.blend * np.minimum(way, np.append(way[1:], 0.0))
+    passed = ~planned.stops & (radius > 0.0)
+    off = np.abs(read.blend_radius - np.where(passed, radius, 0.0)) > THOUSANDTH
+    return np.asarray((planned.stops & ~read.stops) | passed & read.stops | off)
 
 
 def _share_of_shortest(planned: Planned, blend: float) -> Array:
@@ -72,6 +92,16 @@ def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMove
         wrong |= read.tool_frame != program.tool_frame
     message = f"the text selects another frame or tool than {program.user_frame} and {program.tool_frame}"
     return planned.issue("VERIFY_FRAME", wrong, message)
+
+
+def _near_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:
+    """Joint values that a position's are to be next to: the planned ones."""
+    if read.near is None:
+        return []
+    apart = np.abs(read.near - cell.machine.to_controller(planned.joints))
+    wrong = (np.isfinite(apart) & ~(apart <= read.near_digits + COMPUTED_AXIS)).any(axis=1)
+    wrong |= np.isnan(read.near).any(axis=1) & ~read.linear
+    return planned.issue("VERIFY_CONFIGURATION", wrong, "the text asks for joint values other than the planned ones")
 
 
 def _configuration_issues(cell: Cell, planned: Planned, program: Program, told: Configuration | None) -> list[Issue]:

@@ -28,7 +28,7 @@ CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]"), ("fanuc-crx10i
 def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branch):
     point = POINTS[name]
     cell = f"deposition_point: [{', '.join(map(str, point))}, 0, 0, 0], branch: {branch}"
-    workshop.write_job(JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "none"))
+    workshop.write_job(JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "ur"))
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 0, done.err
     assert ("note[FOLLOWED]" in done.err) == (name == "fanuc-crx10ia")
@@ -47,8 +47,8 @@ def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branc
     seen = frames.inverse(platform) @ station
     # the hemisphere's rim is its first layer, on the platform
     np.testing.assert_allclose(seen[:, :3, 3], points, atol=1e-4)
-    if name.startswith("fanuc"):
-        assert "program/CUP.LS" in files  # written where what is read back is as planned alone
+    # written where what is read back is as planned alone
+    assert ("program/CUP.LS" if name.startswith("fanuc") else "program/cup.script") in files
     layers = np.array([int(row["layer"]) for row in rows])
     for layer in range(layers.max() + 1):
         step = np.abs(np.diff(q[layers == layer], axis=0))
@@ -57,7 +57,10 @@ def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branc
 
 def test_programs_that_nobody_can_check_are_refused(workshop):
     cell = "deposition_point: [700, 0, 300, 0, 0, 0], branch: auto"
-    workshop.write_job(JOB.format(machine="ur-ur10e", cell=cell, post="fanuc"))
+    without = json.loads((machine.BUILT_IN / "ur-ur10e.json").read_text())
+    without["controller"]["posts"] = []
+    (workshop.job.parent / "mine.json").write_text(json.dumps(without))
+    workshop.write_job(JOB.format(machine="mine.json", cell=cell, post="fanuc"))
     done = workshop.run("plan", "cup.yaml")
     assert done.status == 2 and "error[WRONG_CONTROLLER]" in done.err and "no post for it yet" in done.err
     cell = "deposition_point: [710, 0, 839, 0, 0, 0], branch: [front, up, noflip]"

@@ -49,7 +49,8 @@ class Drive:
             elif self.poses is not None and read.configuration is not None:
                 found = self._by_configuration(row)
             elif self.poses is not None:
-                found = self.arm.inverse(self.poses[row][None], rows[-1][None], "nr", 1e-7)[0]
+                near = rows[-1] if read.near is None or read.linear[row] else machine.from_controller(read.near[row])
+                found = self.arm.inverse(self.poses[row][None], near[None], "nr", 1e-7)[0]
             else:
                 found = self._by_tip(row, rows[-1])
             assert np.isfinite(found).all(), row

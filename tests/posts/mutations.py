@@ -341,7 +341,71 @@ STAUBLI: dict[str, tuple[str, Change]] = {
     "parts in another order": (r"libLoad\(\"\./job0(\d)\"\)", other("1", "2", "3", "4")),
 }
 
-KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC}
+_UR_N = r"-?\d+\.\d{7}"
+_UR_JOINT = rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\)?, a=1\.4)"
+_UR_PLACE, _UR_ANGLE = (
+    rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{{some}}}\]\), (?:a=1\.2|\[))" for some in ("3,5", "0,2"))
+_UR_MOVE, _UR_OUT, _UR_SLEEP, _UR_WHILE, _UR_CALL = (
+    rf"^ +{line}\n" for line in (r"move[jp]\([^\n]*", r"set_standard_digital_out\([^\n]*", r"sleep\((?!0\.010)[.\d]+\)",
+                                r"while [^\n]*\n +sleep\(0\.010\)\n +end", r"clean\(\)"))
+_UR_BLEND = r"r=(0\.\d*[1-9]\d*)\)$"
+UR: dict[str, tuple[str, Change]] = {
+    "a point moved": (_UR_JOINT, moved(0.001)),
+    "a position moved": (_UR_PLACE, moved(0.00005)),
+    "an angle of a position moved": (_UR_ANGLE, moved(0.001)),
+    "a digit changed": (_UR_JOINT, digit),
+    "a sign changed": (_UR_JOINT, negated),
+    "a turn more": (_UR_JOINT, moved(6.2831853)),
+    "two points exchanged": (r"(movej\(\[)([^\]]*)(\][^\n]*\n +movej\(\[)([^\]]*)", r"\1\4\3\2"),
+    "two positions exchanged": (r"(movep\([^\[]*\[)([^\]]*)(\][^\n]*\n +movep\([^\[]*\[)([^\]]*)", r"\1\4\3\2"),
+    "a blend added": (r"r=0\.000000(?=\)$)", "r=0.005000"),
+    "a stop added": (_UR_BLEND, "r=0.000000)"),
+    "a blend changed": (_UR_BLEND, scaled(1.5)),
+    "a blend that overlaps": (_UR_BLEND, scaled(3.0)),
+    "a move's kind changed": (r"move(?:p|j(?=\(\[))", "movel"),
+    "another acceleration": (r"a=(1\.[24])", other("0.1", "2.0")),
+    "another speed of joints": (r"v=(1\.05)", other("0.10", "2.00")),
+    "a time changed": (r"t=(\d+\.\d+)", scaled(1.02)),
+    "a time dropped": (r" t=\d+\.\d+,", DROP),
+    "no time": (r"t=\d+\.\d+", "t=0.000000"),
+    "the first move faster": (r"t=(10\.000000)", other("1.000000", "0.500000")),
+    "a speed changed": (r"v=(0\.00\d+)", scaled(1.02)),
+    "an output dropped": (_UR_OUT, DROP),
+    "an output switched the other way": (r"out\(\d, (True|False)\)", other("True", "False")),
+    "another output": (r"out\((0),", one_more),
+    "an output of another kind": (r"set_(standard)_digital", other("configurable", "tool")),
+    "an output doubled": (_UR_OUT, TWICE),
+    "two moves swapped": (rf"({_UR_MOVE})({_UR_MOVE})", SWAP),
+    "a move and an output swapped": (rf"({_UR_OUT})({_UR_MOVE})", SWAP),
+    "an output and a wait swapped": (rf"({_UR_OUT})({_UR_SLEEP})", SWAP),
+    "a move dropped": (_UR_MOVE, DROP),
+    "a move doubled": (_UR_MOVE, TWICE),
+    "an approach dropped": (rf"{_UR_MOVE}(?={_UR_OUT})", DROP),
+    "a retract dropped": (rf"(^ +set_[^\n]*False\)\n){_UR_MOVE}", r"\1"),
+    "a wait dropped": (_UR_SLEEP, DROP),
+    "a wait changed": (r"sleep\(((?!0\.010)[.\d]+)\)", moved(0.2)),
+    "an input dropped": (_UR_WHILE, DROP),
+    "another input": (r"digital_in\((\d)\)", one_more),
+    "an input the other way": (r"(?<=digital_in\(2\) == )False", "True"),
+    "an input that is not waited for": (r"(?<=sleep\()0\.010", "0.000"),
+    "a call dropped": (_UR_CALL, DROP),
+    "another call": (r"\bclean\(\)", "clean2()"),
+    "a call doubled": (_UR_CALL, TWICE),
+    "a wait and a call swapped": (rf"({_UR_WHILE})({_UR_CALL})", SWAP),
+    "another platform": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", moved(0.001)),
+    "another tool": (rf"set_tcp\(p\[(?:{_UR_N}, ){{0,2}}({_UR_N})", moved(0.05)),
+    "no platform": (r"^ +global platform[^\n]*\n", DROP),
+    "no tool": (r"^ +set_tcp[^\n]*\n", DROP),
+    "another frame named": (r"pose_trans\(platform", "pose_trans(base"),
+    "another layer": (r"^ +# layer (\d+)", one_more),
+    "a part dropped": (r"^  job\d+\(\)\n", DROP),
+    "a part doubled": (r"^  job\d+\(\)\n", TWICE),
+    "parts in another order": (r"^(  job\d+\(\)\n)(  job\d+\(\)\n)", SWAP),
+    "a part of another name": (r"^  def job(0)\d\(\):", one_more),
+    "no end": (r"^end\n", DROP),
+}
+
+KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR}
 
 # the least change of a number, in steps of its last digit, that is always refused (docs/decisions/0005-read-back.md). What
 # is written is off by half a step itself, and as much is allowed: of one number a step is refused, of three coordinates of
@@ -368,6 +432,11 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
     "linuxcnc": {
         "rotary axis": (r" [ABC](-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2), "feed": (_FEED, 1),
         "wait": (_WAIT_NC.format("G4 P"), 1), "blend": (r"^G64 P([.\d]+) Q", 1),
+    },
+    "ur": {
+        "joint": (_UR_JOINT, 1), "position": (_UR_PLACE, 5), "angle": (_UR_ANGLE, 10),
+        "frame": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", 10), "time": (r"t=(\d+\.\d+)", 3),
+        "speed": (r"v=(0\.00\d+)", 1), "blend": (_UR_BLEND, 3), "wait": (r"sleep\(((?!0\.010)[.\d]+)\)", 1),
     },
 }
 

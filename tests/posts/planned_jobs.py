@@ -56,6 +56,13 @@ SETUPS = {
         machine="staubli-rx60bl", mount="part", platform_diameter=60.0,
         deposition_point=(300.0, 0.0, 300.0, np.pi, 0.0, 0.0),
     ), FLAT, 50.0),
+    "ur part-on-robot": Setup(CellParameters(
+        machine="ur-ur10e", mount="part", platform_diameter=60.0, deposition_point=(700.0, 0.0, 300.0, 0.0, 0.0, 0.0),
+    ), FLAT, 50.0),
+    "ur tool-on-robot": Setup(CellParameters(
+        machine="ur-ur10e", setup="tool-on-robot", mount="part", platform_diameter=100.0,
+        deposition_point=(700.0, 0.0, -100.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
     "table": Setup(CellParameters(
         machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
     ), STEEP, 90.0),
@@ -70,6 +77,8 @@ WAYS = (
     ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),
     *(("staubli", motion, "time", f"staubli {setup}") for motion in ("joint", "cartesian")
       for setup in ("part-on-robot", "tool-on-robot")),
+    ("ur", "joint", "time", "ur part-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),
+    ("ur", "cartesian", "time", "ur tool-on-robot"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),

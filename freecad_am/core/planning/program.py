@@ -46,6 +46,8 @@ from .joint_path import BeadPath
 
 Array = NDArray[np.float64]
 
+# posts whose programs count on where the flange is, and those whose positions need no words for configurations of the arm
+FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
 # what the rows of a motion are for, by its numbers
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
@@ -64,7 +66,7 @@ def build(
     NOT_FOR_WRIST.
     """
     check_controller(cell.machine, parameters.post)
-    check_wrist(cell.machine, parameters.motion)
+    check_wrist(cell.machine, parameters.motion, parameters.post)
     blocks = _blocks(motion, cell, process, parameters, waits, returns)
     return Program(
         name=name,
@@ -121,9 +123,9 @@ def check_controller(machine: Machine, post: str) -> None:
     raise InputError("WRONG_CONTROLLER", "program.post", f"the controller of {machine.title} does not read {post}; {known}")
 
 
-def check_wrist(machine: Machine, motion: str) -> None:
-    """InputError NOT_FOR_WRIST for Cartesian programs of robots without a spherical wrist."""
-    if motion == "cartesian" and not machine.is_table and machine.opw is None:
+def check_wrist(machine: Machine, motion: str, post: str) -> None:
+    """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
+    if motion == "cartesian" and not machine.is_table and machine.opw is None and post not in WITHOUT_CONFIGURATIONS:
         raise InputError(
             "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
             "configurations of cartesian positions is not known; use joint",
@@ -227,8 +229,10 @@ def _moves(
     duration = motion.duration[rows].copy()
     if arriving:
         duration[0] = FIRST_TIME
-    position = rotation = direction = None
+    position = rotation = direction = flange = None
     configuration = None
+    if parameters.post in FLANGE_TOLD and cell.setup == PART_ON_ROBOT:
+        flange = frames.inverse(cell.machine.base) @ cell.machine.chain.forward(motion.joints[rows])
     if parameters.motion == "cartesian" and cell.setup == ROTARY_TABLE:
         station, carried = _frames(cell, parameters)
         seen = frames.inverse(cell.machine.chain.forward(motion.joints[rows]) @ carried) @ station
@@ -247,6 +251,7 @@ def _moves(
         kind=kind, layer=int(motion.layer[rows[0]]), bead=int(motion.bead[rows[0]]),
         joints=cell.machine.to_controller(motion.joints[rows]), duration=duration, speed=motion.speed[rows],
         position=position, rotation=rotation, configuration=configuration, direction=direction, wire=wire if told else None,
+        flange=flange,
         interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
         stops=motion.stops[rows], role=tuple(ROLES[role] for role in motion.role[rows].tolist()),
     )
