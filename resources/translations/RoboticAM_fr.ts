@@ -159,11 +159,6 @@
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>FANUC: CNT value of the moves within a bead.</source>
-        <translation>FANUC : valeur CNT des mouvements au sein d&apos;un cordon.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Faces of the wall, from the platform up.</source>
         <translation>Faces de la paroi, du plateau vers le haut.</translation>
@@ -302,6 +297,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>How many contours lie round lines and the like; inf: contours alone.</source>
         <translation>Nombre de contours autour des lignes et autres motifs ; inf : contours seuls.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.</source>
+        <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -2052,11 +2052,6 @@
         <translation>Exporter…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>FANUC: CNT value of the moves within a bead.</source>
-        <translation>FANUC : valeur CNT des mouvements au sein d&apos;un cordon.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/curves_panel.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
@@ -2452,6 +2447,11 @@
         <translation>Combien de secondes du travail passent en une</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>How much corners within a bead are rounded, percent: CNT of FANUC, and of the most that others may.</source>
+        <translation>Arrondi des coins dans un cordon, en pour cent : CNT de FANUC, et du plus grand permis pour les autres.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>How narrow and how wide beads may be, of their usual width and spacing, so that contours come out even over the thickness of a region, and beads in thin places are as wide as these.</source>
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
@@ -2580,6 +2580,11 @@
         <location filename="../../freecad_am/gui/joint_path_panel.py"/>
         <source>Joint path</source>
         <translation>Trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>Joint programs count on the nominal arm; the calibrated one stands up to millimetres beside it</source>
+        <translation>Les programmes articulaires comptent sur le bras nominal ; le bras étalonné s&apos;en écarte jusqu&apos;à quelques millimètres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -3440,6 +3445,11 @@
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>Payload is set and the override is 100 %</source>
         <translation>La charge est réglée et la correction de vitesse est de 100 %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>Payload is set, safety limits allow the speeds, and the speed slider is at 100 %</source>
+        <translation>La charge est réglée, les limites de sécurité permettent les vitesses, et le curseur de vitesse est à 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/pick_field.py"/>
@@ -4627,6 +4637,11 @@
         <translation>L&apos;aperçu est en cours de calcul.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>The robot keeps the time of every move through the blends</source>
+        <translation>Le robot tient la durée de chaque mouvement à travers les lissages</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>The same layer of all solids on a base in turn, around the axis, the same ring of each and the inner ones first; or solid by solid (feature).</source>
         <translation>La même couche de tous les solides d&apos;une base tour à tour, autour de l&apos;axe, le même anneau de chacun et les intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
@@ -4955,6 +4970,16 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>URDF file</source>
         <translation>Fichier URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>URScript moves a tool that the flange carries, at its speed; with the part on the robot the tool stands and the speed at the deposition point is another one at every point of the part, which no documented instruction of URScript holds; use `motion: joint`</source>
+        <translation>URScript déplace un outil porté par la bride, à la vitesse de celui-ci ; avec la pièce sur le robot, l&apos;outil est fixe et la vitesse au point de dépôt est une autre en chaque point de la pièce, ce qu&apos;aucune instruction documentée d&apos;URScript ne tient ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>URScript sets an output when the robot enters the blend before it, not where the bead asks for it</source>
+        <translation>URScript règle une sortie quand le robot entre dans le lissage qui précède, et non où le cordon la demande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -5447,6 +5472,11 @@
         <translation>un mouvement de {0} s est plus long que {1} s ; augmentez la vitesse ou ajoutez des points</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur_numbers.py"/>
+        <source>a move takes {0} ms, less than the {1} ms in which the controller steps; use a larger strategy.chord_error or a lower process.travel_speed</source>
+        <translation>un mouvement dure {0} ms, moins que le pas de {1} ms de la commande ; utilisez un strategy.chord_error plus grand ou un process.travel_speed plus petit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>a move without a feed of its own</source>
         <translation>un mouvement sans avance à lui</translation>
@@ -5455,6 +5485,11 @@
         <location filename="../../freecad_am/posts/staubli_numbers.py"/>
         <source>a move would need {0} % of the largest joint speed, which cannot be written; use another speed, so that it is {1} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, ce qui ne peut pas être écrit ; utilisez une autre vitesse, pour qu&apos;il soit de {1} à 100 %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>a part does not end</source>
+        <translation>une partie ne finit pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
@@ -5887,6 +5922,11 @@
         <translation>l&apos;axe 3 est montré {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>axis {0} has no limits, but joint values of URScript count every turn; use limits that have one for axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires d&apos;URScript comptent chaque tour ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>axis {0} has no limits, but joint values of VAL 3 count every turn up to a limit; use limits that have one for axis {1}</source>
         <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de VAL 3 comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
@@ -6317,9 +6357,19 @@
         <translation>vouliez-vous dire {0} ?</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}</source>
+        <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les configurables), pas {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc.py"/>
         <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}</source>
         <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}</source>
+        <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les configurables), pas {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc.py"/>
@@ -6942,6 +6992,11 @@
         <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>it has other characters than ASCII</source>
+        <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>it has {0} axes, {1} of which slide; a robot that can be planned has six that turn</source>
         <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
@@ -7177,6 +7232,11 @@
         <translation>elle n&apos;est pas sur la surface de {0} (écart de {1} mm) ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>it is not one function from its first line to its last</source>
+        <translation>ce n&apos;est pas une seule fonction de la première ligne à la dernière</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>it is not said which axes the feed is the speed of</source>
         <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
@@ -7235,6 +7295,11 @@
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it may hold only the letters A to Z, digits and underscores</source>
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>it moves without a tool, without the platform, or in joints where positions are told</source>
+        <translation>il se déplace sans outil, sans plateau, ou en valeurs articulaires là où des positions sont dites</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>
@@ -7332,6 +7397,11 @@
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>its function is called {0}</source>
+        <translation>sa fonction s&apos;appelle {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/source.py"/>
         <source>its joint path is gone; choose a joint path</source>
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
@@ -7355,6 +7425,11 @@
         <location filename="../../freecad_am/brep/surface_patch.py"/>
         <source>its surface ({0}) cannot be told as a spline; rebuild the face, for instance as a loft</source>
         <translation>sa surface ({0}) ne peut pas être dite par une spline ; reconstruisez la face, par exemple par lissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>its time, speed or blend is none that is kept</source>
+        <translation>sa durée, sa vitesse ou son lissage n&apos;est pas de ceux qui sont tenus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/view_joint_path.py"/>
@@ -8095,6 +8170,11 @@
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>only a loop over one move is understood</source>
         <translation>seule une boucle sur un mouvement est comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>only a loop that waits is understood</source>
+        <translation>seule une boucle d&apos;attente est comprise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -9062,6 +9142,11 @@
         <translation>le post-processeur staubli ne peut pas écrire {0} (mouvement {1})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>the post ur cannot write {0}</source>
+        <translation>le post-processeur ur ne sait pas écrire {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>the post {0} cannot write {1} ({2} motion), only rotary-table</source>
         <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}), seulement rotary-table</translation>
@@ -9075,6 +9160,11 @@
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the post {0} writes {1} axes; use another post</source>
         <translation>le post-processeur {0} écrit {1} axes ; utilisez un autre post-processeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur.py"/>
+        <source>the program does not tell where the flange is, which blends count on</source>
+        <translation>le programme ne dit pas où est la bride, dont dépendent les lissages</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
@@ -9197,6 +9287,11 @@
         <translation>le texte demande une autre configuration du bras, ou d&apos;autres tours</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text asks for joint values other than the planned ones</source>
+        <translation>le texte demande d&apos;autres valeurs articulaires que celles prévues</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/verify.py"/>
         <source>the text has {0} moves, planned are {1}</source>
         <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
@@ -9240,6 +9335,11 @@
         <location filename="../../freecad_am/read_back/times.py"/>
         <source>the times of a bead do not add up to the planned one</source>
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_numbers.py"/>
+        <source>the tool goes {0} mm beside a point that is not stopped at, too little for a blend radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
+        <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -9390,6 +9490,11 @@
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>there are {0} applications, expected one with its parts</source>
         <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>there are {0} files, expected one script</source>
+        <translation>il y a {0} fichiers, un seul script est attendu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
@@ -9625,6 +9730,11 @@
         <location filename="../../freecad_am/gui/choices.py"/>
         <source>tool on the robot, part on a positioner</source>
         <translation>outil sur le robot, pièce sur un positionneur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>tool or platform is set anew</source>
+        <translation>l&apos;outil ou le plateau est redéfini</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -9972,6 +10082,11 @@
         <translation>{0} cordons ont été divisés parce qu&apos;un axe n&apos;a pas la course d&apos;un cordon entier</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>{0} calls itself</source>
+        <translation>{0} s&apos;appelle lui-même</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>{0} cannot be carried out: {1}</source>
         <translation>{0} ne peut pas être exécuté : {1}</translation>
@@ -10172,9 +10287,19 @@
         <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>{0} is called before it is defined</source>
+        <translation>{0} est appelé avant d&apos;être défini</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>{0} is called before it is loaded</source>
         <translation>{0} est appelé avant d&apos;être chargé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>{0} is defined again, or within a part</source>
+        <translation>{0} est défini à nouveau, ou dans une partie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -10820,6 +10945,11 @@
         <location filename="../../freecad_am/gui/hub_panel.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur_read.py"/>
+        <source>{0} stands outside of its function</source>
+        <translation>{0} est en dehors de sa fonction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
