@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 ROUNDS = 60
 NEEDLE = 0.5  # of the shortest to the longest side
 ENDLESS = 100  # more edges that are too long than twice the least there were: halving them does not end
+STALLED, SHORTER = 10, 0.9  # rounds in which the longest edge becomes no shorter than this share of itself: nor does it
 LEVEL = 0.3  # cosine between the normals of two triangles, down to which an edge may be turned in any case
 FLIPS, FEW, MANY = 40, 4, 6000  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
 
@@ -47,21 +48,26 @@ def refined(
     vertices: Array, triangles: Index, owner: Index, longest: float, place: Placed, most: int, turned: bool = True
 ) -> tuple[Array, Index, Index] | None:
     """Vertices, triangles and their owners (m,) with no edge longer than `longest` mm; None when there would be more than
-    `most` triangles, or edges that are turned come back as long as they were, again and again.
+    `most` triangles, edges that are turned come back as long as they were, again and again, or some are still too long after
+    ROUNDS of halving.
 
     place: moves the new middles of edges to where they belong. What was shared stays shared. turned: whether edges are
     turned after each round of halving.
     """
     highest = least = 0  # edges that are too long: at most so far, and at least since
+    tops: list[float] = []  # mm, the longest edge in each round
     for _ in range(ROUNDS):
         edges = Edges(triangles)
         length = np.linalg.norm(vertices[edges.ends[:, 0]] - vertices[edges.ends[:, 1]], axis=1)
         split = length > longest
         long = int(split.sum())
         if not long:
-            break
+            return vertices, triangles, owner
+        tops.append(float(length.max()))
         highest, least = (long, long) if long > highest else (highest, min(long, least))
         if turned and least < 0.5 * highest and long > 2 * least + ENDLESS:
+            return None
+        if turned and len(tops) > STALLED and min(tops[-STALLED:]) > SHORTER * min(tops[:-STALLED]):
             return None
         # halve the longest edge of each triangle that has an edge to halve, so that triangles stay in shape
         own = length[edges.of] + 1e-9 * length.max() * edges.of / len(length)  # no ties
@@ -83,7 +89,7 @@ def refined(
         triangles, owner = _halved(triangles, owner, number[edges.of], first)
         if turned:
             triangles = flipped(vertices, triangles, owner)
-    return vertices, triangles, owner
+    return None
 
 
 def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Mask) -> Index:

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A command in a copy of a process that has all modules says, writes and ends as one that is started does."""
+
+import json
+
+import pytest
+
+
+def told(workshop):
+    """What was written, by name, without times: those of the report, and when a document was saved."""
+    files = workshop.files("out")
+    for name in files:
+        if name.endswith("report.json"):
+            report = json.loads(files[name])
+            del report["timing_s"], report["joints"]["planning_time_s"]
+            files[name] = report
+        elif name.endswith(".FCStd"):
+            files[name] = b""
+    return files
+
+
+@pytest.mark.parametrize(("words", "status"), [
+    (("plan", "cup.yaml", "--no-page"), 0), (("plan", "far.yaml", "--no-page"), 3), (("plan", "wrong.yaml"), 2),
+    (("machines", "nobody", "--dh"), 2),
+])  # fmt: skip
+def test_a_copy_does_what_the_launcher_does(workshop, words, status):
+    coarse = workshop.text.replace("layer_height: 4 mm", "layer_height: 9 mm")
+    workshop.write_job(coarse)
+    far = coarse.replace("limits: paper", "limits: paper\n  deposition_point: [0, 0, 9000, 0, 0, 0]")
+    (workshop.folder / "far.yaml").write_text(far)
+    (workshop.folder / "wrong.yaml").write_text(coarse.replace("9 mm", "9 kg"))
+    launched, written = workshop.launch(*words), told(workshop)
+    copied = workshop.run(*words)
+    assert (launched.status, launched.out, launched.err) == (copied.status, copied.out, copied.err)
+    assert launched.status == status and told(workshop) == written
+    assert bool(written) == (words[0] == "plan" and status != 2)
