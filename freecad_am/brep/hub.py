@@ -18,8 +18,8 @@ from ..core.geometry.solid_mesh import Array, SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .axis import from_normals
+from .fine_mesh import fine
 from .kernel_process import beside
-from .tessellate import tessellated
 
 SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = 5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
@@ -63,7 +63,7 @@ def bodies_of(source: Any, label: str, chord_error: float, mend: float, touching
 
 
 def _meshed(solid: Any, chord_error: float, label: str, touching: bool) -> SolidMesh:
-    vertices, corners = beside(tessellated, solid.copy(), SHARE * chord_error)[:2]
+    vertices, corners = beside(fine, solid.copy(), SHARE * chord_error)[:2]
     mesh = SolidMesh(vertices, corners)
     mesh = dataclasses.replace(mesh, triangles=corners[:, ::-1]) if mesh.volume < 0.0 else mesh
     mesh.refuse_unsound(label, of_shape=True, touching=touching)

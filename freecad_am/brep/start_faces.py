@@ -8,9 +8,10 @@ from typing import Any
 
 import Part
 
+from .fine_mesh import fine
 from .hub import SHARE
 from .kernel_process import beside
-from .tessellate import Array, tessellated
+from .tessellate import Array
 from .wall import faces_by_name
 
 
@@ -19,6 +20,6 @@ def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error
     NO_WALL, UNKNOWN_FACE."""
     known = faces_by_name(shape, names, label)
     chosen = Part.makeCompound([known[name].copy(False) for name in dict.fromkeys(names or known)])
-    made = beside(tessellated, chosen, SHARE * chord_error)
+    made = beside(fine, chosen, SHARE * chord_error)
     corners: Array = made[0][made[1]]
     return corners

@@ -92,6 +92,18 @@ def refined(
     return None
 
 
+def quartered(vertices: Array, triangles: Index, owner: Index, place: Placed) -> tuple[Array, Index, Index]:
+    """Vertices, triangles and their owners (m,), each triangle divided into four at the middles of its edges, which `place`
+    moves to where they belong."""
+    edges = Edges(triangles)
+    beside = np.where(edges.faces >= 0, owner[edges.faces], -1)
+    middle = place(vertices[edges.ends].mean(axis=1), beside, edges.ends)
+    a, b, c = triangles.T
+    ab, bc, ca = (edges.of + len(vertices)).T
+    four = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return np.vstack([vertices, middle]), np.concatenate([np.stack(one, axis=1) for one in four]), np.tile(owner, 4)
+
+
 def _first_cut(edges: Edges, own: Array, owner: Index, longest: float, split: Mask) -> Index:
     """The corner (m,) of each triangle at which the edge begins that is cut first, its longest one, given the lengths
     (m, 3) of its edges.
