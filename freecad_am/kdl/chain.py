@@ -7,6 +7,7 @@ checks, not for planning.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
@@ -57,16 +58,18 @@ class KdlArm:
 
     def forward(self, q: ArrayLike) -> Array:
         """Flange poses (n, 4, 4) of joint angles `q` (n, axes)."""
-        seen: list[float] = []
+        values = np.asarray(q, float)
         frame, angles, solve = self.kdl.Frame(), self.kdl.JntArray(self.axes), self._forward.JntToCart
-        # a quaternion is one call where a matrix is nine: these calls are most of the time of a read-back
-        for values in np.asarray(q, float).tolist():
-            for axis, value in enumerate(values):
-                angles[axis] = value
+        # these calls are much of the time of a read-back: parts of the frame are looked up once, for the solver fills it in
+        # place; a quaternion is one call where a matrix is nine; and joints that stay where they are need not be told again
+        x, y, z, turned = frame.p.x, frame.p.y, frame.p.z, frame.M.GetQuaternion
+        seen: list[float] = []
+        for row, axes in zip(values.tolist(), _moved(values), strict=True):
+            for axis in axes:
+                angles[axis] = row[axis]
             solve(angles, frame)
-            origin = frame.p
-            seen += origin.x(), origin.y(), origin.z()
-            seen += frame.M.GetQuaternion()
+            seen += x(), y(), z()
+            seen += turned()
         found = np.array(seen).reshape(-1, 7)
         return frames.pose(_rotations(found[:, 3:]), found[:, :3])
 
@@ -114,6 +117,15 @@ class KdlArm:
         """A pose (4, 4) as PyKDL's Frame."""
         rotation = self.kdl.Rotation(*(float(entry) for entry in pose[:3, :3].ravel()))
         return self.kdl.Frame(rotation, self.kdl.Vector(*(float(entry) for entry in pose[:3, 3])))
+
+
+def _moved(values: Array) -> Iterator[tuple[int, ...]]:
+    """Which joints of (n, axes) have another value than in the row before; in the first one all."""
+    axes = values.shape[1]
+    other = np.ones(values.shape, dtype=np.int64)
+    other[1:] = values[1:] != values[:-1]
+    known = [tuple(axis for axis in range(axes) if code >> axis & 1) for code in range(1 << axes)]
+    return (known[code] for code in (other @ (1 << np.arange(axes))).tolist())
 
 
 def _rotations(quaternions: Array) -> Array:

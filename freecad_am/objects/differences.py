@@ -57,18 +57,25 @@ class Unpacked:
 
 def _packed(numbers: Array) -> bytes:
     """The order of differences, then the bytes of what is left: first the lowest of all, the highest last."""
-    order, least, chosen = 0, -1, None
-    differences = _turned(np.ascontiguousarray(numbers).view(np.int64))
+    order, least = 0, -1
+    differences = chosen = _turned(np.ascontiguousarray(numbers).view(np.int64))
     for k in range(HIGHEST + 1):
         if k:
-            differences = np.diff(differences, prepend=np.int64(0))
-        folded = (differences << 1) ^ (differences >> 63)  # small ones are near 0, of either sign
-        size = _bits_of(folded) + k * len(numbers)  # to sum once more takes as long as to read a bit
-        if chosen is None or size < least:
-            order, least, chosen = k, size, folded
-    assert chosen is not None
-    planes = chosen.astype("<i8").view(np.uint8).reshape(-1, 8).T
-    return bytes([order]) + zlib.compress(planes.tobytes(), 1)
+            differences = _once_more(differences)
+        size = _bits_of(differences) + k * len(numbers)  # to sum once more takes as long as to read a bit
+        if not k or size < least:
+            order, least, chosen = k, size, differences
+    folded = (chosen << 1) ^ (chosen >> 63)  # small ones are near 0, of either sign
+    planes = np.ascontiguousarray(folded.astype("<i8", copy=False).view(np.uint8).reshape(-1, 8).T)
+    return bytes([order]) + zlib.compress(planes, 1)
+
+
+def _once_more(differences: Bits) -> Bits:
+    """Differences of differences; the first is one to 0."""
+    higher = np.empty_like(differences)
+    higher[:1] = differences[:1]
+    np.subtract(differences[1:], differences[:-1], out=higher[1:])
+    return higher
 
 
 def _unpack(piece: bytes, bits: Bits) -> None:
@@ -89,7 +96,10 @@ def _turned(bits: Bits) -> Bits:
     return bits ^ (bits >> 63 & _BUT_SIGN)
 
 
-def _bits_of(folded: Bits) -> int:
-    """How many bits whole numbers have in all, taken as without sign; near enough to choose by."""
-    exponents = folded.view(np.uint64).astype(np.float64).view(np.int64) >> _MANTISSA
-    return int((exponents - _BIAS).clip(0).sum())
+def _bits_of(differences: Bits) -> int:
+    """How many bits differences have in all once they are folded; near enough to choose by."""
+    size = differences ^ (differences >> 63)
+    exponents = size.astype(np.float64).view(np.int64)
+    exponents >>= _MANTISSA
+    # folding adds a bit to all but 0
+    return int(exponents.sum()) - _BIAS * np.count_nonzero(size) + np.count_nonzero(differences)

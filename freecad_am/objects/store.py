@@ -272,14 +272,17 @@ def _class(name: str) -> Any:
 
 
 def _floats_of(data: bytes) -> NDArray[np.float64]:
-    whole = np.full((-(-len(data) // _BYTES_PER_FLOAT), 8), _HIGHEST_BYTE, dtype=np.uint8)
-    whole[:, :_BYTES_PER_FLOAT].flat[: len(data)] = np.frombuffer(data, dtype=np.uint8)
-    return whole.view("<f8").ravel().astype(np.float64)
+    count, over = divmod(len(data), _BYTES_PER_FLOAT)
+    whole = np.full((count + (over > 0), 8), _HIGHEST_BYTE, dtype=np.uint8)
+    seven = np.frombuffer(data, dtype=np.uint8)
+    whole[:count, :_BYTES_PER_FLOAT] = seven[: len(data) - over].reshape(count, _BYTES_PER_FLOAT)
+    whole[count:, :over] = seven[len(data) - over :]
+    return whole.view("<f8").ravel().astype(np.float64, copy=False)
 
 
 def _bytes_of(floats: NDArray[np.float64], length: int) -> bytes:
     whole = floats[: -(-length // _BYTES_PER_FLOAT)].astype("<f8", copy=False).view(np.uint8).reshape(-1, 8)
-    return whole[:, :_BYTES_PER_FLOAT].tobytes()[:length]
+    return np.ascontiguousarray(whole[:, :_BYTES_PER_FLOAT]).ravel()[:length].tobytes()
 
 
 def _older_bytes(numbers: repeats.Unfolded, length: int, start: int) -> bytes:

@@ -55,8 +55,8 @@ def beads_between(cell: Cell, planned: Planned, shown: Array, path: Path, chord_
     largest, off = 0.0, np.zeros(len(shown), dtype=bool)
     for ends in pieces(planned.ends):
         joints = shown[ends - 1, None] + BETWEEN[:, None] * (shown[ends] - shown[ends - 1])[:, None]
-        flange = cell.machine.chain.forward(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
-        strayed, off[ends] = _off_segments(planned, ends, cell.tip_in_part(flange)[0], path, chord_error)
+        tips = cell.tip_at(cell.machine.from_controller(joints.reshape(-1, shown.shape[1])))
+        strayed, off[ends] = _off_segments(planned, ends, tips, path, chord_error)
         largest = float(np.maximum(largest, strayed))
     return largest, off
 
@@ -83,7 +83,8 @@ def _off_segments(
     away = tips - start[:, None]
     squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
     share = np.clip(np.einsum("nki,ni->nk", away, step) / squared[:, None], 0.0, 1.0)
-    distance = np.linalg.norm(away - share[..., None] * step[:, None], axis=2).max(axis=1)
+    away -= share[..., None] * step[:, None]
+    distance = np.sqrt(np.einsum("nki,nki->nk", away, away).max(axis=1))
     return float(distance.max()), ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
 
 

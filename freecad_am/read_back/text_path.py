@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..core.geometry import frames
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
+from ..core.kinematics.chain import JointFrames
 from ..core.program import Program, ReadMoves
 from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
 
@@ -66,33 +67,35 @@ def joint_path(cell: Cell, shown: Array, half: Array) -> tuple[Path, Array]:
     flange = np.empty((count, 4, 4))
     for rows in pieces(np.arange(count)):
         serial = machine.from_controller(shown[rows])
-        flange[rows] = machine.chain.forward(serial)
-        path.position[rows], path.tool[rows] = cell.tip_in_part(flange[rows])
-        half_of = np.broadcast_to(half, serial.shape)
-        path.bound[rows], path.tool_bound[rows] = _bounds(cell, serial, machine.controller_matrix, half_of)
+        at = machine.chain.frames(serial)
+        flange[rows] = at.flange
+        path.position[rows], path.tool[rows] = cell.tip_in_part(at.flange)
+        path.bound[rows], path.tool_bound[rows] = _bounds(cell, at, machine.controller_matrix, half[None])
     return path, flange
 
 
 def tip_bounds(cell: Cell, serial: Array, reach: Array) -> tuple[Array, Array]:
     """(n,) mm and (n,) by how much tip and tool axis move at most where joints (n, axes) are off by `reach` (n, axes)."""
-    return _bounds(cell, serial, np.eye(serial.shape[1]), reach)
+    return _bounds(cell, cell.machine.chain.frames(serial), np.eye(serial.shape[1]), reach)
 
 
-def _bounds(cell: Cell, serial: Array, matrix: Array, half: Array) -> tuple[Array, Array]:
-    """Bounds of tip and tool to first order where matrix @ joints are off by `half` (n, axes): the sum of the lengths of the
-    Jacobian's columns; what the second order adds is at most that times the sum of the angles."""
-    chain = cell.machine.chain
-    at = chain.frames(serial)
+def _bounds(cell: Cell, at: JointFrames, matrix: Array, half: Array) -> tuple[Array, Array]:
+    """Bounds of tip and tool to first order where matrix @ joints are off by `half` (n, axes), or (1, axes) of all: the sum
+    of the lengths of the Jacobian's columns; what the second order adds is at most that times the sum of the angles."""
+    slides = cell.machine.chain.sliding
     to_serial = np.linalg.inv(matrix)
-    slides = chain.sliding[:, None]
-    lever = cell.deposition_point(at.flange)[:, None, :] - at.origins
-    linear = np.where(slides, at.directions, np.cross(at.directions, lever))
-    linear, angular = (
-        np.einsum("nki,kj->nji", rows, to_serial) for rows in (linear, np.where(slides, 0.0, at.directions))
-    )
-    more = 1.0 + (half @ np.abs(to_serial).T)[:, ~chain.sliding].sum(axis=1)
-    bound = more * (np.linalg.norm(linear, axis=2) * half).sum(axis=1) + COMPUTED_MM
-    return bound, more * (np.linalg.norm(angular, axis=2) * half).sum(axis=1) + COMPUTED_AXIS
+    # one row per joint and entry, each of all poses
+    direction, origin = at.directions.transpose(1, 2, 0), at.origins.transpose(1, 2, 0)
+    lever = cell.deposition_point(at.flange).T - origin
+    linear, angular = np.empty_like(lever), np.array(direction)
+    for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.multiply(direction[:, following], lever[:, last], out=linear[:, row])
+        linear[:, row] -= direction[:, last] * lever[:, following]
+    linear[slides], angular[slides] = direction[slides], 0.0
+    more = 1.0 + (np.abs(to_serial) @ half.T)[~slides].sum(axis=0)
+    shown = [(to_serial.T @ rows.reshape(len(rows), -1)).reshape(rows.shape) for rows in (linear, angular)]
+    moved, turned = ((np.sqrt(np.square(rows).sum(axis=1)) * half.T).sum(axis=0) for rows in shown)
+    return more * moved + COMPUTED_MM, more * turned + COMPUTED_AXIS
 
 
 def text_joints(cell: Cell, planned: Planned, shown: Array | None, half: Array, path: Path, asked: Array | None) -> Joints:

@@ -28,6 +28,19 @@ def test_flange_poses_agree(arm):
         assert np.abs(arm.opw.forward(q) - wanted).max() < 1e-9
 
 
+def test_joints_that_stand_still_for_a_while_are_seen_where_they_are():
+    """Each row on its own, whatever the rows before it were."""
+    arm = machine.load("fanuc-arcmate120ic")
+    rng = np.random.default_rng(4)
+    q = joints(60, 4)
+    for row in range(1, 60):
+        still = rng.random(6) < 0.7
+        q[row, still] = q[row - 1, still]
+    poses = KdlArm(arm).forward(q)
+    assert np.array_equal(poses, np.concatenate([KdlArm(arm).forward(one[None]) for one in q]))
+    assert np.abs(arm.chain.forward(q) - poses).max() < 1e-9
+
+
 def test_jacobians_agree(arm):
     q = joints(100, 2, len(arm.axes))
     flange = arm.chain.forward(q)[:, :3, 3]

@@ -85,6 +85,14 @@ class Chain:
             flange.reshape(lead + (4, 4)),
         )
 
+    def seen(self, q: ArrayLike, point: Array) -> Array:
+        """A `point` (3,) of base_link as the flange sees it, (..., 3) mm, for joint values `q` (..., axes), rad and mm."""
+        return self._driven(q, point, range(self.axes), frames.inverse(self._links), -1.0)
+
+    def placed(self, q: ArrayLike, point: Array) -> Array:
+        """A `point` (3,) of the flange in base_link, (..., 3) mm, for joint values `q` (..., axes), rad and mm."""
+        return self._driven(q, point, range(self.axes)[::-1], self._links[::-1], 1.0)
+
     def links(self, q: ArrayLike) -> Array:
         """The frames (..., axes + 1, 4, 4) of the links in base_link for joint values `q` (..., axes), rad and mm: base_link
         itself, then each joint's frame as the joint has moved it."""
@@ -97,6 +105,31 @@ class Chain:
                 frames.rotation_about(direction, value), np.zeros(3))
             result[..., joint + 1, :, :] = result[..., joint, :, :] @ self.origins[joint] @ frames.pose(*moved)
         return result
+
+    def _driven(self, q: ArrayLike, point: Array, order: range, links: Array, sense: float) -> Array:
+        """A point taken through `links` (axes + 1, 4, 4) in turn, and through the joints in that order between them, in the
+        sense in which they turn or against it. A point alone takes a third of the time that a frame does."""
+        angles = np.asarray(q, float)
+        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        found = np.empty((by_joint.shape[1], 3))
+        first = links[0, :3, :3] @ point + links[0, :3, 3]
+        for start in range(0, len(found), PIECE):
+            piece = by_joint[:, start : start + PIECE]
+            sines, cosines = sense * np.sin(piece), np.cos(piece)
+            place = np.repeat(first[:, None], piece.shape[1], axis=1)
+            for joint, link in zip(order, links[1:], strict=True):
+                if self.sliding[joint]:
+                    place[2] += sense * piece[joint]
+                else:
+                    across = place[0] * cosines[joint]
+                    across -= place[1] * sines[joint]
+                    place[1] *= cosines[joint]
+                    place[1] += place[0] * sines[joint]
+                    place[0] = across
+                place = link[:3, :3] @ place
+                place += link[:3, 3:]
+            found[start : start + PIECE] = place.T
+        return found.reshape(angles.shape[:-1] + (3,))
 
     def _run_piece(self, angles: Array, axes: tuple[Array, Array] | None, flange: Array) -> None:
         """Fill in flange poses (n, 4, 4), and where wanted directions and origins (axes, 3, n), of angles (axes, n)."""

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kinematics import jacobian as jac
 from ..kinematics import opw
 from ..kinematics.cell import Cell
 from ..parameters.joints import OBJECTIVES, JointParameters
@@ -72,11 +73,14 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
         return dict.fromkeys(OBJECTIVES)
     points = gather([path.bead for path in paths], task.cell)
     joints = np.concatenate([path.joints for path in paths])
-    matrix = task.jacobian(points, np.concatenate([path.phi for path in paths]), joints)
+    phi, condition = (np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "condition"))
+    manipulability = np.empty(len(points))
+    for some, matrix in task.jacobians(points, phi, joints):
+        manipulability[some] = jac.manipulability(matrix, task.parameters.characteristic_length)
     share = np.diff(np.append(points.first, len(points))) / len(points)
     values = {name: measure(task, points, joints) for name, measure in criteria.JOINT_ONLY.items()}
-    values["manipulability"] = criteria.manipulability(task, points, joints, matrix)
-    values["condition"] = criteria.condition(task, points, joints, matrix)
+    values["manipulability"] = criteria.mean_inverse(points, manipulability)
+    values["condition"] = criteria.mean_inverse(points, condition)
     whole = {name: float((value * share).sum()) for name, value in values.items()}
     whole |= {"displacement": float(values["displacement"].sum()), "limits-klein": float(values["limits-klein"].max())}
     return {name: whole[name] for name in OBJECTIVES}

@@ -67,13 +67,17 @@ def _klein_rate(task: Task, points: Points, joints: Array, rates: Array) -> Arra
 
 def manipulability(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
     """Eq. 5: mean over points of 1 / sqrt(det(J J^T)), translation rows divided by the length; (B,)."""
-    length = task.parameters.characteristic_length
-    return _mean(points, 1.0 / np.maximum(jac.manipulability(matrix, length), 1e-300))
+    return mean_inverse(points, jac.manipulability(matrix, task.parameters.characteristic_length))
 
 
 def condition(task: Task, points: Points, joints: Array, matrix: Array) -> Array:
     """Eq. 6 turned round: mean over points of sigma_max / sigma_min; (B,)."""
-    return _mean(points, 1.0 / np.maximum(jac.condition(matrix, task.parameters.characteristic_length), 1e-300))
+    return mean_inverse(points, jac.condition(matrix, task.parameters.characteristic_length))
+
+
+def mean_inverse(points: Points, measure: Array) -> Array:
+    """(B,) mean over the points of a bead of one over how far from singular each is, (T,)."""
+    return _mean(points, 1.0 / np.maximum(measure, 1e-300))
 
 
 def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Array:
@@ -88,20 +92,26 @@ def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Ar
 def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array) -> Array:
     """(T,) derivative of the objective by the phi of each point."""
     name = task.parameters.objective
-    if name == "displacement":
-        return displacement_rate(task, points, joints, rates)
-    if name == "limits-liegeois":
-        return _liegeois_rate(task, points, joints, rates)
-    if name == "limits-fournier":
-        return 0.25 * _liegeois_rate(task, points, joints, rates)
-    if name == "limits-klein":
-        return _klein_rate(task, points, joints, rates)
+    if name in JOINT_ONLY:
+        return joint_rate(task, points, joints, rates)
     length = task.parameters.characteristic_length
     if name == "manipulability":
         w = np.maximum(jac.manipulability(matrix, length), 1e-300)
         return np.asarray(-jac.manipulability_rate(matrix, rates, length) / w**2 / _count(points))
     ratio = np.maximum(jac.condition(matrix, length), 1e-300)
     return np.asarray(-condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points))
+
+
+def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
+    """The same of an objective that asks for no Jacobian."""
+    name = task.parameters.objective
+    if name == "displacement":
+        return displacement_rate(task, points, joints, rates)
+    if name == "limits-liegeois":
+        return _liegeois_rate(task, points, joints, rates)
+    if name == "limits-fournier":
+        return 0.25 * _liegeois_rate(task, points, joints, rates)
+    return _klein_rate(task, points, joints, rates)
 
 
 def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:

@@ -58,7 +58,7 @@ def _step(task: Task, at: Points, threshold: Array, phi: Array, before: Array) -
         if not good.any():
             break
         part = at.each(np.flatnonzero(good))
-        rates, _ = task.spin_rates(part, phi[good], joints[good])
+        rates, _ = task.spin_rates(part.frames.at(phi[good]), joints[good])
         away = joints[good] - before[good]
         curvature = (rates * rates) @ task.weights
         phi[good] -= np.clip(((away * rates) @ task.weights) / np.maximum(curvature, 1e-15), -0.2, 0.2)

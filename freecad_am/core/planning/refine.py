@@ -18,7 +18,7 @@ from ..geometry.ties import alike
 from ..kinematics import jacobian as jac
 from . import basis, criteria, feasible
 from .points import Points
-from .task import Task
+from .task import Task, in_pieces
 
 Array = NDArray[np.float64]
 
@@ -217,17 +217,49 @@ def _state(task: Task, points: Points, thresholds: Array, coefficients: Array, s
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
         return _partly_unreachable(task, points, thresholds, coefficients, joints, slopes)
-    rates, matrix = task.spin_rates(points, phi, joints)
-    rates = rates * phi_rate[:, None]
     powers = points.powers(coefficients.shape[1] - 1)
+    if not slopes and task.parameters.objective in criteria.JOINT_ONLY:
+        return _state_in_pieces(task, points, thresholds, phi, phi_rate, joints, powers)
+    rates, matrix = task.spin_rates(points.frames.at(phi), joints)
+    rates = rates * phi_rate[:, None]
     objective = criteria.value(task, points, joints, matrix)
-    slope = criteria.rate(task, points, joints, rates, matrix)
-    gradient = points.total((slope[:, None] * powers).T).T
-    constraints, constraint_rates = _constraints(
-        task, points, thresholds, phi, phi_rate, joints, rates, matrix, powers, slopes
+    gradient = _gradient(points, criteria.rate(task, points, joints, rates, matrix), powers)
+    value = _values(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
+    worst = points.worst(value)
+    if not slopes:
+        predicted = _predicted(task, points, joints, rates, powers, gradient)
+        return _State(objective, gradient, predicted, worst.T, np.zeros((points.beads, len(value), powers.shape[1])))
+    slope = _slopes(task, phi, phi_rate, joints, rates, matrix)
+    at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
+    rows = np.arange(len(value))[:, None]
+    constraint_rates = (slope[rows, at][:, :, None] * powers[at]).transpose(1, 0, 2)
+    return _State(objective, gradient, np.full(points.beads, np.nan), worst.T, constraint_rates)
+
+
+def _state_in_pieces(
+    task: Task, points: Points, thresholds: Array, phi: Array, phi_rate: Array, joints: Array, powers: Array
+) -> _State:
+    """The state without the derivatives of the constraints, of many beads at once. The condition is taken from below
+    where that tells that it is kept, which is at all but a few points."""
+    length = task.parameters.characteristic_length
+    rates, ratio = np.empty_like(joints), np.empty(len(points))
+    for some in in_pieces(len(points)):
+        rates[some], matrix = task.spin_rates(points.frames.of(some).at(phi[some]), joints[some])
+        bound = jac.condition_bound(matrix, length)
+        open_ = bound < thresholds[some] * (1.0 + CONDITION_RESERVE)
+        bound[open_] = jac.condition(matrix[open_], length)
+        ratio[some] = bound
+    rates *= phi_rate[:, None]
+    gradient = _gradient(points, criteria.joint_rate(task, points, joints, rates), powers)
+    worst = points.worst(_values(task, thresholds, phi, joints, ratio))
+    return _State(
+        criteria.value(task, points, joints, None), gradient, _predicted(task, points, joints, rates, powers, gradient),
+        worst.T, np.zeros((points.beads, len(worst), powers.shape[1])),
     )
-    predicted = np.full(points.beads, np.nan) if slopes else _predicted(task, points, joints, rates, powers, gradient)
-    return _State(objective, gradient, predicted, constraints, constraint_rates)
+
+
+def _gradient(points: Points, slope: Array, powers: Array) -> Array:
+    return points.total((slope[:, None] * powers).T).T
 
 
 def _partly_unreachable(
@@ -255,9 +287,8 @@ def _narrow(task: Task) -> int:
     return int(high - low < 2.0 * np.pi - 1e-9)
 
 
-def _values(task: Task, thresholds: Array, phi: Array, joints: Array, matrix: Array) -> Array:
-    """Eqs. 18 and 19 as corrected, one row per limit and one for the condition: (m + 1, T)."""
-    ratio = jac.condition(matrix, task.parameters.characteristic_length)
+def _values(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: Array) -> Array:
+    """Eqs. 18 and 19 as corrected, one row per limit and one for the condition `ratio` (T,): (m + 1, T)."""
     values = [
         0.25 * (1.0 - task.rows.offset(joints).T ** 2), (ratio - thresholds * (1.0 + CONDITION_RESERVE))[None],
     ]
@@ -283,21 +314,6 @@ def _share(task: Task, phi: Array) -> Array:
     return (phi - 0.5 * (low + high)) / (0.5 * (high - low))
 
 
-def _constraints(
-    task: Task, points: Points, thresholds: Array, phi: Array, phi_rate: Array, joints: Array, rates: Array,
-    matrix: Array, powers: Array, wanted: bool,
-) -> tuple[Array, Array]:
-    """The worst of each row and bead: (B, m + 1), and derivatives (B, m + 1, degree + 1)."""
-    value = _values(task, thresholds, phi, joints, matrix)
-    worst = points.worst(value)
-    if not wanted:
-        return worst.T, np.zeros((points.beads, len(value), powers.shape[1]))
-    slope = _slopes(task, phi, phi_rate, joints, rates, matrix)
-    at = np.stack([_where_worst(points, row, least) for row, least in zip(value, worst)])
-    rows = np.arange(len(value))[:, None]
-    return worst.T, (slope[rows, at][:, :, None] * powers[at]).transpose(1, 0, 2)
-
-
 def _at_all_points(
     task: Task, points: Points, thresholds: Array, coefficients: Array, free: Array
 ) -> tuple[Array, Array] | None:
@@ -305,9 +321,9 @@ def _at_all_points(
     joints = task.joints(points, phi)
     if np.isnan(joints).any():
         return None
-    rates, matrix = task.spin_rates(points, phi, joints)
+    rates, matrix = task.spin_rates(points.frames.at(phi), joints)
     rates = rates * phi_rate[:, None]
-    value = _values(task, thresholds, phi, joints, matrix)
+    value = _values(task, thresholds, phi, joints, jac.condition(matrix, task.parameters.characteristic_length))
     slope = _slopes(task, phi, phi_rate, joints, rates, matrix)
     shape = points.powers(coefficients.shape[1] - 1) @ free
     rate = (np.nan_to_num(slope)[:, :, None] * shape).reshape(-1, free.shape[1])

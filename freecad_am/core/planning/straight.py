@@ -43,13 +43,12 @@ def kept_straight(task: Task, path: BeadPath, chord_error: float) -> tuple[BeadP
 def deviation(task: Task, bead: Bead, joints: Array) -> Array:
     """(n - 1,) how far the nozzle's tip leaves each segment of the bead when the joints run straight, mm."""
     start, end = joints[:-1], joints[1:]
-    between = start[:, None] + (end - start)[:, None] * INSIDE[:, None]
-    flange = task.cell.machine.chain.forward(between.reshape(-1, joints.shape[1]))
-    tip, _ = task.cell.tip_in_part(flange)
-    tip = tip.reshape(len(start), len(INSIDE), 3)
-    origin, along = bead.points[:-1, None], np.diff(bead.points, axis=0)[:, None]
-    share = np.clip(((tip - origin) * along).sum(-1) / np.maximum((along * along).sum(-1), 1e-18), 0.0, 1.0)
-    distance: Array = np.linalg.norm(tip - origin - share[..., None] * along, axis=-1).max(axis=1)
+    away = task.cell.tip_at(start[:, None] + (end - start)[:, None] * INSIDE[:, None]) - bead.points[:-1, None]
+    along = np.diff(bead.points, axis=0)
+    squared = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
+    share = np.clip(np.einsum("nki,ni->nk", away, along) / squared[:, None], 0.0, 1.0)
+    away -= share[..., None] * along[:, None]
+    distance: Array = np.sqrt(np.einsum("nki,nki->nk", away, away).max(axis=1))
     return distance
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,7 +20,7 @@ from .points import TURN, Points, unwrapped
 
 Array = NDArray[np.float64]
 
-PIECE = 4096  # poses whose Jacobians are held together
+PIECE = 4096  # points whose poses and Jacobians are held together
 
 # Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
 # with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
@@ -144,14 +145,22 @@ class Task:
 
         Arms whose solutions have to be followed go on from joints `before` (T, axes), or else from point to point of beads.
         """
+        if phi.ndim == 1 and not self.arm.followed:
+            return self._raw_joints_of_all(points, phi)
         flange = points.frames.at(phi)
         if self.arm.followed and before is not None:
             return following.from_before(self.arm, flange, self.branch, before)
         if self.arm.followed:
             rows = flange.reshape(-1, *flange.shape[-3:])
             return following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
-        joints = self.inverse(flange.reshape(-1, 4, 4))
-        return joints.reshape(*phi.shape, -1)
+        return self.inverse(flange.reshape(-1, 4, 4)).reshape(*phi.shape, -1)
+
+    def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
+        """The same of one phi (T,) for all points: their poses together would take much memory."""
+        joints = np.empty((self.cell.machine.chain.axes, len(points))).T
+        for some in in_pieces(len(points)):
+            joints[some] = self.inverse(points.frames.of(some).at(phi[some]))
+        return joints
 
     def inverse(self, flange: Array, near: Array | None = None) -> Array:
         """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable.
@@ -177,10 +186,11 @@ class Task:
         moved: Array = joints + turns[..., points.bead, :]
         return moved
 
-    def jacobian(self, points: Points, phi: Array, joints: Array) -> Array:
-        """(N, 6, axes) Jacobian at the deposition point, for flattened joints (N, axes)."""
-        flange = points.frames.at(phi).reshape(-1, 4, 4)
-        return self.jacobian_at(flange, joints)
+    def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:
+        """The Jacobians (k, 6, axes) at the deposition point of pieces of the points, phi (T,) and joints (T, axes), with
+        which of them these are: together they would take much memory."""
+        for some in in_pieces(len(points)):
+            yield some, self.jacobian_at(points.frames.of(some).at(phi[some]), joints[some])
 
     def jacobian_at(self, flange: Array, joints: Array) -> Array:
         """(N, 6, axes) Jacobian at the deposition point for flange poses (N, 4, 4) and joints (N, axes)."""
@@ -190,6 +200,10 @@ class Task:
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
         """(..., T) sigma_min / sigma_max of the scaled Jacobian at the deposition point, 0 where unreachable."""
+        if phi.ndim == 1:
+            return np.concatenate([
+                self.condition_at(points.frames.of(some).at(phi[some]), joints[some]) for some in in_pieces(len(points))
+            ])
         flange = points.frames.at(phi).reshape(-1, 4, 4)
         return self.condition_at(flange, joints.reshape(-1, joints.shape[-1])).reshape(joints.shape[:-1])
 
@@ -197,8 +211,8 @@ class Task:
         """(N,) the same for flange poses (N, 4, 4) and joints (N, axes)."""
         good = np.flatnonzero(np.isfinite(joints).all(axis=1))
         value = np.zeros(len(joints))
-        for start in range(0, len(good), PIECE):
-            some = good[start : start + PIECE]
+        for piece in in_pieces(len(good)):
+            some = good[piece]
             value[some] = jac.condition(
                 self.jacobian_at(flange[some], joints[some]), self.parameters.characteristic_length
             )
@@ -214,9 +228,8 @@ class Task:
         at_zero = self.condition(points, phi, self.raw_joints(points, phi))
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
-    def spin_rates(self, points: Points, phi: Array, joints: Array) -> tuple[Array, Array]:
-        """d q / d phi (N, axes) and the Jacobian (N, 6, axes) at N = T reachable points."""
-        flange = points.frames.at(phi)
+    def spin_rates(self, flange: Array, joints: Array) -> tuple[Array, Array]:
+        """d q / d phi (N, axes) and the Jacobian (N, 6, axes) at N flange poses (N, 4, 4) that are reached."""
         matrix = self.jacobian_at(flange, joints)
         twist = np.zeros((len(joints), 6, 1))
         twist[:, 3:, 0] = self.cell.spin_axis(flange)
@@ -225,6 +238,11 @@ class Task:
         except np.linalg.LinAlgError:
             rates = (np.linalg.pinv(matrix) @ twist)[:, :, 0]
         return np.asarray(rates, dtype=np.float64), matrix
+
+
+def in_pieces(count: int) -> list[slice]:
+    """So many points in pieces that are worked on one after the other."""
+    return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
 
 
 def condition_margin(condition: Array, threshold: Array) -> Array:

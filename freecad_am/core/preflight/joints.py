@@ -45,9 +45,8 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
     if len(lost):
         place = row_place(motion, int(lost[0]))
         return Promise(what, "closed-form inverse", False, float(len(lost)), "points", 0.0, place)
-    tip, _ = cell.tip_in_part(cell.machine.chain.forward(motion.joints))
     laid = np.flatnonzero(motion.deposit)
-    away = np.linalg.norm(tip[laid] - motion.position[laid], axis=1)
+    away = np.linalg.norm(cell.tip_at(motion.joints[laid]) - motion.position[laid], axis=1)
     row = int(laid[int(away.argmax())])
     how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
     worst = float(away.max())

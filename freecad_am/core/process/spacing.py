@@ -29,6 +29,7 @@ SLIGHT = np.radians(10.0)  # a lesser turn is a corner too where it is more than
 SUDDEN = 3.0
 SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a point at which they differ by more
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
+_NEAR = 8  # segments that are tried first
 _BEYOND = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
 
 
@@ -160,13 +161,19 @@ def distance(points: Array, curve: Curve) -> Array:
         return _to_cubic(points, *_nearest_of_all(points, curve, bow), curve)
     from scipy.spatial import cKDTree  # slow to import, and the beads of most jobs are short
 
-    half = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max())
+    reach = 0.5 * float(np.linalg.norm(curve.end - curve.start, axis=1).max()) + 2.0 * float(bow.max())
     middles = cKDTree(0.5 * (curve.start + curve.end))
-    to_vertex = cKDTree(np.concatenate((curve.start, curve.end[-1:]))).query(points)[0]
-    radius: Array = (np.asarray(to_vertex) + half + 2.0 * float(bow.max())) * (1.0 + 1e-9)
+    apart, near = middles.query(points, _NEAR)
+    radius: Array = (apart[:, 0] + reach) * (1.0 + 1e-9)
     found = np.empty(len(points))
-    for some in np.array_split(np.arange(len(points)), _parts(middles, points, radius)):
-        found[some] = _to_cubic(points[some], *_nearest_chords(middles, points[some], radius[some], curve, bow), curve)
+    # where all that may be nearest are among those few, as nearly everywhere, no others need be looked for
+    few = apart[:, -1] > radius
+    which, column = np.nonzero((apart <= radius[:, None]) & few[:, None])
+    found[few] = _to_cubic(points, *_nearest_chords(points, which, near[which, column], curve, bow), curve)
+    rest = np.flatnonzero(~few)
+    for some in np.array_split(rest, _parts(middles, points[rest], radius[rest])) if len(rest) else ():
+        pairs = _within(middles, points[some], radius[some])
+        found[some] = _to_cubic(points[some], *_nearest_chords(points[some], *pairs, curve, bow), curve)
     return found
 
 
@@ -201,23 +208,29 @@ def _parts(middles: Any, points: Array, radius: Array) -> int:
     return min(len(points), 1 + int(per_point * len(points) / _CHUNK))
 
 
-def _nearest_chords(
-    middles: Any, points: Array, radius: Array, curve: Curve, bow: Array
-) -> tuple[Index, Index, Mask]:
-    """The same as `_nearest_of_all`, of the segments within the radius (n,) about each point."""
+def _within(middles: Any, points: Array, radius: Array) -> tuple[Index, Index]:
+    """Pairs (k,) of a point, rising, and a segment whose middle is within the radius (n,) about it."""
     found = middles.query_ball_point(points, radius, return_sorted=False)
     count = np.fromiter(map(len, found), dtype=np.intp, count=len(found))
     segment = np.fromiter(chain.from_iterable(found), dtype=np.intp, count=int(count.sum()))
-    which = np.repeat(np.arange(len(points)), count)
+    return np.repeat(np.arange(len(points)), count), segment
+
+
+def _nearest_chords(
+    points: Array, which: Index, segment: Index, curve: Curve, bow: Array
+) -> tuple[Index, Index, Mask]:
+    """The same as `_nearest_of_all`, of pairs (k,) of a point, rising, and a segment."""
     along = curve.end[segment] - curve.start[segment]
     offset = points[which] - curve.start[segment]
     offset -= _share(offset, along)[:, None] * along
     apart = np.linalg.norm(offset, axis=1)
-    hits = np.flatnonzero(apart == np.minimum.reduceat(apart, np.cumsum(count) - count)[which])
-    first = hits[np.unique(which[hits], return_index=True)[1]]
+    begins = np.flatnonzero(np.diff(which, prepend=-1))
+    of = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(which))))
+    hits = np.flatnonzero(apart == np.minimum.reduceat(apart, begins)[of])
+    first = hits[np.unique(of[hits], return_index=True)[1]]
     own = np.zeros(len(which), dtype=bool)
     own[first] = True
-    maybe = own | (apart - bow[segment] <= (apart[first] + bow[segment[first]])[which])
+    maybe = own | (apart - bow[segment] <= (apart[first] + bow[segment[first]])[of])
     return which[maybe], segment[maybe], own[maybe]
 
 

@@ -42,6 +42,28 @@ def test_the_tip_stands_on_the_point_along_the_tool_axis_for_every_rotation(setu
 
 
 @pytest.mark.parametrize("setup", SETUPS)
+def test_the_tip_alone_is_where_the_closed_form_takes_it(setup):
+    rng = np.random.default_rng(6)
+    cell = random_cell(rng, setup)
+    position, tool, phi = rng.uniform(-300, 300, (3000, 3)), directions(rng, 3000), rng.uniform(-9, 9, 3000)
+    joints = cell.machine.arm.inverse(cell.flange_poses(position, tool, phi))
+    reached = np.isfinite(joints).all(axis=2)
+    assert np.count_nonzero(reached) > 1000
+    points = np.broadcast_to(position, (len(joints), *position.shape))[reached]
+    assert np.abs(cell.tip_at(joints[reached]) - points).max() < 1e-7
+    some = joints[reached][:6]
+    assert np.array_equal(cell.tip_at(some.reshape(2, 3, 6)).reshape(6, 3), cell.tip_at(some))
+
+
+@pytest.mark.parametrize("machine", ["table-xyzac", "head-xyzab"])
+def test_the_tip_alone_of_machines_with_sliding_axes(machine):
+    rng = np.random.default_rng(7)
+    cell = cells.resolve(CellParameters(machine=machine, setup="rotary-table"), frames.bryant((10, 20, 30, 0.1, 0.2, 0.3)))
+    axes = rng.uniform(-3.0, 3.0, (50, 5)) * np.where(cell.machine.chain.sliding, 100.0, 1.0)
+    assert np.abs(cell.tip_at(axes) - cell.tip_in_part(cell.machine.chain.forward(axes))[0]).max() < 1e-10
+
+
+@pytest.mark.parametrize("setup", SETUPS)
 def test_the_spin_turns_the_flange_about_the_deposition_point(setup):
     rng = np.random.default_rng(2)
     cell = random_cell(rng, setup)

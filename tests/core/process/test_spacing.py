@@ -101,6 +101,22 @@ def test_nearest_of_all_segments_whatever_their_lengths():
         np.testing.assert_allclose(found, brute, atol=1e-9)
 
 
+def test_nearest_of_many_segments_whatever_their_lengths():
+    """The same of so many that not all pairs are tried: short segments in crowds, long ones among them that are nearest
+    although their middles are far away."""
+    rng = np.random.default_rng(12)
+    steps = rng.normal(size=(900, 3)) * rng.choice([0.05, 0.3, 25.0], size=(900, 1), p=[0.6, 0.35, 0.05])
+    for before, step in zip(steps, steps[1:], strict=False):
+        step *= -1.0 if before @ step > 0.0 else 1.0
+    corners = np.cumsum(steps, axis=0)
+    points = rng.normal(size=(600, 3)) * rng.choice([0.2, 15.0], size=(600, 1)) + corners[rng.integers(0, 900, 600)]
+    found = spacing.distance(points, spacing.curve_of(Layer((bead(corners, False),))))
+    start, along = corners[:-1], np.diff(corners, axis=0)
+    share = np.clip(((points[:, None] - start) * along).sum(-1) / (along * along).sum(-1), 0.0, 1.0)
+    brute = np.linalg.norm(points[:, None] - start - share[..., None] * along, axis=-1).min(axis=1)
+    np.testing.assert_allclose(found, brute, atol=1e-9)
+
+
 def test_two_beads_in_a_layer_and_one_layer_alone():
     inner, outer = circle(10.0, 0.0, 0.001), circle(20.0, 0.0, 0.001)
     below = Layer((inner, outer))
