@@ -104,7 +104,8 @@ def _verify_poses(
     twisted = np.linalg.norm(asked[:, :3, :3] - flange[:, :3, :3], axis=(1, 2)) > np.sqrt(2.0) * told.tool_bound
     issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
     strayed = 0.0
-    if read.tool is not None and len(planned.ends):  # a tool that stays the same goes straight from point to point
+    # a tool that stays the same goes straight from point to point, and so does one that stands seen from a part that is held
+    if read.tool is not None and not read.held and len(planned.ends):
         strayed, off = between.tools_between(cell, planned, asked, tools, told, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
     text = text_path.text_joints(cell, planned, read.joints, text_path.digits(cell, read), told, asked)

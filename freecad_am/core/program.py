@@ -255,11 +255,13 @@ class ReadMoves:
     shorter_way: (axes,) rotary axes of machine tools that the text sends the shorter way, so that it tells no turns.
     Where the text holds its own frames: frame (4, 4), in the maker's base frame, is what `position` is seen in;
     tool (n, 4, 4) on the flange is what is taken there, with the digits of the positions. lever: (n,) how far out a tool
-    stands on another one that carries it. All mm.
+    stands on another one that carries it. All mm. held: linear moves run straight as what the robot holds sees them, where
+    else they do as seen from the frame.
     wire: (n,) value of the analogue output that the text sets, during each move, NaN before the first; None in texts that
     set none. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
     linear: (n,) bool, moves whose tip runs straight, where joints do not. stops: (n,) bool, moves at whose end the machine
-    stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded where it does not, if the text says so.
+    stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded where it does not, if the text says so;
+    rounding is NaN at stops that name none.
     blend_radius: (n,) mm about the end of a move in which it may be left for the next one, 0 where it stops, counted on the
     way of the tool in `tool`. near: (n, axes) rad, joint values that those of a position are to be next to, NaN where the
     text gives none, with near_digits.
@@ -286,6 +288,7 @@ class ReadMoves:
     frame: Array | None = None
     tool: Array | None = None
     lever: Array | None = None
+    held: bool = False
     direction: Array | None = None
     direction_digits: float = 0.0
     linear_digits: float = 0.0

@@ -21,6 +21,7 @@ from ..core.simulation.arm import ArmTouches, arm_touches, laid
 from ..core.simulation.link_rods import Mesh
 from ..core.simulation.margins import on_deposit
 from ..core.toolpath import Toolpath
+from ..posts import catalogue
 from .joint_path import Planned
 
 Array = NDArray[np.float64]
@@ -45,7 +46,8 @@ def as_run(
     condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
     if settings is None:
         return AsRun(motion, condition, threshold, issues)
-    if settings.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
+    straight = settings.motion == "cartesian" and settings.post not in catalogue.STRAIGHT_IN_PART
+    if straight and cell.setup == PART_ON_ROBOT:
         origin = moving_tool.origins(motion, cell, chord_error)
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, chord_error, beads)

@@ -126,7 +126,8 @@ def posted(job: Job) -> Posted:
     refuse(cell, job.process, parameters)
     progress.report(0.1, "building moves and events")
     motion = planned.motion
-    if parameters.motion == "cartesian" and cell.setup == PART_ON_ROBOT:
+    straight = parameters.motion == "cartesian" and parameters.post not in catalogue.STRAIGHT_IN_PART
+    if straight and cell.setup == PART_ON_ROBOT:
         beads = [path.bead for path in planned.joint_path.beads]
         motion = moving_tool.kept_straight(motion, cell, toolpath.chord_error, beads)
     waits = [layer.wait for layer in toolpath.layers]

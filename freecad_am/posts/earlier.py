@@ -13,8 +13,10 @@ import re
 # of every main program: remarks that it begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
 # endings of main programs, and those of their parts
-PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script"}
+PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".mod": ".mod"}
 APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
+# how a program of a kind says its own name: a copy under another name is somebody's
+_TITLES = {".ls": r"/PROG\s+{}\s", ".mod": r"MODULE\s+{}\s"}
 _HEAD = 4096  # characters of a program that hold the remarks it begins with
 _LARGEST = 1 << 20  # characters of a main program that are looked through for its parts
 
@@ -43,8 +45,9 @@ def programs(folder: str) -> dict[str, set[str]]:
 
 def _is_ours(text: str, stem: str, ending: str) -> bool:
     head = text[:_HEAD]
-    if ending.lower() == ".ls" and not re.match(rf"/PROG\s+{re.escape(stem)}\s", head, re.IGNORECASE):
-        return False  # somebody's copy under another name
+    title = _TITLES.get(ending.lower())
+    if title and not re.match(title.format(re.escape(stem)), head, re.IGNORECASE):
+        return False
     return all(remark in head for remark in OUR_REMARKS)
 
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ..core.program import RAPID, Block, DepositOff, DepositOn, LayerStart, Moves, Program
+from ..core.program import RAPID, RETRACT, Block, DepositOff, DepositOn, LayerStart, Moves, Program
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,17 @@ def packed(
                 room = (most_points, most_lines)
             parts[-1].extend(chunk)
             room = (room[0] - points, room[1] - lines)
+    return parts
+
+
+def withdrawn(parts: list[list[Piece]]) -> list[list[Piece]]:
+    """The parts with the first move of a retract in the part of the bead it leads away from: what is loaded after it is
+    loaded away from the deposit."""
+    for before, part in zip(parts, parts[1:]):
+        first = part[0]
+        if isinstance(first, Run) and first.moves.role[first.start] == RETRACT:
+            before.append(dataclasses.replace(first, stop=first.start + 1))
+            part[:1] = [dataclasses.replace(first, start=first.start + 1)] if len(first) > 1 else []
     return parts
 
 

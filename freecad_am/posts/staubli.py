@@ -8,7 +8,6 @@ the controller and what was confirmed where: docs/posts/staubli.md.
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Iterator, Sequence
 
@@ -19,7 +18,6 @@ from ..core.issues import InputError
 from ..core.program import (
     DEPOSIT,
     JOINT_MOVE,
-    RETRACT,
     Block,
     Call,
     DepositOff,
@@ -34,7 +32,7 @@ from . import staubli_numbers as numbers
 from . import staubli_text as text
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed, size
+from .parts import Piece, Run, grouped, packed, size, withdrawn
 from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
 from .staubli_read import read
 
@@ -89,7 +87,7 @@ def write(program: Program) -> dict[str, bytes]:
         (pieces,) = packed(groups, program.max_points, _NO_END, _refuse_bead)
         return _application(program, name, name, remarks, pieces)
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = _withdrawn(packed(groups, program.max_points - 1, _NO_END, _refuse_bead))
+    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, _refuse_bead))
     names = NAMING.parts(name, len(parts))
     load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
     files = _files(program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"})
@@ -153,16 +151,6 @@ def _refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Itera
         f"{numbers.place(moves)} has {points} points with its approach, and loading another part within a bead would stop"
         f" the robot while it deposits; use at least {points + 1}",
     )
-
-
-def _withdrawn(parts: list[list[Piece]]) -> list[list[Piece]]:
-    """The parts with the first move of a retract in the part of the bead it leads away from."""
-    for before, part in zip(parts, parts[1:]):
-        first = part[0]
-        if isinstance(first, Run) and first.moves.role[first.start] == RETRACT:
-            before.append(dataclasses.replace(first, stop=first.start + 1))
-            part[:1] = [dataclasses.replace(first, start=first.start + 1)] if len(first) > 1 else []
-    return parts
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

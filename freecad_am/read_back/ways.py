@@ -53,8 +53,11 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: Rea
     # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
     table = program.setup == ROTARY_TABLE
     rounding = np.full(len(read.stops), program.nc.tolerance) if table else _share_of_shortest(planned, program.blend)
-    off = ~(np.abs(read.rounding - np.where(planned.deposit, rounding, 0.0)) <= (1e-5 if table else THOUSANDTH))
-    return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (read.rounding > 0.0) | off)
+    told = np.where(np.isnan(read.rounding), 0.0, read.rounding)
+    # a stop that names no rounding says all there is to say where a stop was planned
+    rounding = np.where(planned.deposit & ~(planned.stops & read.stops & np.isnan(read.rounding)), rounding, 0.0)
+    off = ~(np.abs(told - rounding) <= (1e-5 if table else THOUSANDTH))
+    return np.asarray((planned.stops & ~read.stops) | ~planned.stops & read.stops & (told > 0.0) | off)
 
 
 def _blended_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:

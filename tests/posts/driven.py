@@ -116,7 +116,8 @@ class Drive:
         if not self.read.linear[row]:
             joints = self.joints[row - 1] + share * (self.joints[row] - self.joints[row - 1])
             return self.cell.tip_in_part(self.arm.forward(joints))
-        if self.poses is not None and self.read.tool is not None and self.cell.setup == "part-on-robot":
+        moving = self.read.tool is not None and self.cell.setup == "part-on-robot" and not self.read.held
+        if self.poses is not None and moving:
             tool = self.read.tool[row]
             start, end = self.arm.forward(self.joints[row - 1][None])[0] @ tool, self.poses[row] @ tool
             moved = np.array([_slid(start, end, s) for s in share[:, 0]]) @ np.linalg.inv(tool)

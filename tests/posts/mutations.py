@@ -405,7 +405,81 @@ UR: dict[str, tuple[str, Change]] = {
     "no end": (r"^end\n", DROP),
 }
 
-KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR}
+# ABB
+_MOVE_ABB = r"^    Move(?:AbsJ|L) [^\n]*\n"
+_SETDO, _WAITTIME, _WAITDI, _CLEAN_ABB = (
+    rf"^    {word}\n" for word in (r"SetDO do\d+,[01];\r", r"WaitTime [.\d]+;\r", r"WaitDI di\d+,1;\r", r"clean;\r"))
+_AXIS_ABB = rf"^    MoveAbsJ \[\[(?:{NUMBER},){{0,5}}?({NUMBER})"
+_PLACE_ABB = rf"^    MoveL \[\[(?:{NUMBER},){{0,2}}?({NUMBER})"
+_TURN_ABB = rf"^    MoveL \[\[[^]]*\],\[(?:{NUMBER},){{0,3}}?({NUMBER})"
+_IN_USE = r"(?=[\s\S]*MoveL )"  # frames: of joint moves they do not tell where these lead
+_PART_ABB = r"    Load [^\n]*\n    %[^\n]*\n    UnLoad [^\n]*\n"
+ABB: dict[str, tuple[str, Change]] = {
+    "a point moved": (_AXIS_ABB, moved(0.05)),
+    "a position moved": (_PLACE_ABB, moved(0.05)),
+    "an orientation turned": (r"^    MoveL \[\[[^]]*\],\[(\S+?),(\S+?),", r"    MoveL [[0.000,0.000,0.000],[\2,\1,"),
+    "a number of an orientation": (_TURN_ABB, moved(0.001)),
+    "a digit changed": (_AXIS_ABB, digit),
+    "a sign changed": (_AXIS_ABB, negated),
+    "a turn more": (_AXIS_ABB, moved(360.0)),
+    "two points exchanged": (rf"({_MOVE_ABB})({_MOVE_ABB})", SWAP),
+    "a blend added": (r"(?<=,)fine(?=,)", "z_am1"),
+    "a stop added": (r"(?<=,)z_am\d+(?=,t_am)", "fine"),
+    "a blend changed": (r"(z_am\d+:=\[FALSE,)[.\d]+,[.\d]+,[.\d]+,([.\d]+),[.\d]+,", r"\g<1>1.000,1.000,1.000,\2,1.000,"),
+    "a blend of another kind": (r"(z_am\d+:=\[FALSE,[.\d]+,)[.\d]+", r"\g<1>25.000"),
+    "a blend that stops": (r"(z_am\d+:=\[)FALSE", r"\1TRUE"),
+    "another zone": (r"(?<=,)z_am(\d+)(?=,t_am)", lambda match, rng: f"z{match[1]}"),
+    "a move's kind changed": (r"^    Move(AbsJ|L) ", other("AbsJ", "L")),
+    "external axes": (r"\[9E9,9E9", "[0,9E9"),
+    "a configuration": (r"\[0,0,0,0\]", "[-1,0,0,1]"),
+    "an offset of axes": (r"\\NoEOffs", ""),
+    "configurations supervised": (rf"^    ConfL\\Off;\r\n{_IN_USE}", DROP),
+    "configurations supervised by a word": (rf"ConfL\\Off{_IN_USE}", r"ConfL\\On"),
+    "an output dropped": (_SETDO, DROP),
+    "an output switched the other way": (r"SetDO do1,([01])", other("0", "1")),
+    "another output": (r"SetDO do(1)", one_more),
+    "an output doubled": (_SETDO, TWICE),
+    "a move and an output swapped": (rf"({_SETDO})({_MOVE_ABB})", SWAP),
+    "an output and a wait swapped": (rf"({_SETDO})({_WAITTIME})", SWAP),
+    "a move dropped": (_MOVE_ABB, DROP),
+    "a move doubled": (_MOVE_ABB, TWICE),
+    "an approach dropped": (rf"{_MOVE_ABB}(?={_SETDO})", DROP),
+    "a retract dropped": (rf"(^    SetDO do1,0;\r\n){_MOVE_ABB}", r"\1"),
+    "a speed changed": (r"\\V:=([.\d]+)", scaled(1.02)),
+    "a time changed": (r"\\T:=([.\d]+)", scaled(1.02)),
+    "a time for a speed": (r"\\(V):=", other("T")),
+    "another speed named": (r"(v_am)\\", other("v100")),
+    "a speed that turns slower": (r"(?<=v_am:=\[1000,)500", "5"),
+    "the first move faster": (r"\\T:=(10\.00000)", other("1.00000")),
+    "a wait dropped": (_WAITTIME, DROP),
+    "a wait changed": (r"WaitTime ([.\d]+)", moved(0.2)),
+    "an input dropped": (_WAITDI, DROP),
+    "another input": (r"WaitDI di(\d+)", one_more),
+    "an input the other way": (r"(?<=WaitDI di3,)1", "0"),
+    "a call dropped": (_CLEAN_ABB, DROP),
+    "another call": (r"^    clean;", "    clean2;"),
+    "a call doubled": (_CLEAN_ABB, TWICE),
+    "a wait and a call swapped": (rf"({_WAITTIME})({_WAITDI})({_CLEAN_ABB})", r"\3\2\1"),
+    "another tool": (rf"tooldata t_am:=\[\w+,\[\[({NUMBER}){_IN_USE}", moved(0.5)),
+    "another work object": (rf"wobjdata w_am:=\[\w+,TRUE,\"\",\[\[({NUMBER}){_IN_USE}", moved(0.5)),
+    "a work object moved": (r"\[\[0,0,0\],\[1,0,0,0\]\](?=\];\r\n[\s\S]*MoveL )", "[[0,0,1],[1,0,0,0]]"),
+    "a tool turned": (rf"(tooldata t_am:=\[\w+,\[\[[^]]*\],\[){NUMBER},{NUMBER}{_IN_USE}", r"\g<1>0.0000000,0.0000000"),
+    "a tool that is held otherwise": (r"tooldata t_am:=\[(TRUE|FALSE)", other("TRUE", "FALSE")),
+    "a work object that is held otherwise": (r"wobjdata w_am:=\[(TRUE|FALSE)", other("TRUE", "FALSE")),
+    "a work object that a unit moves": (r"(?<=,)TRUE,\"\"", 'FALSE,"STN1"'),
+    "another tool named": (r",(t_am)\\WObj", other("tool0")),
+    "another work object named": (r"WObj:=(w_am);", other("wobj0")),
+    "no work object": (r"\\WObj:=w_am", ""),
+    "another layer": (r"! layer (\d+)", one_more),
+    "a part dropped": (rf"^{_PART_ABB}", DROP),
+    "a part doubled": (rf"^{_PART_ABB}", TWICE),
+    "parts in another order": (rf"^({_PART_ABB})({_PART_ABB})", SWAP),
+    "a part that stays": (r"^    UnLoad [^\n]*\n", DROP),
+    "a part that is not run": (r"^    %[^\n]*\n", DROP),
+    "another routine": (r"PROC (main|job\d+_p)", other("job_p")),
+}
+
+KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR, "abb": ABB}
 
 # the least change of a number, in steps of its last digit, that is always refused (docs/decisions/0005-read-back.md). What
 # is written is off by half a step itself, and as much is allowed: of one number a step is refused, of three coordinates of
@@ -424,6 +498,11 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
         "frame": (r" (?:x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\"(?=[^\n]*world)", 6),
         "speed": (r"tmax=\"((?!99999)[.\d]+)\"", 1), "share": (r"vel=\"(\d+\.\d+)\"", 50),
         "blend": (r"leave=\"((?!0\.000)[.\d]+)\"", 1), "wait": (r"delay\(([.\d]+)\)", 1),
+    },
+    "abb": {
+        "joint": (_AXIS_ABB, 1), "position": (_PLACE_ABB, 4), "orientation": (_TURN_ABB, 16), "time": (r"\\T:=([.\d]+)", 1),
+        "frame": (rf"(?:data t_am:=\[\w+|w_am:=\[\w+,TRUE,\"\"),\[\[({NUMBER}){_IN_USE}", 6), "speed": (r"\\V:=([.\d]+)", 1),
+        "wait": (r"WaitTime ([.\d]+)", 1), "blend": (r"z_am\d+:=\[FALSE,([.\d]+)", 1),
     },
     "siemens": {
         "rotary axis": (r" [ABC]=?(?:DC\()?(-?\d+\.\d+)", 1), "position": (r" [XYZ](-?\d+\.\d+)", 2),

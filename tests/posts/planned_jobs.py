@@ -63,6 +63,14 @@ SETUPS = {
         machine="ur-ur10e", setup="tool-on-robot", mount="part", platform_diameter=100.0,
         deposition_point=(700.0, 0.0, -100.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
     ), FLAT, 50.0),
+    "abb tool-on-robot": Setup(CellParameters(
+        machine="abb-irb1600-6-12", setup="tool-on-robot", mount="part", platform_diameter=100.0,
+        deposition_point=(800.0, 0.0, 100.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
+    "abb part-on-robot": Setup(CellParameters(
+        machine="abb-irb1600-6-12", mount="part", platform_diameter=60.0,
+        deposition_point=(700.0, 0.0, 600.0, np.pi, 0.0, 0.0),
+    ), FLAT, 50.0),
     "table": Setup(CellParameters(
         machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
     ), STEEP, 90.0),
@@ -79,6 +87,8 @@ WAYS = (
       for setup in ("part-on-robot", "tool-on-robot")),
     ("ur", "joint", "time", "ur part-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),
     ("ur", "cartesian", "time", "ur tool-on-robot"),
+    *(("abb", motion, "time", f"abb {setup}") for motion in ("joint", "cartesian")
+      for setup in ("part-on-robot", "tool-on-robot")),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),

@@ -21,7 +21,8 @@ from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, WAYS, WIDTH, w
 DEEP, APART = 0.3, 0.15
 CARTESIAN = ("fanuc", "cartesian", "time", "fanuc tool-on-robot")
 # one of each post
-STACKED = (WAYS[1], WAYS[4], ("siemens", "joint", "time", "table"), ("linuxcnc", "cartesian", "time", "table"))
+STACKED = (WAYS[1], WAYS[4], ("siemens", "joint", "time", "table"), ("linuxcnc", "cartesian", "time", "table"),
+           ("abb", "cartesian", "time", "abb part-on-robot"))
 
 
 def bodies_of(drive, laying):

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""ABB: RAPID modules of joint moves by time, or of linear moves with the speed held at the tip.
+
+With the part on the robot linear moves have a stationary tool, the nozzle, and a work object that the robot holds: points
+are where the nozzle is on the part. Rapids are joint moves in either, and stop at every point. What is written, what must
+be set on the controller and what was confirmed where: docs/posts/abb.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ..core.issues import InputError
+from ..core.program import (
+    DEPOSIT,
+    LINEAR_MOVE,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Program,
+    Wait,
+    WaitBelow,
+    WaitInput,
+)
+from . import abb_numbers as numbers
+from . import abb_text as text
+from .abb_read import read
+from .names import Naming
+from .on_controller import on_controller
+from .parts import Piece, Run, grouped, packed, size, withdrawn
+from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+
+__all__ = ["read", "write"]
+
+LAST_ANALOGUE = 4096
+# why the speed of the wire cannot follow that of the torch
+NO_WIRE = "an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried"
+ON_CONTROLLER = on_controller(
+    "The controller's world is the robot's base",
+    "Signals do1, di1 and so on have these names",
+    "The load of t_am is set, and the speed override is 100 %",
+    "Configuration supervision may be off (ConfL), and joint values mean what the machine file says",
+    "A stop of the program switches the deposit off",
+)
+AXES = 6
+SETUPS = ("part-on-robot", "tool-on-robot")
+FOLDER = "HOME:/"  # where parts are loaded from
+
+_RESERVED = frozenset(
+    ("ALIAS", "AND", "BACKWARD", "CASE", "CONNECT", "CONST", "DEFAULT", "DIV", "DO", "ELSE", "ELSEIF", "ENDFOR", "ENDFUNC")
+    + ("ENDIF", "ENDMODULE", "ENDPROC", "ENDRECORD", "ENDTEST", "ENDTRAP", "ENDWHILE", "ERROR", "EXIT", "FALSE", "FOR")
+    + ("FROM", "FUNC", "GOTO", "IF", "INOUT", "LOCAL", "MOD", "MODULE", "NOSTEPIN", "NOT", "NOVIEW", "OR", "PERS", "PROC")
+    + ("RAISE", "READONLY", "RECORD", "RETRY", "RETURN", "STEP", "SYSMODULE", "TASK", "TEST", "THEN", "TO", "TRAP", "TRUE")
+    + ("TRYNEXT", "UNDO", "VAR", "VIEWONLY", "WHILE", "WITH", "XOR", "USER", "BASE", text.MAIN.upper())
+    + tuple(name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED))
+)
+# 16 characters on older controllers, of which the routine of a part takes two more than its name
+NAMING = Naming(
+    str, "[A-Za-z]", "a letter", longest=14, spare=4, prefix="am_", reserved=_RESERVED, what="a module's name"
+)
+_NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
+_CALL = "process.between_layers.call"
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The modules of a program, file name -> content; the same bytes for the same program.
+
+    One file NAME.mod where its points fit, else NAME.mod loads NAME01.mod, NAME02.mod and so on one after the other, each
+    with whole beads. The duration of the very first move is as the program tells it.
+
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
+    NO_POSITIONS, BEAD_TOO_LONG, ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
+    words = numbers.Words(program, text.SPEED, text.ZONE)
+    groups = list(grouped(program, words, lambda block: _instructions(program, block)))
+    if size([piece for group in groups for piece in group])[0] <= program.max_points:
+        (pieces,) = packed(groups, program.max_points, _NO_END, _refuse_bead)
+        _refuse_calls_of_own(program, {name})
+        return {f"{name}.mod": _module(program, words, name, text.MAIN, remarks, pieces)}
+    # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
+    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, _refuse_bead))
+    names = NAMING.parts(name, len(parts))
+    _refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)})
+    files = {}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        head = text.remark(f"part {number} of {len(parts)}")
+        files[f"{part}.mod"] = _module(program, words, part, text.routine_of(part), head, pieces)
+    total = sum(map(len, files.values()))
+    remarks += text.remark(f"{len(parts)} parts of {total} bytes in all, loaded from {FOLDER} one after the other")
+    load = [line for part in names for line in text.load(FOLDER, part)]
+    return {f"{name}.mod": text.module(name, text.MAIN, remarks, (), load), **files}
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(motion: str, setup: str) -> None:
+    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
+    if setup not in SETUPS:
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post abb cannot write {setup} ({motion} motion)")
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_incomplete(program, "abb", AXES)
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, LAST_ANALOGUE)
+    if any(program.endless):
+        axis = program.endless.index(True) + 1
+        raise InputError(
+            "ENDLESS_AXIS", "cell.limits",
+            f"axis {axis} has no limits, but joint values of RAPID count every turn up to a limit; use limits that have one"
+            f" for axis {axis}",
+        )
+    straight = [run for run in program.moves if run.interpolation == LINEAR_MOVE]
+    if program.motion == "cartesian" and (
+        program.station is None or any(run.position is None or run.rotation is None for run in straight)
+    ):
+        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+    for block in program.blocks:
+        if isinstance(block, Call):
+            program_name(block.program, _CALL)
+
+
+def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
+    own = {name.upper() for name in names}
+    for block in program.blocks:
+        if isinstance(block, Call) and block.program.upper() in own:
+            raise InputError(
+                "PROGRAM_NAME", _CALL,
+                f"{block.program!r} is a program of this very job; call another one, or rename the job",
+            )
+
+
+def _refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+    moves = next(piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT)
+    points = size(group)[0]
+    raise InputError(
+        "BEAD_TOO_LONG", "program.max_points",
+        f"{numbers.place(moves)} has {points} points with its approach, and loading another part within a bead would stop"
+        f" the robot while it deposits; use at least {points + 1}",
+    )
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    if program.setup == "part-on-robot":
+        yield f"{text.TOOL} is the nozzle, which stands; {text.WORK_OBJECT} is what the robot holds"
+    yield f"set the load of {text.TOOL}: mass and centre of gravity of what the robot carries"
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    output = f"    SetDO do{program.deposit_output},"
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else [f"{output}1;", *text.wait(block.lead)]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [*text.wait(block.lead), f"{output}0;"]
+    if isinstance(block, LayerStart):
+        return [f"    ! layer {block.layer}"]
+    if isinstance(block, Wait):
+        return text.wait(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"    WaitDI di{block.number},1;"]
+    if isinstance(block, WaitBelow):
+        return [f"    WaitAI ai{block.number},\\LT,{block.below:.6f};"]
+    if isinstance(block, Call):
+        return [f"    {block.program};"]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _module(
+    program: Program, words: numbers.Words, name: str, routine: str, remarks: list[str], pieces: Sequence[Piece]
+) -> bytes:
+    held = program.setup == "part-on-robot"
+    station, carried = numbers.pose(program.station), numbers.pose(program.carried)
+    lines = ["    ConfL\\Off;", "    SingArea\\Off;"]
+    used: set[str] = set()
+    for piece in pieces:
+        if isinstance(piece, Run):
+            lines += _motion(piece)
+            used.update(word.rpartition(",")[2] for word in piece.words[piece.start : piece.stop])
+        else:
+            lines += piece
+    zones = [(zone, size_mm) for size_mm, zone in words.zones.items() if zone in used]
+    tool, work_object = (station, carried) if held else (carried, station)
+    return text.module(name, routine, remarks, text.data(tool, work_object, held, zones), lines)
+
+
+def _motion(run: Run) -> list[str]:
+    """Lines through all points of a run."""
+    moves, rows = run.moves, slice(run.start, run.stop)
+    if moves.interpolation != LINEAR_MOVE:
+        return text.joint_moves(numbers.degrees(moves.joints[rows]), run.words[rows])
+    assert moves.position is not None and moves.rotation is not None
+    return text.linear_moves(
+        numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]), run.words[rows]
+    )

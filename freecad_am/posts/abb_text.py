@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The text of a RAPID module: head, data, routine, and what stands in its lines. Lines end in CR LF."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .abb_numbers import ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS, Pose
+from .names import plain
+
+Array = NDArray[np.float64]
+
+END_OF_LINE = "\r\n"
+WIDTH = 80  # of remarks
+
+# what the module of a program and those of its parts call their data; each its own (LOCAL)
+TOOL, WORK_OBJECT, SPEED, ZONE = "t_am", "w_am", "v_am", "z_am"
+MAIN = "main"
+# no axes beside the robot's
+_NO_AXES = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+# mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; axes beside the robot's: those
+# of RAPID's own v1000
+_SPEED = "[1000,500,5000,1000]"
+# kg, mm: the load that RAPID's own tool0 has
+_LOAD = "[0.001,[0,0,0.001],[1,0,0,0],0,0,0]"
+_JOINTS = f"    MoveAbsJ [[{','.join([f'%.{ANGLE_DECIMALS}f'] * 6)}],{_NO_AXES}]\\NoEOffs,%s,{TOOL}\\WObj:={WORK_OBJECT};"
+_POSE = f"[{','.join([f'%.{LENGTH_DECIMALS}f'] * 3)}],[{','.join([f'%.{TURN_DECIMALS}f'] * 4)}]"
+# ConfL is off: the controller takes the configuration nearest to where the arm is, and these are not looked at
+_POSITION = f"    MoveL [{_POSE},[0,0,0,0],{_NO_AXES}],%s,{TOOL}\\WObj:={WORK_OBJECT};"
+
+
+def module(name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]) -> bytes:
+    """One file: a module with one routine. remarks: what it is; data, lines: as they stand, the lines indented."""
+    text = [
+        f"MODULE {name}", *(f"  {line}" for line in remarks), *(f"  {line}" for line in data),
+        f"  PROC {routine}()", *lines, "  ENDPROC", "ENDMODULE",
+    ]
+    return (END_OF_LINE.join(text) + END_OF_LINE).encode("ascii")
+
+
+def data(tool: Pose, work_object: Pose, held: bool, zones: Sequence[tuple[str, float]]) -> list[str]:
+    """Declarations of tool, work object, speed and zones. held: the robot carries the work object, and the tool stands."""
+    tool_held, object_held = ("FALSE", "TRUE") if held else ("TRUE", "FALSE")
+    at, seen = (_POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object))
+    return [
+        f"LOCAL PERS tooldata {TOOL}:=[{tool_held},[{at}],{_LOAD}];",
+        f'LOCAL PERS wobjdata {WORK_OBJECT}:=[{object_held},TRUE,"",[{seen}],[[0,0,0],[1,0,0,0]]];',
+        f"LOCAL CONST speeddata {SPEED}:={_SPEED};",
+        *(f"LOCAL CONST zonedata {zone}:={_zone(size)};" for zone, size in zones),
+    ]
+
+
+def _zone(size: float) -> str:
+    """A zone of so many mm, in the proportions of RAPID's own z1: as large for orientation, 0.1 deg per mm."""
+    mm, degrees = f"{size:.3f}", f"{0.1 * size:.4f}"
+    return f"[FALSE,{mm},{mm},{mm},{degrees},{mm},{degrees}]"
+
+
+def joint_moves(degrees: Array, words: Sequence[str]) -> list[str]:
+    """Moves straight in the joints to values (n, 6), rounded already. words: speed and zone of each."""
+    return [_JOINTS % (*row, word) for row, word in zip(degrees.tolist(), words, strict=True)]
+
+
+def linear_moves(position: Array, quaternion: Array, words: Sequence[str]) -> list[str]:
+    """Moves straight in space to positions (n, 3) and quaternions (n, 4), rounded already."""
+    values = np.hstack((position, quaternion)).tolist()
+    return [_POSITION % (*row, word) for row, word in zip(values, words, strict=True)]
+
+
+def remark(text: str) -> list[str]:
+    """A comment on as many lines as it needs, in plain characters."""
+    return [f"! {line}" for line in textwrap.wrap(plain(text), WIDTH)]
+
+
+def wait(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.001 s; nothing for no time."""
+    return [f"    WaitTime {max(seconds, 0.001):.3f};"] if seconds > 0.0 else []
+
+
+def load(folder: str, part: str) -> list[str]:
+    """Loading the module of a part, running it and making room for the next one."""
+    path = f'"{folder}{part}.mod"'
+    return [f"    Load \\Dynamic,{path};", f'    %"{routine_of(part)}"%;', f"    UnLoad {path};"]
+
+
+def routine_of(part: str) -> str:
+    """The routine of a part: another name for each, for routines of all modules are known together."""
+    return f"{part}_p"
