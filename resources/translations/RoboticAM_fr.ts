@@ -1172,6 +1172,11 @@
         <translation>Une région plus étroite qu&apos;un cordon reçoit un seul cordon, ou le travail est refusé.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>A stop of the program switches the deposit off</source>
+        <translation>Un arrêt du programme coupe le dépôt</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
         <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
@@ -1700,6 +1705,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>Condition of the Jacobian (0 is singular)</source>
         <translation>Condition du jacobien (0 est singulier)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>Configuration supervision may be off (ConfL), and joint values mean what the machine file says</source>
+        <translation>La surveillance des configurations peut être désactivée (ConfL), et les valeurs articulaires signifient ce que dit le fichier de machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -4022,6 +4032,11 @@
         <translation>Signe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>Signals do1, di1 and so on have these names</source>
+        <translation>Les signaux portent les noms do1, di1 et ainsi de suite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Simulate…</source>
         <translation>Simuler…</translation>
@@ -4372,6 +4387,11 @@
         <translation>Les fichiers de la commande ; double-cliquez pour les lire et les exporter.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>The controller&apos;s world is the robot&apos;s base</source>
+        <translation>Le repère monde de la commande est la base du robot</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>The controller&apos;s world is the robot&apos;s base, and joint speeds are its nominal ones</source>
         <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
@@ -4550,6 +4570,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>The link whose frame is the flange, with its Z out of it: tool0 in files of ROS-Industrial</source>
         <translation>Le corps dont le repère est la bride, avec son Z hors d&apos;elle : tool0 dans les fichiers de ROS-Industrial</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>The load of t_am is set, and the speed override is 100 %</source>
+        <translation>La charge de t_am est réglée, et la vitesse générale est à 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
@@ -5477,6 +5502,11 @@
         <translation>un mouvement dure {0} ms, moins que le pas de {1} ms de la commande ; utilisez un strategy.chord_error plus grand ou un process.travel_speed plus petit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_numbers.py"/>
+        <source>a move takes {0} s, less than the {1} s that can be written; use a larger chord error or a lower speed</source>
+        <translation>un mouvement prend {0} s, moins que les {1} s qui peuvent s&apos;écrire ; prenez une erreur de corde plus grande ou une vitesse plus faible</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>a move without a feed of its own</source>
         <translation>un mouvement sans avance à lui</translation>
@@ -5557,7 +5587,7 @@
         <translation>une seconde sortie analogique est réglée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>a second output is switched</source>
         <translation>une seconde sortie est commandée</translation>
     </message>
@@ -5747,6 +5777,11 @@
         <translation>une accélération</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried</source>
+        <translation>une sortie analogique que RAPID règle entre deux mouvements l&apos;est en avance sur le mouvement, et TriggSpeed n&apos;a pas été essayé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/rows.py"/>
         <source>an angle such as 90 deg</source>
         <translation>un angle comme 90 deg</translation>
@@ -5920,6 +5955,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>axis 3 is shown {}</source>
         <translation>l&apos;axe 3 est montré {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>axis {0} has no limits, but joint values of RAPID count every turn up to a limit; use limits that have one for axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de RAPID comptent chaque tour jusqu&apos;à une limite ; prenez des limites qui en ont une pour l&apos;axe {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur.py"/>
@@ -6837,7 +6877,7 @@
         <translation>elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli_read.py"/>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>it ends before the last move does</source>
         <translation>il finit avant le dernier mouvement</translation>
     </message>
@@ -7217,6 +7257,11 @@
         <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <source>it is not a module with one routine</source>
+        <translation>ce n&apos;est pas un module à une seule routine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>it is not a project in millimetres</source>
         <translation>ce n&apos;est pas un projet en millimètres</translation>
@@ -7410,6 +7455,11 @@
         <location filename="../../freecad_am/gui/spin_map/source.py"/>
         <source>its machine has two rotary axes, which leave no rotation about the tool to choose; a map is for robots</source>
         <translation>sa machine a deux axes rotatifs, qui ne laissent pas de rotation autour de l&apos;outil à choisir ; une carte est pour les robots</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <source>its module is called {0}, and the file is not, or another one is too</source>
+        <translation>son module s&apos;appelle {0}, mais pas le fichier, ou un autre porte ce nom aussi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -7815,6 +7865,11 @@
         <location filename="../../freecad_am/core/slicing/backstop.py"/>
         <source>more than {0} layers of {1} mm: use a larger layer height</source>
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>moves of more than one tool or work object are mixed</source>
+        <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/picture.py"/>
@@ -8712,6 +8767,11 @@
         <translation>la forme explicite est pour six articulations, il y en a {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>the configurations that its positions name are supervised, and are none</source>
+        <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
         <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
         <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
@@ -8842,6 +8902,11 @@
         <translation>l&apos;origine de la bride n&apos;est pas sur l&apos;axe 6</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>the four numbers of an orientation are not those of a unit quaternion</source>
+        <translation>les quatre nombres d&apos;une orientation ne sont pas ceux d&apos;un quaternion unitaire</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/kernel.py"/>
         <source>the geometry kernel cannot divide this face into triangles; repair it (Part, Check geometry), or draw it anew</source>
         <translation>le noyau géométrique ne peut pas diviser cette face en triangles ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
@@ -8877,7 +8942,7 @@
         <translation>le moyeu est inconnu ; les solides se construisent sur un cylindre ou un cône, pas encore sur une base plane : choisissez le moyeu comme substrat, choisissez-en des faces, ou donnez strategy.base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>the instruction {0} is not understood</source>
         <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
     </message>
@@ -9132,6 +9197,11 @@
         <translation>la pose aux zéros en série manque</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>the post abb cannot write {0} ({1} motion)</source>
+        <translation>le post-processeur abb ne peut pas écrire {0} (mouvement {1})</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>the post fanuc cannot write {0}</source>
         <translation>le post-processeur fanuc ne peut pas écrire {0}</translation>
@@ -9177,7 +9247,7 @@
         <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/abb.py"/>
         <source>the program has no positions; use `motion: joint`</source>
         <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
     </message>
@@ -9200,6 +9270,11 @@
         <location filename="../../freecad_am/core/planning/rapid_findings.py"/>
         <source>the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower process.between_layers.lift or move the part in the cell</source>
         <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <source>the robot has to carry either the tool or the work object</source>
+        <translation>le robot doit porter soit l&apos;outil, soit l&apos;objet de travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -9367,6 +9442,11 @@
         <translation>la transformation change pendant que le dépôt est en marche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <source>the value of {0} is not understood</source>
+        <translation>la valeur de {0} n&apos;est pas comprise</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>the values of {0} are not those from 0 to its size, each once</source>
         <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
@@ -9477,7 +9557,12 @@
         <translation>il y a des fichiers qui n&apos;appartiennent à aucun projet, ou à deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>there are modules that are never run, or run twice</source>
+        <translation>il y a des modules qui ne sont jamais exécutés, ou le sont deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>there are no moves</source>
         <translation>il n&apos;y a pas de mouvements</translation>
     </message>
@@ -10222,7 +10307,7 @@
         <translation>{0} a d&apos;autres axes que la trajectoire articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
+        <location filename="../../freecad_am/posts/abb.py"/>
         <source>{0} has {1} points with its approach, and loading another part within a bead would stop the robot while it deposits; use at least {2}</source>
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
@@ -10267,7 +10352,12 @@
         <translation>{0} est un maillage, qui est rempli</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} is a module or a routine of this program and is not loaded</source>
+        <translation>{0} est un module ou une routine de ce programme et n&apos;est pas chargé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
         <source>{0} is a program of this very job; call another one, or rename the job</source>
         <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
     </message>
@@ -10310,6 +10400,11 @@
         <location filename="../../freecad_am/posts/staubli_read.py"/>
         <source>{0} is loaded while depositing, is not there, or {1} is no library</source>
         <translation>{0} est chargé pendant le dépôt, n&apos;existe pas, ou {1} n&apos;est pas une bibliothèque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} is loaded without being run and removed</source>
+        <translation>{0} est chargé sans être exécuté puis retiré</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
@@ -10422,6 +10517,16 @@
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} is no speed of the module, or the move is told otherwise than by \T or \V</source>
+        <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <source>{0} is no tool of the module, or {1} no work object</source>
+        <translation>{0} n&apos;est pas un outil du module, ou {1} n&apos;est pas un objet de travail</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wall.py"/>
         <source>{0} is no torus, cylinder or cone: a wall of several faces must be of one of these; choose one face</source>
         <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
@@ -10430,6 +10535,11 @@
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>{0} is no word such as M7 or H2=1; give one for on and one for off</source>
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} is no zone of the module</source>
+        <translation>{0} n&apos;est pas une zone du module</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -10607,6 +10717,11 @@
         <translation>{0} n&apos;est pas le nom du fichier, {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} is not there, has no routine {1}, is run already, or loaded while depositing</source>
+        <translation>{0} manque, n&apos;a pas de routine {1}, a déjà été exécuté, ou est chargé pendant le dépôt</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not true or false</source>
         <translation>{0} n&apos;est ni vrai ni faux</translation>
@@ -10630,6 +10745,11 @@
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>{0} is not understood, or a second output is switched</source>
         <translation>{0} n&apos;est pas compris, ou une seconde sortie est commandée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
+        <source>{0} is not understood, or declares a name again</source>
+        <translation>{0} n&apos;est pas compris, ou déclare un nom une seconde fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -10670,6 +10790,11 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is out of range; give {1}</source>
         <translation>{0} est hors de la plage ; donnez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} is reached before the move before it ends</source>
+        <translation>{0} est atteint avant la fin du mouvement qui précède</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/stacking.py"/>
@@ -10787,7 +10912,7 @@
         <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
+        <location filename="../../freecad_am/posts/abb_numbers.py"/>
         <source>{0} mm/s cannot be written; use a speed between {1} and {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez une vitesse entre {1} et {2} mm/s</translation>
     </message>
@@ -10805,6 +10930,11 @@
         <location filename="../../freecad_am/core/layers/overhang.py"/>
         <source>{0} mm^2 lean out over the layer below by more than {1} deg, the largest piece at {2}; deposit what carries it first, choose another strategy.direction, or raise strategy.max_overhang</source>
         <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>{0} modules have a routine main, expected one</source>
+        <translation>{0} modules ont une routine main, un seul était attendu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_numbers.py"/>
@@ -11127,7 +11257,7 @@
         <translation>{0} ; utilisez process.between_layers.input, strategy.wait, ou une autre commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <location filename="../../freecad_am/posts/abb_modules.py"/>
         <source>{0}; write the program anew</source>
         <translation>{0} ; écrivez le programme de nouveau</translation>
     </message>
