@@ -211,8 +211,8 @@ def _with_bead_model(process: ProcessParameters, strategy: LayerParameters, path
         return process
     if not family_of(strategy).filled:
         raise InputError(
-            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind solid and "
-            "developable alone; use none",
+            "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of strategy.kind solid, "
+            "developable and cladding alone; use none",
         )
     return _with_path(process, path)
 

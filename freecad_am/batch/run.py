@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from freecad_am.core.geometry.on_hub import SolidsOnHub
 from freecad_am.core.issues import InfeasibleError, InputError, Issue, has_errors
 from freecad_am.core.one_thread import one_thread
 from freecad_am.core.strategies.families import family_of
@@ -230,7 +231,8 @@ def _write(
     if page:
         with stages.timed("page", session):
             alone = len(job.features) == 1 and family_of(job.strategy).filled
-            solids = api.result(stages.features[0]) if alone else None
+            found = api.result(stages.features[0]) if alone else None
+            solids = found if isinstance(found, SolidsOnHub) else None
             page_text = _page(job, content, toolpath, motion, distances, planned, cell, compared, solids)
             files.write(outputs.PAGE, [page_text])
     written = files.publish(outputs.earlier_outputs(files.folder))

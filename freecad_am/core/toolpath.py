@@ -22,7 +22,7 @@ from .issues import Issue
 
 Array = NDArray[np.float64]
 
-FILLED = ("developable", "solid")  # families whose beads fill solids
+FILLED = ("developable", "solid", "cladding")  # families whose beads fill solids, or layers on faces
 PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
 
 

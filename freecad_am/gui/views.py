@@ -9,6 +9,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore
 
+from ..objects.cladding_feature import CladdingFeature
 from ..objects.curves_feature import CurvesFeature
 from ..objects.developable_feature import DevelopableFeature
 from ..objects.job_group import is_group
@@ -19,6 +20,7 @@ from .busy import carry_out
 from .inspection.view import InspectionView
 from .view_base import MODE, StageView
 from .view_cell import CellView
+from .view_cladding import CladdingView
 from .view_curves import CurvesView
 from .view_feature import FeatureView
 from .view_hub import HubView, SolidView
@@ -34,6 +36,7 @@ VIEWS: dict[str, type[StageView]] = {
 }
 OF_FAMILIES: dict[type[Stage], type[StageView]] = {
     DevelopableFeature: HubView, SolidFeature: SolidView, CurvesFeature: CurvesView,
+    CladdingFeature: CladdingView,
 }
 
 _to_be_seen: set[str] = set()

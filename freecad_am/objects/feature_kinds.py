@@ -16,6 +16,7 @@ _PROXIES = {
     "developable": ("developable_feature", "DevelopableFeature"),
     "curves": ("curves_feature", "CurvesFeature"),
     "solid": ("solid_feature", "SolidFeature"),
+    "cladding": ("cladding_feature", "CladdingFeature"),
 }
 
 

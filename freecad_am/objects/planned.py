@@ -104,8 +104,8 @@ def with_wire(toolpath: CoreToolpath, of: Given) -> CoreToolpath:
 
 
 def bases_of(of: Given) -> list[Any]:
-    """The surfaces that solids stand on; none of walls."""
-    return [group.base for group in of.wall.groups] if family_of(of.strategy).filled else []
+    """The surfaces that solids stand on; none of walls and faces."""
+    return [group.base for group in getattr(of.wall, "groups", ())]
 
 
 def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> CoreToolpath:
@@ -114,6 +114,8 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         return toolpath
     progress.report(LOOKED, "looking whether the deposit lies on the part")
     places = on_part.places(toolpath)
+    if family_of(of.strategy).kind == "cladding":
+        return _on_faces(toolpath, of, sources[0].shape, places)
     if hasattr(of.strategy, "share_of_cut"):  # where the part was cut, above the surface that beads of the layer lie on
         up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
         places = places._replace(points=places.points + up)
@@ -128,6 +130,14 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
         off = np.maximum(off_facets(body.vertices, body.triangles, places.points) - of.wall.smoothing, 0.0)
     else:
         off = off_faces(sources[0].shape, of.wall.faces, places.points, limit)
+    return on_part.judged(toolpath, places, off, limit)
+
+
+def _on_faces(toolpath: CoreToolpath, of: Given, shape: Any, places: on_part.Places) -> CoreToolpath:
+    """The toolpath with whether its layers lie as many layer heights above the faces as they should."""
+    up = (places.layer % of.strategy.layers) * of.strategy.layer_height
+    limit = toolpath.chord_error + on_part.ROUNDED
+    off = off_faces(shape, of.wall.faces, places.points - up[:, None] * places.build, limit)
     return on_part.judged(toolpath, places, off, limit)
 
 
@@ -191,6 +201,25 @@ def _of_curves(of: Given) -> CoreToolpath:
     return made
 
 
+def _of_cladding(of: Given) -> CoreToolpath:
+    from ..core.strategies import cladding
+
+    made = cladding.plan(of.wall, of.strategy, of.build, of.process, of.model, _share)
+    if of.cell is not None:
+        points = np.vstack([bead.points for _, _, bead in made])
+        stands = mounted(of.cell, made.frame, made.family) if of.stands is None else of.stands
+        platform.refuse_below(of.wall.label, points, stands, of.cell.platform_diameter)
+    return made
+
+
+def _cladding_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
+    """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
+    from ..core.strategies import wall_clearance
+
+    free = dataclasses.replace(of.build, max_tilt=np.pi)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature)
+
+
 def _curves_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     from ..core.strategies import wall_clearance
 
@@ -243,4 +272,5 @@ _SOLIDS = _Planner(_of_solids, _solids_cleared)
 _PLANNERS = {
     "revolution": _Planner(_of_revolution, _revolution_cleared), "surface": _Planner(_of_wall, _wall_cleared),
     "developable": _SOLIDS, "solid": _SOLIDS, "curves": _Planner(_of_curves, _curves_cleared),
+    "cladding": _Planner(_of_cladding, _cladding_cleared),
 }

@@ -64,6 +64,19 @@ class Mesh:
         return sides
 
     @cached_property
+    def area_vectors(self) -> Array:
+        """Of each face (m, 3): its normal, as long as its area, mm2."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        vectors: Array = 0.5 * np.cross(b - a, c - a)
+        return vectors
+
+    @cached_property
+    def areas(self) -> Array:
+        """Of the faces (m,), mm2."""
+        areas: Array = np.linalg.norm(self.area_vectors, axis=1)
+        return areas
+
+    @cached_property
     def longest_edge(self) -> float:
         """Length of the longest edge, mm."""
         a, b = self.vertices[self.edges].transpose(1, 0, 2)

@@ -39,7 +39,9 @@ def planned(of: object, name: str) -> Planned:
         return of_triangles(of.label, vertices, triangles, of.groups[0].base.frame, chord=of.chord_error)
     if isinstance(of, Toolpath):
         return _of_toolpath(of, name)
-    raise TypeError(f"{type(of).__name__} is no planned surface")
+    raise InputError(
+        "NOT_FOR_FAMILY", name, "curves and cladding plan no surface; compare the points with the part"
+    )
 
 
 def _of_patches(wall: PatchWall) -> Planned:

@@ -18,15 +18,14 @@ from ..geometry.solid_mesh import Search, SolidMesh
 from .carried_on import carried_on, gradients
 from .chart import Chart
 from .eikonal import Links, arrival, links
-from .flattening import Flattened, flattened, turned
+from .flattening import flattened, turned
 from .level import Cubes
+from .parted import OVERLAID, stretch_of
 from .voxels import Array, Index, Mask, Voxels, voxels
 
 NEAR = 2.5  # steps; nodes so near to the start know their distance from its triangles
 DEEP = 3  # nodes; farther inside nothing asks how far the surface is
 STRETCH = 0.15  # most that a piece is stretched or squeezed; what would be more is laid flat in two
-OUTER = 0.02  # share of the area whose stretch does not count: slivers, and the very corners of fans
-OVERLAID = 0.01  # share of the area by which a picture may lie on itself
 HALVINGS = 6
 MARGIN = 2.0  # steps that pieces reach past where they are cut in two
 
@@ -79,9 +78,8 @@ class GeodesicField:
 
     def _laid(self, mesh: Mesh, inside: Array, halvings: int) -> Iterator[Piece]:
         flat = flattened(mesh)
-        area = _areas(mesh)
-        within = np.where((inside[mesh.faces] > 0.0).any(axis=1), area, 0.0)
-        stretch = _stretch(flat, within)
+        within = np.where((inside[mesh.faces] > 0.0).any(axis=1), mesh.areas, 0.0)
+        stretch = stretch_of(flat, within)
         if stretch <= STRETCH or halvings == 0:
             chart = Chart(mesh, turned(mesh, flat.points))
             loops = _loops(chart, inside)
@@ -198,20 +196,6 @@ def _connected(mesh: Mesh, inside: Mask) -> Iterator[tuple[Mesh, Index]]:
     owner = label[mesh.faces].max(axis=1)
     for one in np.unique(owner[owner >= 0]):
         yield mesh.part(np.flatnonzero((label[mesh.faces] == one).any(axis=1)))
-
-
-def _areas(mesh: Mesh) -> Array:
-    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-    areas: Array = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return areas
-
-
-def _stretch(flat: Flattened, weight: Array) -> float:
-    """The stretch or squeeze that all triangles but OUTER of their weight (m,) keep below."""
-    each = np.maximum(flat.most - 1.0, 1.0 - flat.least)
-    order = np.argsort(each, kind="stable")
-    done = np.cumsum(weight[order])
-    return float(each[order[np.searchsorted(done, (1.0 - OUTER) * done[-1])]])
 
 
 def _halves(mesh: Mesh, inside: Array, margin: float) -> Iterator[_Half]:

@@ -333,3 +333,27 @@ class SolidParameters(FilledParameters):
     def share_of_cut(self) -> float:
         """How many layer heights above the plane of a layer the part is cut."""
         return {"middle": 0.5, "bottom": 0.0, "top": 1.0}[self.cut_at]
+
+
+@dataclass(frozen=True)
+class CladdingParameters(FilledParameters):
+    """How faces are covered with layers of beads. mm and rad."""
+
+    layers: int = f.parameter(
+        1, f.COUNT, "How many layers lie on the faces, one layer height over the other along their normals.", low=1,
+        high=1000,
+    )
+    side: str = f.parameter(
+        "front", f.CHOICE, "The side of the faces that is covered: where their normals point, outwards of a solid (front), "
+        "or the other side of faces that are of no solid (back).", choices=("front", "back"),
+    )
+    distortion: float = f.parameter(
+        0.1, f.RATIO, "Largest share by which beads may lie nearer together or farther apart than the bead spacing on faces "
+        "that are bent both ways; these are covered in pieces that keep to it.", low=0.01, high=0.3, advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for key, given, instead in (("margin", self.margin, "0 mm"), ("solid_layers", self.solid_layers, "0")):
+            if given:
+                raise InputError("NOT_FOR_FAMILY", f"strategy.{key}", f"it is for solids, not for cladding; use {instead}")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..geometry.clad_faces import CladFaces
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.profile import Array, RevolvedWall
 from ..geometry.surroundings import Body
@@ -21,6 +22,7 @@ from ..issues import NOTE, InputError, Issue
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (
     MOST_LAYERS,
+    CladdingParameters,
     FilledParameters,
     LayerParameters,
     RevolutionParameters,
@@ -90,6 +92,14 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
             points += length * max(around, 2.0 / extent)
         layers += sum(deep) if strategy.order == "feature" else max(deep, default=0.0)
     return Size(layers, points)
+
+
+def of_cladding(faces: CladFaces, strategy: CladdingParameters) -> Size:
+    """That of layers on faces; nothing is told of points where an overlap takes the place of the bead spacing."""
+    spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
+    length = strategy.layers * faces.area / spacing
+    extent = float(max(np.ptp(sheet.vertices, axis=0).max() for sheet in faces.sheets))
+    return Size(strategy.layers, length / math.sqrt(4.0 * strategy.chord_error * extent))
 
 
 def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = None) -> None:

@@ -22,7 +22,7 @@ Mask = NDArray[np.bool_]
 STEPS = 7  # places on the way down at which a body is looked for
 ON = 0.5  # layer heights; what is no farther from a body lies on it, whichever way it is
 FLUSH = 1e-6  # mm
-BY_ITSELF = ("surface", "curves")  # families whose first layer lies where it begins by its making
+BY_ITSELF = ("surface", "curves", "cladding")  # families whose first layer lies where it begins by its making
 
 
 def told(toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]) -> Toolpath:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,8 @@ from ...layers.surface import Slice
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import FilledParameters
 from ...process.bead_model import BeadModel
+
+Same = TypeVar("Same", bound=FilledParameters)
 
 SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
@@ -158,7 +160,7 @@ class Pictures:
         return curves, left
 
 
-def spaced(strategy: FilledParameters, process: ProcessParameters) -> FilledParameters:
+def spaced(strategy: Same, process: ProcessParameters) -> Same:
     """The same with the bead spacing that the overlap asks for, if one is given."""
     if strategy.bead_overlap is None:
         return strategy

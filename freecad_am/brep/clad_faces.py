@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faces to be covered with layers of beads: exact surfaces and a mesh over what of them runs on smoothly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from ..core.geometry.clad_faces import CladFaces
+from ..core.geometry.mesh import Index, Mask
+from ..core.geometry.patch_wall import Array, PatchWall
+from ..core.geometry.refined import Edges
+from ..core.geometry.surface import dot
+from ..core.geometry.told import place
+from ..core.issues import WARNING, InputError, Issue
+from .kernel import told
+from .patch_wall import sound
+from .sheet import sheet
+from .wall import faces_by_name
+from .wall_checks import CREASE, smallest_radii
+
+OF_RADIUS, OF_SPACING, FINEST = 0.25, 0.5, 0.1  # edges: of the smallest radius, of the bead spacing, at least
+TOLD = 8  # faces named in a message
+
+
+def clad_faces(
+    shape: Any, names: Sequence[str], spacing: float, back: bool, height: float, label: str
+) -> CladFaces:
+    """The faces named of a Part.Shape, all of one without solids, for beads `spacing` mm apart in layers up to `height` mm
+    above them. back: their other side is meant.
+
+    InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and those of `sheet`.
+    """
+    with told(label):
+        known = faces_by_name(shape, names, label)
+        if not names and shape.Solids:
+            raise InputError(
+                "NO_FACES", label, f"it is a solid with {len(known)} face(s), and none is chosen; name those to "
+                "cover: part.faces of a job, or select them",
+            )
+        named = [(name, known[name]) for name in dict.fromkeys(names or known)]
+        _refuse_several(shape, named, back, label)
+        radius = float(smallest_radii(sound(named, label))[0].min())
+        edge = float(np.clip(OF_RADIUS * radius, FINEST * spacing, OF_SPACING * spacing))
+        whole = sheet(named, edge, label)
+        if back:
+            whole = _turned(whole)
+        sheets, issues = _smooth(whole, height, label)
+    return CladFaces(label, tuple(name for name, _ in named), sheets, (), issues)
+
+
+def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, label: str) -> None:
+    """InputError SEVERAL_BODIES for faces of several solids, BACK_OF_SOLID for the inside of one."""
+    owners = {}
+    for number, solid in enumerate(shape.Solids):
+        held = {face.hashCode() for face in solid.Faces}
+        owners.update({name: number for name, face in named if face.hashCode() in held})
+    if len(set(owners.values())) > 1:
+        one = next(iter(owners))
+        other = next(name for name, number in owners.items() if number != owners[one])
+        raise InputError(
+            "SEVERAL_BODIES", label, f"{one} and {other} are faces of different solids; cover each solid as a feature of "
+            "its own, or fuse them first",
+        )
+    if back and owners:
+        raise InputError(
+            "BACK_OF_SOLID", "strategy.side", f"behind {next(iter(owners))} is the material of {label}; use front, which "
+            "is outside of it",
+        )
+
+
+def _turned(wall: PatchWall) -> PatchWall:
+    return replace(
+        wall, triangles=wall.triangles[:, ::-1].copy(), uv=wall.uv[:, ::-1].copy(),
+        patches=tuple(replace(patch, sign=-patch.sign) for patch in wall.patches),
+    )
+
+
+def _smooth(wall: PatchWall, height: float, label: str) -> tuple[tuple[PatchWall, ...], tuple[Issue, ...]]:
+    """What of the wall hangs together without a crease, each as one; warnings where layers gape or overlap at creases."""
+    edges = Edges(wall.triangles)
+    if (edges.count > 2).any():
+        at = wall.vertices[edges.ends[int(np.argmax(edges.count > 2))]].mean(axis=0)
+        raise InputError(
+            "BRANCHING_FACES", label, f"more than two faces meet in one edge at {place(at)}; leave one of them out, or "
+            "cover it as a feature of its own",
+        )
+    two = np.flatnonzero(edges.count == 2)
+    pair = edges.faces[two]
+    turn, inward = _turns(wall, edges.ends[two], wall.patch[pair])
+    crease = turn > CREASE
+    n = len(wall.triangles)
+    links = coo_matrix((np.ones((~crease).sum()), pair[~crease].T), shape=(n, n))
+    count, part = connected_components(links, directed=False)
+    sheets = tuple(_part(wall, part == k) for k in range(count))
+    return sheets, _told(wall, edges.ends[two], pair, turn, inward, height) if height > 0.0 and crease.any() else ()
+
+
+def _turns(wall: PatchWall, ends: Index, pair: Index) -> tuple[Array, Mask]:
+    """The angles (k,) rad by which the normals of two patches differ at edges between them, 0 within one; and whether the
+    faces meet in a hollow there."""
+    turn, inward = np.zeros(len(ends)), np.zeros(len(ends), dtype=bool)
+    for one, other in np.unique(pair[pair[:, 0] != pair[:, 1]], axis=0):
+        mine = np.flatnonzero((pair == (one, other)).all(axis=1))
+        at = wall.vertices[ends[mine]].reshape(-1, 3)
+        first, second = (wall.patches[k].at(wall.patches[k].inverse(at))[1] for k in (one, other))
+        angle = np.arctan2(np.linalg.norm(np.cross(first, second), axis=1), dot(first, second))
+        turn[mine] = angle.reshape(-1, 2).max(axis=1)
+        apart = _middle(wall, other) - _middle(wall, one)
+        inward[mine] = dot((first - second).reshape(-1, 2, 3).sum(axis=1), apart) > 0.0
+    return turn, inward
+
+
+def _middle(wall: PatchWall, patch: int) -> Array:
+    middle: Array = wall.vertices[wall.triangles[wall.patch == patch]].mean(axis=(0, 1))
+    return middle
+
+
+def _part(wall: PatchWall, chosen: Mask) -> PatchWall:
+    """Some triangles (m,) of a wall alone."""
+    used, index = np.unique(wall.triangles[chosen], return_inverse=True)
+    patches, patch = np.unique(wall.patch[chosen], return_inverse=True)
+    return PatchWall(
+        wall.vertices[used], np.ravel(index).reshape(-1, 3).astype(np.intp), np.ravel(patch).astype(np.intp),
+        wall.uv[chosen], tuple(wall.patches[k] for k in patches), (), np.zeros(len(used), dtype=bool), (), wall.label,
+        tuple(wall.faces[k] for k in patches),
+    )
+
+
+def _told(
+    wall: PatchWall, ends: Index, pair: Index, turn: Array, inward: Mask, height: float
+) -> tuple[Issue, ...]:
+    found = []
+    for hollow in (False, True):
+        mine = np.where((inward == hollow) & (turn > CREASE), turn, 0.0)
+        at = int(np.argmax(mine))
+        if mine[at] == 0.0:
+            continue
+        one, other = (wall.faces[k] for k in wall.patch[pair[at]])
+        what = "into one another" if hollow else "apart, with a wedge left open between them"
+        found.append(Issue(
+            WARNING, "CREASE", f"{one} and {other} meet at an angle of {np.degrees(mine[at]):.3g} deg at "
+            f"{place(wall.vertices[ends[at]].mean(axis=0))}: layers above the first grow {what}, up to {height:.3g} mm "
+            "above the faces; round the edge, or cover the faces one after the other",
+        ))
+    return tuple(found)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cladding: faces covered with layers of beads, one over the other along their normals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..filling.curve import PlaneCurve
+from ..geometry.clad_faces import CladFaces
+from ..geometry.on_hub import Base
+from ..geometry.plane import Plane
+from ..issues import NOTE, InfeasibleError, InputError, Issue
+from ..layers.on_faces import FaceLayer, pieces, slices
+from ..layers.surface import Slice
+from ..parameters.build_direction import BuildDirectionParameters
+from ..parameters.process import ProcessParameters
+from ..parameters.strategy import CladdingParameters
+from ..process.bead_model import BeadModel
+from ..process.order import Laid, ordered, waited
+from ..toolpath import Array, Toolpath
+from .progress import Progress, silent
+from .solids.beads import Rolled, reversed_curve, rolled
+from .solids.filling import Cover, Filled, Pictures, bead_width, spaced
+from .solids.islands import island_by_island
+from .solids.lean_notes import lean_notes
+from .solids.notes import notes
+from .solids.outlines import leaning
+
+TOLD = 0.02  # distortion that is told
+PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
+
+
+def plan(
+    given: CladFaces, strategy: CladdingParameters, build: BuildDirectionParameters, process: ProcessParameters,
+    model: BeadModel | None, progress: Progress = silent,
+) -> Toolpath:
+    """The toolpath of cladding, in part coordinates: layer i lies i layer heights above the faces.
+
+    model: sets the speeds, None for the travel speed everywhere. InputError FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT,
+    InfeasibleError THIN_REGION.
+    """
+    strategy = spaced(strategy, process)
+    counted = bead_width(strategy, process, model)
+    pictures = Pictures(strategy, process, counted)
+    found = [(sheet, piece) for sheet in given.sheets for piece in pieces(sheet, strategy)]
+    laid: list[Laid] = []
+    made: list[Rolled] = []
+    mended: list[Issue] = []
+    covers: list[Cover] = []
+    stretch = 0.0
+    for number, (sheet, piece) in enumerate(found):
+        at: Array | None = None
+        for layer in slices(sheet, piece, strategy):
+            progress((number + layer.layer / strategy.layers) / len(found), f"layer {layer.layer}")
+            beads = _filled(pictures, layer, given.label)
+            mended += beads.issues
+            assert isinstance(layer.surface, FaceLayer)
+            stretch = max(stretch, layer.surface.stretch)
+            covers.append(beads.cover)
+            here = [_bead(curve, layer, strategy, build, process, model) for curve in beads.curves]
+            order = island_by_island([one.bead for one in here], beads.islands, at)
+            at = here[order[-1]].bead.points[-1] if order else at
+            laid += [Laid(0, number, layer.layer, -rank, here[k].bead) for rank, k in enumerate(order)]
+            made += here
+    if not laid:
+        raise InputError(
+            "NOTHING_TO_DEPOSIT", given.label, f"no bead of {strategy.shortest:g} mm or more finds room on its faces; "
+            "use a smaller bead spacing, or thin = single",
+        )
+    layers = waited(ordered(laid, strategy.order), strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    issues = (
+        *given.issues, *_stretched(stretch), *notes(made, layers, mended, strategy, process, model),
+        *lean_notes(made, layers, build),
+    )
+    return Toolpath(
+        layers, np.eye(4), strategy.layer_height, strategy.chord_error, issues, process.overlap, "cladding",
+        given.surroundings, None if model is None else model.law(process.acceleration), counted,
+        volumes=_volumes(strategy, covers),
+    )
+
+
+def _volumes(strategy: CladdingParameters, covers: Sequence[Cover]) -> tuple[float, float, float]:
+    """mm3 of all layers, of what beads leave of them, and of what of beads lies beside."""
+    whole, left, beside = (strategy.layer_height * math.fsum(column) for column in zip(*covers))
+    return whole, left, beside
+
+
+def _stretched(share: float) -> tuple[Issue, ...]:
+    if share <= TOLD:
+        return ()
+    return (Issue(
+        NOTE, "DISTORTED", "faces that are bent both ways cannot be laid flat without distortion: beads are up to "
+        f"{100.0 * share:.2g} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that",
+    ),)
+
+
+def _filled(pictures: Pictures, layer: Slice, label: str) -> Filled:
+    try:
+        return pictures.filled(layer, 0.0, PART)
+    except InfeasibleError as error:
+        where = f"{label} layer {layer.layer}"
+        raise InfeasibleError(
+            error.code, where, error.message, (Issue("error", error.code, f"{label}: {error.message}", layer.layer),)
+        ) from None
+
+
+def _bead(
+    curve: PlaneCurve, layer: Slice, strategy: CladdingParameters, build: BuildDirectionParameters,
+    process: ProcessParameters, model: BeadModel | None,
+) -> Rolled:
+    if curve.closed and process.direction == "alternate" and (layer.layer + curve.ring) % 2:
+        curve = reversed_curve(curve)
+    return rolled(curve, layer.surface, PART, strategy, build, process, model, leaning(curve, layer, strategy, build))

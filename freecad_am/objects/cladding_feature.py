@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Faces in a document that are covered with layers of beads."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+from ..brep.clad_faces import clad_faces
+from ..core.issues import InputError
+from ..core.parameters.build_direction import BuildDirectionParameters
+from ..core.parameters.strategy import CladdingParameters
+from ..core.strategies import size
+from .feature import source_of
+from .fingerprints import fingerprint, shape_fingerprint
+from .shapes import FIXTURES, bodies, fixtures_of, taken
+from .stage import Link, Outcome, Section, Stage, Work
+
+
+class CladdingFeature(Stage):
+    """Result: core.geometry.clad_faces.CladFaces, in the coordinates of the document."""
+
+    kind = "feature"
+    sections = (
+        Section(CladdingParameters, "strategy", "Layers"),
+        Section(BuildDirectionParameters, "build_direction", "Build direction"),
+    )
+    links = (
+        Link("Source", "", "The faces to cover.", type_name="App::PropertyLinkSub"),
+        Link("Substrate", "", "A further part that the nozzle is kept clear of.", required=False),
+        FIXTURES,
+    )
+    figures = (
+        ("CladFaces", "App::PropertyStringList", "Faces that are covered."),
+        ("CladArea", "App::PropertyArea", "Area of the faces."),
+    )
+
+    def prepare(self, obj: Any) -> Work:
+        self.linked(obj)
+        strategy = self.parameters(obj, CladdingParameters)
+        self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
+        source, faces = source_of(obj)
+        part, fixtures = taken(source), fixtures_of(obj)
+        if part.shape is None:
+            raise InputError(
+                "NO_FACES", source.Label, "it is a mesh, which has no faces to choose; make a shape of it (Part, Create "
+                "shape from mesh), or take the file that it was made of"
+            )
+        ground = () if obj.Substrate is None else (taken(obj.Substrate),)
+        own = (part,) if part.shape.Solids else ()
+
+        def work() -> Outcome:
+            high = (strategy.layers - 1) * strategy.layer_height
+            spacing = strategy.bead_spacing
+            found = clad_faces(part.shape.copy(False), faces, spacing, strategy.side == "back", high, part.label)
+            large = size.judged(size.of_cladding(found, strategy), strategy)
+            made = dataclasses.replace(found, surroundings=bodies((*own, *ground, *fixtures)))
+            return Outcome(made, (*made.issues, *large), (("CladFaces", list(made.faces)), ("CladArea", made.area)))
+
+        return work
+
+    def further_inputs(self, obj: Any) -> list[str]:
+        source, faces = source_of(obj)
+        ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
+        return [
+            fingerprint(source) if getattr(source, "Mesh", None) is not None else shape_fingerprint(source), " ".join(faces),
+            *ground, "|", *(fingerprint(fixture) for fixture in obj.Fixtures),
+        ]
