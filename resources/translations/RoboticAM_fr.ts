@@ -34,6 +34,11 @@
         <translation>Angle entre l&apos;axe de la buse et son flanc.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>Area of the faces.</source>
+        <translation>Aire des faces.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>Arrays of the result.</source>
         <translation>Tableaux du résultat.</translation>
@@ -167,6 +172,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Faces of the wall.</source>
         <translation>Faces de la paroi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>Faces that are covered.</source>
+        <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -1297,6 +1307,11 @@
         <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>Area of the faces.</source>
+        <translation>Aire des faces.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
         <source>As planned</source>
         <translation>Comme planifié</translation>
@@ -2080,6 +2095,11 @@
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>Faces of the wall.</source>
         <translation>Faces de la paroi.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>Faces that are covered.</source>
+        <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/solid_panel.py"/>
@@ -6102,6 +6122,11 @@
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>behind {0} is the material of {1}; use front, which is outside of it</source>
+        <translation>derrière {0} se trouve la matière de {1} ; utilisez front, qui est à l&apos;extérieur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>best</source>
         <translation>meilleur</translation>
@@ -6352,6 +6377,11 @@
         <translation>sens antihoraire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/surfaces.py"/>
+        <source>curves and cladding plan no surface; compare the points with the part</source>
+        <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>cutting layers</source>
         <translation>découpe des couches</translation>
@@ -6490,6 +6520,11 @@
         <location filename="../../freecad_am/gui/guess.py"/>
         <source>faces of {} are picked</source>
         <translation>des faces de {} sont choisies</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/cladding.py"/>
+        <source>faces that are bent both ways cannot be laid flat without distortion: beads are up to {0} % nearer together or farther apart than the bead spacing; strategy.distortion bounds that</source>
+        <translation>les faces courbées dans les deux sens ne peuvent pas être mises à plat sans déformation : les cordons sont jusqu&apos;à {0} % plus proches ou plus éloignés que l&apos;espacement des cordons ; strategy.distortion le limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -7087,6 +7122,11 @@
         <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
+        <source>it is a mesh, which has no faces to choose; make a shape of it (Part, Create shape from mesh), or take the file that it was made of</source>
+        <translation>c&apos;est un maillage, qui n&apos;a pas de faces à choisir ; faites-en une forme (Part, Créer une forme à partir d&apos;un maillage), ou prenez le fichier dont il est issu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it is a reserved word</source>
         <translation>c&apos;est un mot réservé</translation>
@@ -7095,6 +7135,11 @@
         <location filename="../../freecad_am/brep/wall_on.py"/>
         <source>it is a solid whose faces that are not flat ({0}) are not one wall; name the faces of the wall: part.faces of a job, or select them</source>
         <translation>c&apos;est un solide dont les faces non planes ({0}) ne sont pas une seule paroi ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>it is a solid with {0} face(s), and none is chosen; name those to cover: part.faces of a job, or select them</source>
+        <translation>c&apos;est un solide de {0} face(s), et aucune n&apos;est choisie ; nommez celles à recouvrir : part.faces d&apos;une tâche, ou sélectionnez-les</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
@@ -7185,6 +7230,11 @@
         <location filename="../../freecad_am/core/layers/curved.py"/>
         <source>it is for plane layers, not for curved ones; use {0}, or layers: planes</source>
         <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>it is for solids, not for cladding; use {0}</source>
+        <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
@@ -7617,6 +7667,11 @@
         <translation>couche {0} cordon {1} point {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/on_faces.py"/>
+        <source>layer {0} of {1} would lie {2} mm above the faces, as far as a hollow reaches at {3}, and fold there; lay at most {4} layer(s), or leave out what is so hollow</source>
+        <translation>la couche {0} de {1} se trouverait à {2} mm au-dessus des faces, aussi loin que va un creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou laissez de côté ce qui est si creux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/reading.py"/>
         <source>layer {}</source>
         <translation>couche {}</translation>
@@ -7852,6 +7907,11 @@
         <translation>plus de deux faces se rencontrent en une arête en {0} ; une paroi se ramifie par des faces lisses à ouvertures : laissez l&apos;une d&apos;elles de côté</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>more than two faces meet in one edge at {0}; leave one of them out, or cover it as a feature of its own</source>
+        <translation>plus de deux faces se rejoignent sur une arête en {0} ; laissez-en une de côté, ou recouvrez-la comme un élément à part</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>more than {0}</source>
         <translation>plus de {0}</translation>
@@ -7915,6 +7975,11 @@
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>no bead of {0} mm or more finds room in any layer; use a smaller bead spacing, or thin = single</source>
         <translation>aucun cordon de {0} mm ou plus ne trouve place dans aucune couche ; prenez une plus petite distance des cordons, ou thin = single</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/cladding.py"/>
+        <source>no bead of {0} mm or more finds room on its faces; use a smaller bead spacing, or thin = single</source>
+        <translation>aucun cordon de {0} mm ou plus ne trouve de place sur ses faces ; utilisez un espacement des cordons plus petit, ou thin = single</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/read.py"/>
@@ -10122,9 +10187,24 @@
         <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>{0} and {1} are faces of different solids; cover each solid as a feature of its own, or fuse them first</source>
+        <translation>{0} et {1} sont des faces de solides différents ; recouvrez chaque solide comme un élément à part, ou fusionnez-les d&apos;abord</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
         <source>{0} and {1} are {2} mm apart at {3}; close the gap: edges must meet within {4} mm</source>
         <translation>{0} et {1} sont à {2} mm l&apos;une de l&apos;autre en {3} ; fermez le jour : les arêtes doivent se rencontrer à {4} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>{0} and {1} meet at an angle of {2} deg at {3}: layers above the first grow apart, with a wedge left open between them, up to {4} mm above the faces; round the edge, or cover the faces one after the other</source>
+        <translation>{0} et {1} se rejoignent avec un angle de {2} deg en {3} : les couches au-dessus de la première s&apos;écartent, en laissant un coin ouvert entre elles, jusqu&apos;à {4} mm au-dessus des faces ; arrondissez l&apos;arête, ou recouvrez les faces l&apos;une après l&apos;autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>{0} and {1} meet at an angle of {2} deg at {3}: layers above the first grow into one another, up to {4} mm above the faces; round the edge, or cover the faces one after the other</source>
+        <translation>{0} et {1} se rejoignent avec un angle de {2} deg en {3} : les couches au-dessus de la première entrent l&apos;une dans l&apos;autre, jusqu&apos;à {4} mm au-dessus des faces ; arrondissez l&apos;arête, ou recouvrez les faces l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
