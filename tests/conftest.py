@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Makes FreeCAD importable in whatever Python runs the tests, and skips GUI tests where there is no window."""
 
+import contextlib
 import os
 import sys
 import time
@@ -35,17 +36,26 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.skip(reason="no FreeCAD main window: ./freecad-am test opens one under Xvfb"))
 
 
+def used():
+    """s of the processor of this process, of those that it has started, and of theirs that ended."""
+    ticks = 0
+    for file in Path("/proc/self/task").glob("*/children"):
+        for process in file.read_text(encoding="ascii").split():
+            with contextlib.suppress(OSError):  # it has just ended
+                stat = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
+                ticks += sum(map(int, stat.rpartition(")")[2].split()[11:15]))
+    return sum(os.times()[:4]) + ticks / os.sysconf("SC_CLK_TCK")
+
+
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_protocol(item):
     """Adds what a test took, and the fixtures made for it, to the file of TEST_TIMES: s, s of processor, name."""
-    began, before = time.monotonic(), os.times()
-    yield
     file = os.environ.get("TEST_TIMES")
+    began, before = time.monotonic(), used() if file else 0.0
+    yield
     if file:
-        after = os.times()
-        used = sum(after[:4]) - sum(before[:4])  # its own and that of processes that ended
         with open(file, "a", encoding="utf-8") as stream:
-            stream.write(f"{time.monotonic() - began:.2f}\t{used:.2f}\t{item.nodeid}\n")
+            stream.write(f"{time.monotonic() - began:.2f}\t{used() - before:.2f}\t{item.nodeid}\n")
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -28,21 +28,23 @@ GUI = ROOT / "tests" / "gui"
 WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
 HEADLESS_TIMEOUT = 2400  # s for a part without a window
 LONG_TIMEOUT = 8 * 3600  # with long tests, and where tests are named
-# folders and files of parts of their own, longest first, and one more part has all the rest: parts of a few minutes, which
-# fill the cores to the end
+# folders and files of parts of their own, and one more part has all the rest: parts of a few minutes, which fill the cores
+# to the end. First the BESIDE ones that only compute, beside the windows; then what looks at the clock, longest first
 FOLDERS = (
+    ("core/strategies",), ("core/filling", "core/slicing"), ("core/planning", "core/kinematics"),
     ("batch",), ("brep", "objects"),
-    ("batch/test_wall_examples.py", "batch/test_thruster.py", "batch/test_deflected_thruster.py"),
-    ("core/strategies",), ("robust", "posts"), ("core/planning", "core/kinematics"), ("core/filling", "core/slicing"),
+    ("batch/test_wall_examples.py", "batch/test_thruster.py", "batch/test_deflected_thruster.py"), ("robust", "posts"),
 )
+BESIDE = 3
 WINDOWS = (
     ("test_robust.py", *(f"test_{name}.py" for name in (
         "robust_events", "selected_job", "wall_clicks", "path", "panels", "cell_preview", "program_preview",
     ))),
     ("tutorials", *(f"test_{name}.py" for name in ("spin_map", "new_machine", "flow", "docks", "tree", "clicks"))),
 )
-WAITING = 0.6  # of a core: what a window uses while it is looked at, clicked and waited for
-BEHIND = 5  # the niceness of the headless tests, so that no click in a window comes late for them
+# of a core: what a window has beside two others; headless tests, which stand far behind, take what the three leave
+WAITING = 0.4
+BEHIND = 15  # the niceness of the headless tests, so that no click in a window comes late for them
 # what depends on FreeCAD's version (docs/testing.md tells why): documents, shapes and what is written of them, without those
 # whose numbers are those of core; commands as they start, plan, export and are interrupted; of the window what is saved and
 # opened, undone, typed, picked, done beside it, and what may crash it
@@ -199,7 +201,7 @@ def run_window_tests(arguments: list[str]) -> tuple[int, str]:
     status, text, failed = in_window(freecad, arguments)
     # FreeCAD leaves a crash with the status of failed tests, but without pytest's summary
     ended = status == FAILED and counts(text)["failed"] > 0
-    chosen = any(word.startswith("-") and word != LONG for word in arguments)
+    chosen = any(word.startswith("-") and word != LONG and not word.startswith("--ignore=") for word in arguments)
     if not ended or len(failed) > FEW or chosen:
         return status, text
     say(f"freecad-am: {len(failed)} failed and run once more: {' '.join(failed)}")
@@ -252,7 +254,7 @@ def provide_version(version: str) -> None:
 
 def all_parts(arguments: list[str]) -> list[Part]:
     """What is to be run, in the order in which the parts begin: windows first, as they wait most and need something beside
-    them that does not; what takes longest before what takes less, and the rest of all last."""
+    them that does not, and the rest of all last."""
     in_version = []
     if arguments[:1] == ["--with-freecad"] and len(arguments) > 1:
         version, arguments = arguments[1], arguments[2:]
@@ -265,7 +267,7 @@ def all_parts(arguments: list[str]) -> list[Part]:
     headless, window = apart(arguments)
     windows = [] if window is None else window_parts(window)
     others = [] if headless is None else headless_parts(headless)
-    return [*windows, *others[:1], *in_version, *others[1:]]
+    return [*windows, *others[:BESIDE], *in_version, *others[BESIDE:]]
 
 
 def compile_modules() -> None:

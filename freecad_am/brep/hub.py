@@ -154,7 +154,7 @@ def _round(face: Any) -> tuple[Array, Array, float, float] | None:
     u0, u1, v0, v1 = face.ParameterRange
     places = [(u, v) for u in np.linspace(u0, u1, 25) for v in np.linspace(v0, v1, 25) if face.isPartOfDomain(u, v)]
     points = np.array([tuple(surface.value(u, v)) for u, v in places]).reshape(-1, 3)
-    if len(points) < 9:
+    if len(points) < 9 or _flat(points):
         return None
     origin, z = _best_axis(points, origin, z)
     along, rho, slope, at_origin = _profile(points, origin, z)
@@ -163,6 +163,12 @@ def _round(face: Any) -> tuple[Array, Array, float, float] | None:
     if abs(slope) * np.ptp(along) <= FITTED:
         return origin, z, float(rho.mean()), 0.0
     return origin - at_origin / slope * z, z, 0.0, math.atan(abs(float(slope)))
+
+
+def _flat(points: Array) -> bool:
+    """Whether points (n, 3) lie in a plane but for rounding: about any axis a fit of theirs goes on for long, in vain."""
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return bool(spread[2] <= 1e-9 * spread[0])
 
 
 def _profile(points: Array, origin: Array, z: Array) -> tuple[Array, Array, float, float]:

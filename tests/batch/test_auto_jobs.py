@@ -89,7 +89,7 @@ AUTO = "part: {file: part.step}\nstrategy: {kind: auto, layer_height: 5 mm, chor
 
 def planned(workshop, text):
     (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
-    done = workshop.launch("plan", "job.yaml", "-o", "out")
+    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.reader(stream))

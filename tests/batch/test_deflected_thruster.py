@@ -28,7 +28,7 @@ def test_the_thruster_is_laid_by_a_deflected_torch(workshop, root):
     text = text.replace("0.05 mm", "0.2 mm")
     text = text.replace("post: siemens\n  motion: cartesian", "post: linuxcnc\n  motion: joint")
     (workshop.folder / "thruster.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "thruster.yaml", "-o", "out")
+    done = workshop.run("plan", "thruster.yaml", "-o", "out", "--no-page")
     assert done.status == 0 and "error[" not in done.err and "SLOWED" not in done.err, done.err
     assert "note[TURN_LIMITED]" in done.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:

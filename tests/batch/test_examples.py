@@ -29,7 +29,7 @@ def example(request, workshop, root):
     name, layers = request.param
     for ending in ("yaml", "step"):
         shutil.copy(root / "resources" / "examples" / f"{name}.{ending}", workshop.folder)
-    done = workshop.launch("plan", f"{name}.yaml", "-o", "out")
+    done = workshop.run("plan", f"{name}.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
@@ -84,7 +84,7 @@ def bend_job(workshop, root, change=lambda text: text):
         shutil.copy(folder / name, workshop.folder)
     text = change((folder / "tube-on-pipe.yaml").read_text(encoding="utf-8"))
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "bend.yaml", "-o", "out")
+    done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     if "cell:" in text:

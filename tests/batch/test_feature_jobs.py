@@ -96,7 +96,7 @@ def planned(workshop, text, **shapes):
     for name, shape in shapes.items():
         shape.exportStep(str(workshop.folder / f"{name}.step"))
     (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
-    done = workshop.launch("plan", "job.yaml", "-o", "out")
+    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     report = workshop.folder / "out" / "report.json"
     rows = waypoints(workshop.folder) if report.is_file() else []
     return done, json.loads(report.read_text(encoding="utf-8")) if report.is_file() else None, rows
@@ -207,7 +207,7 @@ def test_the_shipped_hub_with_fins_and_branch(workshop, root):
     text = (workshop.folder / "finned-hub.yaml").read_text(encoding="utf-8")
     text = text.replace("layer_height: 2 mm", "layer_height: 5 mm").replace("chord_error: 0.02 mm", "chord_error: 0.1 mm")
     (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
-    done = workshop.launch("plan", "job.yaml", "-o", "out")
+    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     rows = waypoints(workshop.folder)

@@ -103,7 +103,7 @@ def test_a_mesh_on_a_base_given_by_numbers(workshop):
     points, facets = bar.tessellate(0.1)
     Mesh.Mesh([[points[k] for k in facet] for facet in facets]).write(str(workshop.folder / "blade.stl"))
     (workshop.folder / "blade.yaml").write_text(MESH, encoding="utf-8")
-    done = workshop.run("plan", "blade.yaml", "-o", "out")
+    done = workshop.run("plan", "blade.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -127,7 +127,7 @@ def test_a_mesh_in_another_unit_is_scaled(workshop, ending, scale, factor):
         mesh.transform(FreeCAD.Matrix(*(np.diag([1.0, 1.0, 1.0, unit]) / unit).ravel()))
         mesh.write(str(workshop.folder / f"blade.{ending}"))
         (workshop.folder / "blade.yaml").write_text(MESH.replace("blade.stl", f"blade.{ending}{told}"), encoding="utf-8")
-        done = workshop.run("plan", "blade.yaml", "-o", "out")
+        done = workshop.run("plan", "blade.yaml", "-o", "out", "--no-page")
         assert done.status == 0, done.err
         with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
             return np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm")] for row in csv.DictReader(stream)])

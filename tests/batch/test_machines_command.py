@@ -22,7 +22,7 @@ def test_a_urdf_from_the_command_line_is_the_machine(workshop):
 
 @pytest.mark.parametrize("form", ["dh", "modified-dh"])
 def test_a_table_from_the_command_line_is_the_machine(workshop, form):
-    before, heading, *rows, after = workshop.launch("machines", "staubli-tx60", f"--{form}").out.splitlines()
+    before, heading, *rows, after = workshop.run("machines", "staubli-tx60", f"--{form}").out.splitlines()
     assert heading == "axis theta d a alpha" and len(rows) == 6
 
     def pose(line):
@@ -41,5 +41,5 @@ def test_a_table_from_the_command_line_is_the_machine(workshop, form):
     (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"), (["kuka-kr16-2", "--dh", "--urdf"], "not allowed with"),
 ])
 def test_slips_on_the_command_line_are_told(workshop, words, told):
-    done = workshop.launch("machines", *words)
+    done = workshop.run("machines", *words)
     assert done.status == 2 and told in done.err and not done.out

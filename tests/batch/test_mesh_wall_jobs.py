@@ -23,7 +23,7 @@ def test_an_open_mesh_is_a_wall_on_the_platform(workshop):
     side.write(str(workshop.folder / "vase.stl"))
     (workshop.folder / "vase.yaml").write_text(JOB, encoding="utf-8")
     assert jobs.read_job(str(workshop.folder / "vase.yaml")).substrate is None
-    done = workshop.run("plan", "vase.yaml", "-o", "out")
+    done = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "ok" and {"FIRST_LAYER"} <= {issue["code"] for issue in report["issues"]}

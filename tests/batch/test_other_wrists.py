@@ -29,7 +29,7 @@ def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branc
     point = POINTS[name]
     cell = f"deposition_point: [{', '.join(map(str, point))}, 0, 0, 0], branch: {branch}"
     workshop.write_job(JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "ur"))
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 0, done.err
     assert ("note[FOLLOWED]" in done.err) == (name == "fanuc-crx10ia")
     files = workshop.files()
@@ -61,9 +61,9 @@ def test_programs_that_nobody_can_check_are_refused(workshop):
     without["controller"]["posts"] = []
     (workshop.job.parent / "mine.json").write_text(json.dumps(without))
     workshop.write_job(JOB.format(machine="mine.json", cell=cell, post="fanuc"))
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 2 and "error[WRONG_CONTROLLER]" in done.err and "no post for it yet" in done.err
     cell = "deposition_point: [710, 0, 839, 0, 0, 0], branch: [front, up, noflip]"
     workshop.write_job(JOB.format(machine="fanuc-crx10ia", cell=cell, post="fanuc, motion: cartesian"))
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 2 and "error[NOT_FOR_WRIST]" in done.err and "use joint" in done.err

@@ -14,10 +14,10 @@ TEXT, NOZZLE = "The text takes the tool to the planned points", (
 )
 
 
-def planned(workshop, text=None):
+def planned(workshop, text=None, page=False):
     """Exit status, report and the rows of waypoints.csv of the job, or of a text of it."""
     workshop.write_job(text or workshop.text)
-    ended = workshop.run("plan", workshop.job)
+    ended = workshop.run("plan", workshop.job, *(() if page else ("--no-page",)))
     files = workshop.files()
     report = json.loads(files["report.json"])
     rows = list(csv.DictReader(io.StringIO(files["waypoints.csv"].decode())))
@@ -33,7 +33,7 @@ def joints(rows):
 
 
 def test_the_figures_are_those_of_the_waypoints(workshop, root):
-    status, promises, rows, files = planned(workshop)
+    status, promises, rows, files = planned(workshop, page=True)
     assert status == 0
     # a ball of solid material is laid as a skin, and nothing else is wrong with it
     broken = [name for name, entry in promises.items() if entry["ok"] is False]

@@ -29,7 +29,7 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     sections = {section: dict(keys) for section, keys in JOBS[name].items()}
     sections["cell"]["platform_diameter"] = "100 mm"
     workshop.write_job(written(sections))
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3, done.err
     first = done.err.splitlines()[0]
     assert first.startswith("note[REMEDY] job: with `") and first.endswith("this job is feasible; it was planned so")
@@ -40,7 +40,7 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     for section, key, value in told:
         sections.setdefault(section, {})[key] = value
     workshop.write_job(written(sections))
-    again = workshop.run("plan", "cup.yaml")
+    again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err
 
 
@@ -49,7 +49,7 @@ def test_what_was_tried_in_vain_is_told(workshop):
     workshop.write_job(written({
         "cell": {"limits": "paper", "branch": "auto", "deposition_point": "[3000, 0, 3000, 0, 0, 0]"},
     }))
-    done = workshop.run("plan", "cup.yaml")
+    done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3
     told = "note[NO_REMEDY] job: none of these makes the job feasible, each was tried: `"
     assert done.err.startswith((told, "note[REMEDY]"))

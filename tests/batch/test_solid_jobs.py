@@ -82,7 +82,7 @@ def test_the_bracket_to_a_program(workshop, root):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     job = (workshop.folder / "bracket.yaml").read_text(encoding="utf-8")
     (workshop.folder / "bracket.yaml").write_text(job.replace("layer_height: 2 mm", "layer_height: 5 mm"), encoding="utf-8")
-    done = workshop.launch("plan", "bracket.yaml", "-o", "out")
+    done = workshop.run("plan", "bracket.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "ok" and report["counts"]["layers"] == 18
@@ -112,7 +112,7 @@ def test_a_mesh_file_of_several_bodies(workshop):
     first.write(str(workshop.folder / "two.stl"))
     (workshop.folder / "job.yaml").write_text(
         "part: {file: two.stl}\nstrategy: {kind: solid, layer_height: 5 mm, chord_error: 0.1 mm}\n", encoding="utf-8")
-    done = workshop.launch("plan", "job.yaml", "-o", "out")
+    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["counts"]["layers"] == 2

@@ -29,7 +29,7 @@ def made(tmp_path_factory, root, request):
         shutil.copy(folder / name, workshop.folder)
     text = (folder / f"{NAME}.yaml").read_text(encoding="utf-8").replace("motion: cartesian", f"motion: {request.param}")
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "bend.yaml", "-o", "out")
+    done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["joints"]["feasible"] is True

@@ -25,12 +25,12 @@ WORDS = re.compile(r"([A-Z])(-?\d+\.?\d*)")
 def planned(workshop, root):
     """Plans the example, its job changed: report, rows of waypoints.csv, texts by name, the folder."""
 
-    def run(change=lambda text: text):
+    def run(change=lambda text: text, page=False):
         folder = root / "resources" / "examples"
         shutil.copy(folder / "hemisphere.step", workshop.folder)
         text = change((folder / "hemisphere-on-table.yaml").read_text(encoding="utf-8"))
         (workshop.folder / "dome.yaml").write_text(text, encoding="utf-8")
-        done = workshop.run("plan", "dome.yaml", "-o", "out")
+        done = workshop.run("plan", "dome.yaml", "-o", "out", *(() if page else ("--no-page",)))
         assert done.status == 0, done.err
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
@@ -99,7 +99,7 @@ def test_the_text_lays_the_dome(planned):
 
 
 def test_what_is_told_of_axes_is_in_their_units(planned):
-    report, rows, _, out = planned(lambda text: text.replace("layer_height: 2 mm", "layer_height: 5 mm"))
+    report, rows, _, out = planned(lambda text: text.replace("layer_height: 2 mm", "layer_height: 5 mm"), page=True)
     assert report["machine"]["axes"] == ["mx", "my", "mz", "a", "c"]
     assert report["machine"]["units"] == ["mm", "mm", "mm", "deg", "deg"]
     assert list(rows[0])[-5:] == ["mx_mm", "my_mm", "mz_mm", "a_deg", "c_deg"]
@@ -159,7 +159,7 @@ def test_a_wall_on_an_existing_part_on_a_table(workshop, root):
     text += ("cell: {machine: table-xyzbc, setup: rotary-table, platform: 80 mm}\nprocess: {travel_speed: 6 mm/s}\n"
              "program: {post: linuxcnc, motion: cartesian}\n")
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "bend.yaml", "-o", "out")
+    done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
     assert done.status == 0, done.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))

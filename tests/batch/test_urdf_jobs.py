@@ -24,7 +24,7 @@ def planned(workshop):
 
     def run(name, post="none"):
         workshop.write_job(JOB.replace("MACHINE", name).replace("POST", post))
-        return workshop.run("plan", "cup.yaml")
+        return workshop.run("plan", "cup.yaml", "--no-page")
 
     return run
 

@@ -20,7 +20,7 @@ ALIKE = 3  # pixels
 
 
 @pytest.fixture
-def path(person, hemisphere):
+def path(person, hemisphere, rough_map):
     document = hemisphere.Document
     feature = api.make_feature(document, hemisphere, layer_height=9)
     cell = api.make_cell(document, limits="paper")

@@ -86,7 +86,7 @@ def test_a_part_of_revolution_however_it_is_selected(person, coarse, how):
     person.gui.Selection.addSelection(doc.Name, select[0].Name, select[1])
     told = new_job(person)
     assert told["Kind"] == "Part of revolution" and told["error"] == ""
-    assert [obj.Status for obj in api.stages_of(doc)][:3] == ["up to date"] * 3
+    assert [obj.Status for obj in api.stages_of(doc)][:3] == ["up to date"] * 3 and doc.Feature.LayerHeight.Value == 5.0
     wall = api.result(doc.Feature)
     shown = body.Placement if "link" not in how else link.Placement
     frame = (outer.Placement if "link" not in how else App.Placement()).multiply(shown)

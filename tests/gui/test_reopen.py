@@ -21,7 +21,7 @@ from freecad_am import api
 document = App.newDocument("Made")
 part = document.addObject("Part::Feature", "Part")
 part.Shape = Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)
-api.make_feature = functools.partial(api.make_feature, layer_height=5.0, chord_error=0.1)
+api.make_feature_of = functools.partial(api.make_feature_of, values=dict(layer_height=5.0, chord_error=0.1))
 stages = api.make_all(document, part)
 assert len(stages) == 5
 document.saveAs({path!r})

@@ -37,7 +37,7 @@ def docks(person):
 
 
 @pytest.fixture
-def watched(person, job):
+def watched(person, job, rough_map):
     """The job, with all docks that look at it open."""
     for name in DOCKS:
         person.select(job.JointPath)

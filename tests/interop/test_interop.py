@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Paths for other programs: read back by FreeCAD and by readers of our own making, and compared with the beads."""
 
+import functools
 import math
 import os
 
@@ -24,9 +25,9 @@ def job():
     part.Label, part.Radius, part.Angle1, part.Angle2 = LABEL, 45.0, 0, 90
     part.Placement = App.Placement(App.Vector(100, -50, 20), App.Rotation(App.Vector(1, 2, 3), 20))
     doc.recompute()
-    joint_path = api.make_all(doc, part)[3]
-    feature = next(obj for obj in api.stages_of(doc, "feature"))
-    api.change(feature, layer_height=15)
+    with pytest.MonkeyPatch.context() as few:
+        few.setattr(api, "make_feature_of", functools.partial(api.make_feature_of, values={"layer_height": 15.0}))
+        joint_path = api.make_all(doc, part)[3]
     yield joint_path
     App.closeDocument(doc.Name)
 

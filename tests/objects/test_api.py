@@ -253,11 +253,12 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
 @pytest.mark.parametrize("machine", ["kuka-kr6-r900-2", "motoman-ma2010", "staubli-tx60"])
 def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine):
     """At the deposition point and in the branch of the default robot each of these is out of reach or past a limit."""
-    monkeypatch.setattr(api, "make_feature", partial(api.make_feature, layer_height=5.0, chord_error=0.1))
+    few = {"layer_height": 5.0, "chord_error": 0.1}
+    monkeypatch.setattr(api, "make_feature_of", partial(api.make_feature_of, values=few))
     part = doc.addObject("Part::Sphere", "Dome")
     part.Radius, part.Angle1 = 30, 0
     doc.recompute()
-    cell, _, toolpath, joint_path = api.make_all(doc, part, machine=machine)[:4]
-    assert (joint_path.Status, cell.Machine) == ("up to date", machine)
+    cell, feature, toolpath, joint_path = api.make_all(doc, part, machine=machine)[:4]
+    assert (joint_path.Status, cell.Machine, feature.LayerHeight.Value) == ("up to date", machine, 5.0)
     like_default = api.make_cell(doc, machine=machine)
     assert api.make_joint_path(doc, toolpath, like_default).Status == "infeasible"
