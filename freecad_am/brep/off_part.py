@@ -14,7 +14,9 @@ import numpy as np
 import Part
 from numpy.typing import NDArray
 
+from ..core.collision.inside import inside_of
 from ..core.geometry.solid_mesh import SolidMesh
+from ..core.geometry.surroundings import Body
 from .kernel_process import beside
 from .tessellate import triangles_of
 
@@ -56,9 +58,13 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
 
 
 def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
-    """Distances (n,) mm of points (n, 3) outside of a closed mesh, 0 inside."""
-    found: Array = np.maximum(_signed(vertices, triangles, points), 0.0)
-    return found
+    """Distances (n,) mm of points (n, 3) outside of a closed mesh, 0 inside of any piece of it, whatever triangles of others
+    cross that."""
+    away = _signed(vertices, triangles, points)
+    body = inside_of(Body("", vertices, triangles))
+    if body is None:  # a hole that was closed: the side of the nearest triangle is all there is
+        return np.maximum(away, 0.0)
+    return np.where(body.holds(points), 0.0, np.abs(away))
 
 
 def off_facets(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:

@@ -64,6 +64,19 @@ def test_distances_outside_of_solids(rng):
     assert off_mesh(vertices, np.array(triangles), np.array([[5.0, 5, 5], [5, 5, 13]])) == pytest.approx([0.0, 3.0])
 
 
+def test_distances_outside_of_a_mesh_that_cuts_itself(rng):
+    """A rod that sticks in a block: next to its triangles in there the nearest one shows its outside, up to 8 mm away."""
+    vertices, triangles = [], []
+    for solid in (Part.makeBox(40, 40, 40), Part.makeBox(40, 4, 4, Vector(20, 18, 18))):
+        points, corners = solid.tessellate(1.0)
+        triangles += (np.array(corners) + len(vertices)).tolist()
+        vertices += [tuple(point) for point in points]
+    points = np.vstack([rng.uniform(0.5, 39.5, (300, 3)), rng.uniform([40.5, 18.5, 18.5], [59.5, 21.5, 21.5], (50, 3))])
+    assert off_mesh(np.array(vertices), np.array(triangles), points).max() == 0.0
+    aside = rng.uniform([45.0, 23.0, 18.0], [60.0, 26.0, 22.0], (50, 3))
+    assert off_mesh(np.array(vertices), np.array(triangles), aside) == pytest.approx(aside[:, 1] - 22.0, abs=1e-9)
+
+
 def moved(toolpath, way):
     layers = tuple(
         dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, points=bead.points + way) for bead in layer.beads))
