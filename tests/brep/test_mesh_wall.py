@@ -144,3 +144,18 @@ def test_pieces_that_nothing_starts_on_and_walls_that_cut_themselves_are_refused
     with pytest.raises(InputError) as caught:
         wall(points, faces, height=0.01)
     assert caught.value.code == "TOO_FINE"
+
+
+def test_large_facets_are_followed_where_they_meet():
+    """A drum of 40 facets, 30 to 70 mm large, that meet at 10 to 20 deg: edges of the mesh ran across where they meet, up
+    to 0.7 mm off, and beads with them."""
+    points, faces = turned(60.0, 60.0, 80.0, rows=2, sides=20)
+    angle = 1.5 * np.pi / 10.0 * points[:, 2] / 40.0
+    x, y = points[:, 0].copy(), points[:, 1].copy()
+    points[:, 0], points[:, 1] = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
+    made = wall(points, faces)
+    share = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12.0
+    places = np.einsum("sk,mkc->msc", share, points[faces]).reshape(-1, 3)
+    away = np.linalg.norm(made.smooth.project(places)[0] - places, axis=1)
+    assert away.max() < 0.25 and away.max() < made.smoothing + 0.05
+    assert "SMOOTHED" in codes(made)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -19,6 +19,7 @@ from .mesh_repair import WELDS, connected_triangles, mended_issues
 from .patch_wall import Array, PatchWall
 from .refined import Edges, flipped, refined
 from .smooth_mesh import SmoothMesh
+from .solid_mesh import Search, SolidMesh
 from .surface import dot
 from .told import deviation, place
 from .wall_rims import outward_volume
@@ -26,14 +27,19 @@ from .wall_rims import outward_volume
 MOST = 1_500_000  # triangles
 SHORT = 0.55  # of the longest edge; shorter ones are drawn together
 CREASE = np.cos(np.radians(20.0))  # facets that meet at more are areas of their own, whose edges stay where they are
+PLANE = np.cos(np.radians(3.0))  # and for facets larger than the mesh's edges where it would run across such meetings
+ACROSS = 0.05  # of the length of an edge, mm off the facets from which on this is looked at
+PIECE = 1000  # places done together; bounds the memory
 TOLD = 0.02  # mm off the mesh that the smooth surface may be before it is told
 
 
 @dataclass(frozen=True)
 class MeshWall(PatchWall):
-    """A wall whose one piece is the smooth surface through a mesh. samples (n, 3): where the vertices were on its facets."""
+    """A wall whose one piece is the smooth surface through a mesh. samples (n, 3): where the vertices were on its facets.
+    between: mm that the surface is off these, at most, in the middles of triangles."""
 
     samples: Array | None = None
+    between: float = 0.0
 
     @cached_property
     def smooth(self) -> SmoothMesh:
@@ -44,7 +50,8 @@ class MeshWall(PatchWall):
     @property
     def smoothing(self) -> float:
         """How far, mm, the smooth surface is off the mesh, at most."""
-        return 0.0 if self.samples is None else float(np.linalg.norm(self.vertices - self.samples, axis=1).max())
+        at_vertices = 0.0 if self.samples is None else float(np.linalg.norm(self.vertices - self.samples, axis=1).max())
+        return max(at_vertices, self.between)
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
         """On the smooth surface, which goes on a little beyond the edges of the wall."""
@@ -65,7 +72,23 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
     InputError BAD_FILE, NO_SOLID, SELF_INTERSECTION, TOO_FINE.
     """
     read = _read(points, triangles, label, mend)
-    owner = _areas(read.vertices, read.triangles)
+    facets = SolidMesh(read.vertices, read.triangles).searched(edge)
+    wall = _meshed(read, _areas(read.vertices, read.triangles), facets, edge, label)
+    if wall.between > ACROSS * edge:  # edges of the mesh run across a valley or a ridge of large facets
+        other = _meshed(read, _areas(read.vertices, read.triangles, edge), facets, edge, label)
+        wall = other if other.between < wall.between else wall
+    off = wall.smoothing
+    if off <= TOLD or wall.samples is None:
+        return wall
+    farthest = wall.samples[np.argmax(np.linalg.norm(wall.vertices - wall.samples, axis=1))]
+    return replace(wall, issues=(*wall.issues, Issue(
+        NOTE, "SMOOTHED", f"{label}: where facets meet at an angle the wall runs smoothly, up to {deviation(off)} mm off "
+        f"them, at {place(farthest)}",
+    )))
+
+
+def _meshed(read: _Read, owner: Index, facets: Search, edge: float, label: str) -> MeshWall:
+    """The smooth wall through facets, whose areas `owner` (m,) tells apart. InputError TOO_FINE."""
     made = refined(read.vertices, read.triangles, owner, edge, lambda middles, beside, ends: middles, MOST)
     if made is None:
         made = refined(
@@ -85,15 +108,12 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
     if outward_volume(wall) < 0.0:
         wall = _bare(samples, corners[:, ::-1].copy(), label, read.issues)
     smooth, _ = wall.smooth.project(samples)
-    off = np.linalg.norm(smooth - samples, axis=1)
-    issues = read.issues
-    if off.max() > TOLD:
-        issues += (Issue(
-            NOTE, "SMOOTHED", f"{label}: where facets meet at an angle the wall runs smoothly, up to {deviation(off.max())} "
-            f"mm off them, at {place(samples[np.argmax(off)])}",
-        ),)
+    middles = wall.smooth.project(samples[wall.triangles].mean(axis=1))[0]
+    pieces = np.array_split(middles, max(1, len(middles) // PIECE))
+    between = max(float(np.abs(facets.signed(some)[0]).max()) for some in pieces)
     return MeshWall(
-        smooth, wall.triangles, wall.patch, wall.uv, (), (), wall.behind, (), label, (), issues, samples=samples,
+        smooth, wall.triangles, wall.patch, wall.uv, (), (), wall.behind, (), label, (), read.issues, samples=samples,
+        between=between,
     )
 
 
@@ -119,14 +139,17 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
     return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, list(found.mended))))
 
 
-def _areas(vertices: Array, triangles: Index) -> Index:
-    """The smooth area (m,) that each triangle belongs to."""
+def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
+    """The smooth area (m,) that each triangle belongs to. edge: mm; triangles larger than that are one area only where they
+    are nearly of one plane."""
     corner = vertices[triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    size = np.linalg.norm(normal, axis=1)
+    normal /= np.maximum(size, 1e-300)[:, None]
+    large = size > edge * np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)  # the least of its heights
     edges = Edges(triangles)
     one, other = edges.faces[edges.count == 2].T
-    smooth: Mask = dot(normal[one], normal[other]) > CREASE
+    smooth: Mask = dot(normal[one], normal[other]) > np.where(large[one] & large[other], PLANE, CREASE)
     count = len(triangles)
     links = coo_matrix((np.ones(int(smooth.sum())), (one[smooth], other[smooth])), shape=(count, count))
     areas: Index = connected_components(links, directed=False)[1].astype(np.intp)

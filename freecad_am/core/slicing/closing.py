@@ -22,7 +22,7 @@ from ..geometry.mesh import LevelLine, Mesh, chains
 from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 from .even_line import even, rounded
-from .front_curve import Wall, feet
+from .front_curve import Feet, Wall, feet
 from .on_wall import on_wall
 
 Array = NDArray[np.float64]
@@ -47,23 +47,28 @@ ALIKE = 6  # decimals of mm to which vertices of the fine mesh are told apart
 
 
 def closing(
-    wall: Wall, mesh: Mesh, fronts: list[SpaceCurve], passed: Index, height: float, ends: Array, widest: float = 1.0
+    wall: Wall, mesh: Mesh, below: list[SpaceCurve], above: list[SpaceCurve], passed: Index, height: float, ends: Array,
+    widest: float = 1.0,
 ) -> list[SpaceCurve]:
     """The beads, along the middle of gaps, that cover the wall between fronts.
 
-    fronts: of two layers that follow each other, or of the last one. passed: (n,) the vertices of the mesh between them.
-    ends: points (k, 3) along the edges at which layers finish. widest: heights that the layers may be apart.
+    below, above: the fronts of two layers that follow each other, those above none where the wall ends. passed: (n,) the
+    vertices of the mesh between them. ends: points (k, 3) along the edges at which layers finish. widest: heights that the
+    layers may be apart.
     """
     if not len(passed):
         return []
+    fronts = [*below, *above]
     faces = mesh.faces[mesh.faces_at(passed)]
     near = cKDTree(_samples(fronts, SAMPLED * height))
     corners = mesh.vertices[faces]
     share, _ = _parts(corners, COARSE * height)
-    depth = np.asarray(near.query(np.einsum("sk,mkc->msc", share, corners), distance_upper_bound=height)[0])
-    deep: Mask = np.any(depth > (0.5 * widest + SEEN) * height, axis=1)  # infinite where it is farther
-    if not deep.any():
+    places = np.einsum("sk,mkc->msc", share, corners)
+    depth = np.asarray(near.query(places, distance_upper_bound=height)[0])
+    deep: Mask = depth > (0.5 * widest + SEEN) * height  # infinite where it is farther
+    if not deep.any() or (len(above) and not _between(below, above, places, corners, deep)):
         return []
+    deep = deep.any(axis=1)
     # the gap ends within a layer height of where it is deep
     size = np.linalg.norm(np.ptp(corners[deep], axis=1), axis=1).max()
     beside = cKDTree(corners[deep].mean(axis=1)).query(corners.mean(axis=1))[0] < height + 2.0 * size
@@ -83,6 +88,25 @@ def closing(
         found += more
         depth = np.minimum(depth, cKDTree(_samples(more, SAMPLED * height)).query(fine.vertices)[0])
     return found
+
+
+def _between(below: list[SpaceCurve], above: list[SpaceCurve], places: Array, corners: Array, deep: Mask) -> bool:
+    """Whether any of the deep ones (m, s) of places (m, s, 3) on triangles (m, 3, 3) lies between the fronts: not all of
+    them above those above, which have the wall still to come on their left, or below those below."""
+    face, spot = np.nonzero(deep)
+    points = places[face, spot]
+    normal = np.cross(corners[face, 1] - corners[face, 0], corners[face, 2] - corners[face, 0])
+    old, new = feet(below, points), feet(above, points)
+
+    def on_left(found: Feet, fronts: list[SpaceCurve]) -> Mask:
+        slope = np.empty_like(points)
+        for k, front in enumerate(fronts):
+            slope[found.front == k] = front.at(found.w[found.front == k])[1]
+        return dot(np.cross(normal, slope), found.away) > 0.0
+
+    nearer = new.distance < old.distance
+    beyond = np.where(nearer, on_left(new, above), ~on_left(old, below))
+    return not beyond.all()
 
 
 class _Gaps(NamedTuple):

@@ -178,7 +178,7 @@ def layers(
         state = step(wall, rims, below, height, smoothing)
         left -= len(state.passed)
         gaps = [_on_left(wall, gap, below.fronts)
-                for gap in closing(wall, wall.mesh, [*below.fronts, *state.fronts], state.passed, height, ends, widest)]
+                for gap in closing(wall, wall.mesh, below.fronts, state.fronts, state.passed, height, ends, widest)]
         if state.fronts or gaps:
             closed.append(gaps)
         if not state.fronts:
