@@ -64,6 +64,16 @@ def nothing_beside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     return Promise(what, how, not found, balance.beside / MM3, "cm3")
 
 
+def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
+    """Of beads laid over others of their layer."""
+    what = "Little is deposited twice"
+    if balance is None or balance.twice is None:
+        return Promise(what, "not checked: the part is not filled with beads", None)
+    found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING)
+    how = "volume of the beads, as wide as they count, less what they cover, against 10 % of the part"
+    return Promise(what, how, not found, balance.twice / MM3, "cm3", deposit_balance.MUCH * (balance.part or 0.0) / MM3)
+
+
 def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Of beads over nothing."""
     what = "Every bead is carried by what lies below it"

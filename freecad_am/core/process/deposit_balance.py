@@ -9,11 +9,12 @@ from typing import Any
 
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.part_depths import PartDepths
-from ..issues import WARNING, Issue
+from ..issues import NOTE, WARNING, Issue
 from ..toolpath import Toolpath
 
-LEFT_OUT, BESIDE = "NOT_DEPOSITED", "DEPOSITED_BESIDE"
-CODES = (LEFT_OUT, BESIDE)
+LEFT_OUT, BESIDE, TWICE = "NOT_DEPOSITED", "DEPOSITED_BESIDE", "DEPOSITED_TWICE"
+CODES = (LEFT_OUT, BESIDE, TWICE)
+MUCH = 0.1  # of a part that is filled, laid over beads of the same layer
 ROOM = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
 UNFILLED = 0.03  # of a part that is filled
 LITTLE = 0.02  # of a part
@@ -26,7 +27,7 @@ MM3 = 1000.0  # in a cm3
 class Balance:
     """Volumes in mm3, estimates but for solids; None where the part has none. faces: those left out; solids: those left out,
     with mm3. width: of a bead, mm, 0 of solids, which are filled. thick: mm, of the part there.
-    filled: beads fill the part."""
+    filled: beads fill the part. twice: of beads laid over others of their layer."""
 
     label: str
     part: float | None
@@ -38,6 +39,7 @@ class Balance:
     width: float = 0.0
     thick: float = 0.0
     filled: bool = False
+    twice: float | None = None
 
 
 def of_feature(value: Any, width: float) -> Balance | None:
@@ -52,7 +54,10 @@ def of_toolpath(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
     if toolpath.volumes is None:
         return of_feature(value, width)
     part, left, beside = toolpath.volumes
-    return Balance(value.label, part, left, part - left + beside, beside, width=toolpath.bead_width or 0.0, filled=True)
+    return Balance(
+        value.label, part, left, part - left + beside, beside, width=toolpath.bead_width or 0.0, filled=True,
+        twice=toolpath.twice,
+    )
 
 
 def together(balances: Sequence[Balance | None]) -> Balance | None:
@@ -69,7 +74,7 @@ def together(balances: Sequence[Balance | None]) -> Balance | None:
         ", ".join(one.label for one in known), total("part"), total("left_out"), total("beads"), total("beside"),
         tuple(f"{one.label} {face}" for one in known for face in one.faces),
         tuple(solid for one in known for solid in one.solids), width=known[0].width, thick=known[0].thick,
-        filled=all(one.filled for one in known),
+        filled=all(one.filled for one in known), twice=total("twice"),
     )
 
 
@@ -136,6 +141,13 @@ def _of_filling(of: Balance) -> tuple[Issue, ...]:
             WARNING, BESIDE, f"about {(of.beside or 0.0) / MM3:.3g} cm3 of beads lie beside the {part / MM3:.3g} cm3 of "
             f"{of.label}: beads of {of.width:.4g} mm stand out where it is narrower; use narrower beads, or machine it off",
         ))
+    if (of.twice or 0.0) > UNFILLED * part:
+        found.append(Issue(
+            WARNING if (of.twice or 0.0) > MUCH * part else NOTE, TWICE, f"about {(of.twice or 0.0) / MM3:.3g} cm3 of beads "
+            f"are laid over others of their layer, {100.0 * (of.twice or 0.0) / part:.2g} % of {of.label}: where lines and "
+            "their links meet contours, and where room is left for less than a bead; layers get higher there. Use fill: "
+            "contours, narrower beads, or a wider strategy.gap",
+        ))
     return tuple(found)
 
 
@@ -146,6 +158,7 @@ def as_dict(balance: Balance | None) -> dict[str, Any] | None:
     left = None if balance.part is None or balance.left_out is None else balance.part - balance.left_out
     volumes = {
         "part_cm3": balance.part, "deposited_cm3": left, "left_out_cm3": balance.left_out, "beside_cm3": balance.beside,
+        "twice_cm3": balance.twice,
     }
     return {
         **{key: None if volume is None else volume / MM3 for key, volume in volumes.items()},

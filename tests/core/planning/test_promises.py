@@ -152,6 +152,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
             e.toolpath, on_part=(500.0, 0.21, 0.2))}),
         ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
         ("Nothing is deposited beside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
+        ("Little is deposited twice", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
         ("Every bead is carried by what lies below it", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, unsupported=2.0)}),
         ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(

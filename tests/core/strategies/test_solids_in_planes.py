@@ -153,6 +153,29 @@ def test_what_beads_leave_and_what_lies_beside_is_known():
     assert beside == pytest.approx(960.0 + 2 * 8 * math.pi * 2.0, rel=0.2)  # twice as wide, and round ends
 
 
+def test_what_beads_lay_twice_is_known():
+    """Against a raster of how many beads are above each place; zigzags meet contours, lone beads meet nothing."""
+    for part, values, least in (
+        (box((0, 0, 0), (60, 30, 4)), {"fill": "zigzag"}, 0.05), (box((0, 0, 0), (50, 37, 4)), {"fill": "lines"}, 0.01),
+        (box((0, 0, 0), (60, 8, 4)), {"fill": "contours"}, 0.0),
+    ):
+        made = planned(part, layer_height=4.0, **values)
+        lines = [bead.points[:, :2] for _, _, bead in made]
+        x, y = np.meshgrid(np.arange(-2, 63, 0.2), np.arange(-2, 40, 0.2))
+        once = np.zeros(x.shape, dtype=bool)
+        for line in lines:
+            for a, b in zip(line, line[1:]):
+                way = b - a
+                share = np.clip(((x - a[0]) * way[0] + (y - a[1]) * way[1]) / (way @ way), 0.0, 1.0)
+                once |= np.hypot(x - a[0] - share * way[0], y - a[1] - share * way[1]) < 2.0
+        laid = sum(np.hypot(*np.diff(line, axis=0).T).sum() for line in lines) * 4.0
+        expected = (laid - once.sum() * 0.04) * 4.0
+        volume = math.prod(np.ptp(part.vertices, axis=0))
+        assert made.twice == pytest.approx(expected, abs=0.01 * volume)
+        assert made.twice >= least * volume
+    assert planned(box((0, 0, 0), (60, 30, 4)), fill="lines", fill_density=0.5).twice is None
+
+
 def test_touching_and_overlapping_solids_are_one():
     """Two halves of a block, and one with a third that overlaps both: the beads of the block."""
     whole = planned(box((0, 0, 0), (60, 30, 8)))

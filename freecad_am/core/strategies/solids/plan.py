@@ -97,6 +97,7 @@ def plan(
         "solid" if planes else "developable",
         solids.surroundings, None if model is None else model.law(process.acceleration), counted,
         volumes=_volumes(solids, strategy, covers) if planes else None,
+        twice=_twice(made, strategy, covers, counted) if planes and strategy.fill_density == 1.0 else None,
         uneven=np.array([(layer, *uneven[layer]) for layer in sorted(uneven)]) if uneven else None,
     )
 
@@ -114,6 +115,19 @@ def _volumes(solids: SolidsOnHub, strategy: FilledParameters, covers: Sequence[C
     bodies = [body for group in solids.groups for body in group.bodies]
     part = whole if len(bodies) > 1 or strategy.margin else SolidMesh(bodies[0].vertices, bodies[0].triangles).volume
     return part, max(part - whole + left, 0.0), beside
+
+
+def _twice(made: Sequence[Rolled], strategy: FilledParameters, covers: Sequence[Cover], width: float) -> float:
+    """mm3 of beads that count as `width` mm wide, each as wide as they are apart, beyond what they cover."""
+    area = 0.0
+    for bead in (one.bead for one in made):
+        step = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        wide = np.full(len(bead), width) if bead.width is None else bead.width
+        high = np.ones(len(bead)) if bead.height is None else bead.height / strategy.layer_height
+        section = wide * high * strategy.bead_spacing / width
+        area += float((0.5 * (section[1:] + section[:-1])) @ step)
+    once = math.fsum(cover.whole - cover.left + cover.beside for cover in covers)
+    return max(area - once, 0.0) * strategy.layer_height
 
 
 def _bead(
