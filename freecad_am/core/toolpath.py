@@ -260,8 +260,8 @@ class Toolpath:
     of what beads leave of it, and of beads beside it; None where it is not known. feature_label: of one of several.
     features: where several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself
     then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
-    high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer; None
-    where it is not known.
+    high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer;
+    None where it is not known.
     """
 
     layers: tuple[Layer, ...]

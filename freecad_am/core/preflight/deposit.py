@@ -64,14 +64,14 @@ def nothing_beside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     return Promise(what, how, not found, balance.beside / MM3, "cm3")
 
 
-def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Of beads laid over others of their layer."""
-    what = "Little is deposited twice"
-    if balance is None or balance.twice is None:
-        return Promise(what, "not checked: the part is not filled with beads", None)
+def once(balance: Balance | None, issues: Sequence[Issue]) -> tuple[Promise, ...]:
+    """Of beads laid over others of their layer; nothing where beads do not fill the part."""
+    if balance is None or not balance.filled or balance.twice is None:
+        return ()
     found = of_codes([*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING)
-    how = "volume of the beads, as wide as they count, less what they cover, against 10 % of the part"
-    return Promise(what, how, not found, balance.twice / MM3, "cm3", deposit_balance.MUCH * (balance.part or 0.0) / MM3)
+    how = "volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part"
+    limit = deposit_balance.MUCH * (balance.part or 0.0) / MM3
+    return (Promise("Little is deposited twice", how, not found, balance.twice / MM3, "cm3", limit),)
 
 
 def carried(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:

@@ -12,6 +12,7 @@ from ..geometry.space_curve import SpaceCurve
 from ..geometry.surface import dot
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 CLOSER = 4  # places per arc of the curve at which its curvature is taken
 BETWEEN = np.arange(1, 8) / 8.0  # places of a segment at which its distance from the curve is measured
@@ -34,21 +35,24 @@ def within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float)
         corners = np.concatenate([corners + turn * curve.period for turn in (-1, 0, 1, 2)])
     inner = np.unique(corners[(corners > low + 1e-9 * curve.period) & (corners < high - 1e-9 * curve.period)])
     breaks = np.r_[low, inner, high]
-    pieces = [_outlining(curve, _piece(curve, a, b, chord_error))[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
-    return np.concatenate([*pieces, [high]])
+    nodes = curve.refined(CLOSER)
+    if curve.closed:
+        nodes = np.concatenate([nodes[:-1] + turn * curve.period for turn in (-1, 0, 1, 2)])
+    pieces = [_piece(curve, nodes, a, b, chord_error)[:-1] for a, b in zip(breaks[:-1], breaks[1:])]
+    return _outlining(curve, np.concatenate([*pieces, [high]]), np.cumsum([0, *map(len, pieces)]))
 
 
-def _outlining(curve: SpaceCurve, w: Array) -> Array:
-    """The places (n,) on a piece without corners, and more, so that points added between them later by their outline lie on
-    the curve."""
+def _outlining(curve: SpaceCurve, w: Array, ends: Index) -> Array:
+    """The places (n,), and more, so that points added between them later by their outline lie on the curve. ends: (m,)
+    numbers of those where smooth pieces begin and end, the first and the last of all too."""
     asked = np.ones(len(w) - 1, dtype=bool)
     for _ in range(HALVINGS):
         points, along, _ = curve.at(w)
         along /= np.linalg.norm(along, axis=1, keepdims=True)
-        # at the end of the piece the curve may have a corner, where it is that of the next
-        last = curve.at(w[-1:] - 1e-9 * (w[-1] - w[-2]))[1]
+        # at the end of a piece the curve may have a corner, where it is that of the next
+        last = curve.at(w[ends[1:]] - 1e-9 * (w[ends[1:]] - w[ends[1:] - 1]))[1]
         tangents = np.stack([along, along], axis=1)
-        tangents[-1, 0] = last[0] / np.linalg.norm(last)
+        tangents[ends[1:], 0] = last / np.linalg.norm(last, axis=1, keepdims=True)
         some = np.repeat(np.flatnonzero(asked), len(INSIDE))
         share = np.tile(INSIDE, int(asked.sum()))
         drawn = outline(points, tangents).at(some, share)[0]
@@ -61,6 +65,7 @@ def _outlining(curve: SpaceCurve, w: Array) -> Array:
         asked[bad] = True
         w = np.insert(w, bad + 1, 0.5 * (w[bad] + w[bad + 1]))
         asked = np.insert(asked, bad + 1, True)
+        ends = ends + np.searchsorted(bad, ends)
     return w
 
 
@@ -76,12 +81,10 @@ def chord_errors(curve: SpaceCurve, w: Array) -> Array:
     return distance
 
 
-def _piece(curve: SpaceCurve, low: float, high: float, chord_error: float) -> Array:
-    """A stretch without corners inside: places equally spread by what the curvature asks for."""
-    nodes = curve.refined(CLOSER)
-    if curve.closed:
-        nodes = np.concatenate([nodes[:-1] + turn * curve.period for turn in (-1, 0, 1, 2)])
-    w = np.r_[low, nodes[(nodes > low) & (nodes < high)], high]
+def _piece(curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error: float) -> Array:
+    """A stretch without corners inside: places equally spread by what the curvature asks for. nodes: (n,), rising, between
+    which that is taken."""
+    w = np.r_[low, nodes[np.searchsorted(nodes, low, side="right") : np.searchsorted(nodes, high)], high]
     _, slope, bend = curve.at(0.5 * (w[1:] + w[:-1]))
     pace = np.linalg.norm(slope, axis=1)
     curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / pace**3
