@@ -2897,6 +2897,11 @@
         <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>Little is deposited twice</source>
+        <translation>Peu de matière est déposée deux fois</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>Loaded parts and tools that stand on other tools have been tried with a dry run</source>
         <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
@@ -5680,6 +5685,11 @@
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>a {0} in {1} lacks {2}</source>
         <translation>il manque {2} à un élément {0} de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit_balance.py"/>
+        <source>about {0} cm3 of beads are laid over others of their layer, {1} % of {2}: where lines and their links meet contours, and where room is left for less than a bead; layers get higher there. Use fill: contours, narrower beads, or a wider strategy.gap</source>
+        <translation>environ {0} cm3 de cordons sont déposés sur d&apos;autres de leur couche, {1} % de {2} : là où les lignes et leurs liaisons rejoignent les contours, et là où il reste de la place pour moins d&apos;un cordon ; les couches y deviennent plus hautes. Utilisez fill : contours, des cordons plus étroits, ou un strategy.gap plus large</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
@@ -10015,6 +10025,11 @@
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>volume</source>
         <translation>volume</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/deposit.py"/>
+        <source>volume of the beads, as wide as they are apart, less what they cover, against 10 % of the part</source>
+        <translation>volume des cordons, aussi larges que leur écartement, moins ce qu&apos;ils couvrent, par rapport à 10 % de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/deposit.py"/>
