@@ -78,11 +78,13 @@ def _verify_joints(
     shown[:, endless] = np.unwrap(shown[:, endless], axis=0)
     half = text_path.digits(cell, read)
     path, flange = text_path.joint_path(cell, shown, half)
+    second = points.second_opinion(cell, planned, shown, flange)
+    del flange  # of all that is looked at the largest
     issues += points.joint_issues(cell, planned, read, endless) + points.point_issues(planned, path)
     strayed, off = between.beads_between(cell, planned, shown, path, chord_error)
     issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
     text = text_path.text_joints(cell, planned, shown, half, path, None)
-    return _concluded(cell, planned, read, path, text, strayed, (shown, flange), issues)
+    return _concluded(cell, planned, read, path, text, strayed, second, issues)
 
 
 def _verify_poses(
@@ -109,7 +111,8 @@ def _verify_poses(
         strayed, off = between.tools_between(cell, planned, asked, tools, told, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
     text = text_path.text_joints(cell, planned, read.joints, text_path.digits(cell, read), told, asked)
-    return _concluded(cell, planned, read, told, text, strayed, (joints, flange), issues)
+    second = points.second_opinion(cell, planned, joints, flange)
+    return _concluded(cell, planned, read, told, text, strayed, second, issues)
 
 
 def _verify_tips(cell: Cell, planned: Planned, program: Program, read: ReadMoves, issues: list[Issue]) -> Verification:
@@ -123,7 +126,8 @@ def _verify_tips(cell: Cell, planned: Planned, program: Program, read: ReadMoves
     issues += points.point_issues(planned, path) + points.point_issues(planned, told)
     shown = _in_turns(cell, planned, program, read)
     text = text_path.text_joints(cell, planned, shown, text_path.digits(cell, read), told, None)
-    return _concluded(cell, planned, read, told, text, 0.0, (joints, flange), issues)
+    second = points.second_opinion(cell, planned, joints, flange)
+    return _concluded(cell, planned, read, told, text, 0.0, second, issues)
 
 
 def _in_turns(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Array | None:
@@ -138,12 +142,12 @@ def _in_turns(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -
 
 def _concluded(
     cell: Cell, planned: Planned, read: ReadMoves, path: text_path.Path, text: text_path.Joints, strayed: float,
-    other: tuple[Array, Array], issues: list[Issue],
+    second: tuple[list[Issue], tuple[str, ...]], issues: list[Issue],
 ) -> Verification:
-    """What is looked at whatever the text is told in: rapids, limits, the second solver on joints and flanges (`other`)."""
+    """What is looked at whatever the text is told in, rapids and limits; what the second solver said, and who solved."""
     wandered, off = between.rapids_between(cell, planned, text, path, read.linear)
     issues += planned.issue("VERIFY_BETWEEN", off, WANDERS.format(wandered))
     issues += points.limit_issues(cell, planned, text)
-    solver_issues, solvers = points.second_opinion(cell, planned, *other)
+    solver_issues, solvers = second
     at_points = float(np.linalg.norm(path.position - planned.position, axis=1).max())
     return Verification(tuple(issues + solver_issues), at_points, strayed, float(path.bound.max()), solvers)

@@ -22,7 +22,7 @@ Words = NDArray[np.uint64]
 
 SHORTEST = 64  # numbers in a stretch worth leaving out
 EVERY = 32  # numbers from one place that may be found again to the next: half of SHORTEST, so that none is missed
-TABLE = 22  # bits
+MOST_BITS = 24  # of the table of marks; of each 32 of its places one is taken at the most, as far as this goes
 MOST_TRIED = 300_000
 PIECE = 1 << 16  # places that are looked at together
 FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0xD6E8FEB86659FD93], dtype=np.uint64)
@@ -171,8 +171,9 @@ def _candidates(words: Words) -> tuple[Index, Index]:
     known, first = np.unique(_marks([words[anchors + k] for k in range(len(FACTORS))]), return_index=True)
     if not len(known):
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    shift = np.uint64(64 - TABLE)
-    table = np.zeros(1 << TABLE, dtype=bool)
+    bits = min(MOST_BITS, len(known).bit_length() + 5)
+    shift = np.uint64(64 - bits)
+    table = np.zeros(1 << bits, dtype=bool)
     table[(known >> shift).astype(np.intp)] = True
     found = []
     for start in range(0, count, PIECE):

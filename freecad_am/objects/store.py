@@ -41,15 +41,14 @@ def pack(value: Any, key: str) -> tuple[list[float], str]:
     """The floats and the text of a value, both marked with the key. TypeError for what is not data."""
     packer = _Packer()
     tree = packer.tree(value, ())
-    numbers, tables = packer.columns()
-    once, runs = repeats.without_runs(numbers)
+    once, runs = repeats.without_runs(packer.columns())
     rest, copies = repeats.folded(once)
+    sizes = [len(rest), len(once), len(copies), len(runs)]
+    del once  # as large as all that comes after it
     indices = np.concatenate([copies.ravel(), runs.ravel()]).astype(np.float64)
     pieces, where = differences.packed(rest), differences.packed(indices)
-    # the files of a program are much alike, and far apart for zlib
-    data = lzma.compress(packer.data, preset=1) if packer.data else b""
-    layout = {"n": [len(rest), len(once), len(copies), len(runs)], "p": [len(data), [*map(len, pieces)], [*map(len, where)]],
-              "t": tables, "v": tree}
+    data = packer.bytes()
+    layout = {"n": sizes, "p": [len(data), [*map(len, pieces)], [*map(len, where)]], "t": packer.told(), "v": tree}
     floats = np.concatenate([[_mark(key)], _floats_of(b"".join([data, *pieces, *where]))])
     return floats.tolist(), f"{key} {json.dumps(layout, separators=(',', ':'))}"
 
@@ -142,7 +141,14 @@ class _Packer:
         self.kinds: dict[Any, int] = {}  # the table of arrays of each kind
         self.tables: list[list[NDArray[Any]]] = []
         self.rows: list[int] = []  # of each table
-        self.data = bytearray()
+        # the files of a program are much alike, and far apart for zlib; one by one, for together they take much memory
+        self.compressor = lzma.LZMACompressor(preset=1)
+        self.compressed: list[bytes] = []
+        self.size = 0  # of all bytes
+
+    def bytes(self) -> bytes:
+        """All bytes, compressed; none of none. Once, at the end."""
+        return b"".join([*self.compressed, self.compressor.flush()]) if self.size else b""
 
     def tree(self, value: Any, place: Place) -> Any:
         """What stands for a value in the text; `place`: names that lead to it, where entries have none."""
@@ -153,8 +159,9 @@ class _Packer:
         if isinstance(value, np.ndarray):
             return {"a": self.put(value, place)}
         if isinstance(value, (bytes, bytearray)):
-            self.data += value
-            return {"y": [len(self.data) - len(value), len(value)]}
+            self.compressed.append(self.compressor.compress(value))
+            self.size += len(value)
+            return {"y": [self.size - len(value), len(value)]}
         if isinstance(value, (tuple, list)):
             return {"t": [self.tree(entry, (*place, "")) for entry in value]}
         if isinstance(value, dict):
@@ -183,8 +190,12 @@ class _Packer:
         self.rows[number] += len(value)
         return [number, first, len(value)]
 
-    def columns(self) -> tuple[NDArray[np.float64], list[list[int]]]:
-        """All tables column by column, and of each dtype, rows, and the shape of a row."""
+    def told(self) -> list[list[int]]:
+        """Of each table dtype, rows, and the shape of a row."""
+        return [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
+
+    def columns(self) -> NDArray[np.float64]:
+        """All tables column by column."""
         whole, start = np.empty(sum(value.size for arrays in self.tables for value in arrays)), 0
         for arrays, rows in zip(self.tables, self.rows, strict=True):
             size = sum(value.size for value in arrays)
@@ -193,8 +204,7 @@ class _Packer:
                 table[:, row : row + len(value)] = value.reshape(len(value), len(table)).T
                 row += len(value)
             start += size
-        told = [[dtype, rows, *shape] for (_, dtype, shape), rows in zip(self.kinds, self.rows, strict=True)]
-        return whole, told
+        return whole
 
 
 class _Reader:

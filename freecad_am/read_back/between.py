@@ -84,7 +84,8 @@ def _off_segments(
     squared = np.maximum(np.einsum("ni,ni->n", step, step), 1e-300)
     share = np.clip(np.einsum("nki,ni->nk", away, step) / squared[:, None], 0.0, 1.0)
     away -= share[..., None] * step[:, None]
-    distance = np.sqrt(np.einsum("nki,nki->nk", away, away).max(axis=1))
+    apart = np.einsum("nki,nki->nk", away, away)
+    distance = np.sqrt(np.maximum.reduce([apart[:, k] for k in range(len(BETWEEN))]))
     return float(distance.max()), ~(distance <= chord_error + np.maximum(path.bound[ends - 1], path.bound[ends]))
 
 

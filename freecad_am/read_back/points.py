@@ -36,15 +36,21 @@ def joint_issues(cell: Cell, planned: Planned, read: ReadMoves, endless: Mask) -
 
 def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
     """Whether the joints that a text asks for are within the limits of the cell, but for its digits."""
-    limits = cell.limits
-    over = -limits.margin(text.serial) - np.hstack([text.reach, text.reach @ np.abs(limits.coefficients).T])
-    row, label = np.unravel_index(int(np.argmax(over)), over.shape)
-    if over[row, label] <= COMPUTED_AXIS:
+    limits, wrong = cell.limits, np.zeros(len(text.serial), dtype=bool)
+    worst, label = -np.inf, 0
+    for rows in pieces(np.arange(len(text.serial))):
+        reach = text.reach[rows]
+        over = -limits.margin(text.serial[rows]) - np.hstack([reach, reach @ np.abs(limits.coefficients).T])
+        wrong[rows] = (over > COMPUTED_AXIS).any(axis=1)
+        most = np.nan_to_num(np.fmax.reduce(over), nan=-np.inf)
+        if most.max() > worst:
+            worst, label = float(most.max()), int(most.argmax())
+    if worst <= COMPUTED_AXIS:
         return []
     unit = cell.machine.units[label] if label < limits.axes else "deg"
-    most = over[row, label] / (cell.machine.unit_values[label] if label < limits.axes else np.radians(1.0))
-    message = f"the text takes {limits.labels[label]} up to {most:.3g} {unit} beyond its limit"
-    return planned.issue("VERIFY_LIMIT", np.asarray((over > COMPUTED_AXIS).any(axis=1)), message)
+    shown = worst / (cell.machine.unit_values[label] if label < limits.axes else np.radians(1.0))
+    message = f"the text takes {limits.labels[label]} up to {shown:.3g} {unit} beyond its limit"
+    return planned.issue("VERIFY_LIMIT", wrong, message)
 
 
 def point_issues(planned: Planned, path: Path) -> list[Issue]:

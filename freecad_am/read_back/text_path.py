@@ -109,9 +109,10 @@ def text_joints(cell: Cell, planned: Planned, shown: Array | None, half: Array, 
     shown = np.full_like(given, np.nan) if shown is None else shown
     unknown = np.isnan(shown)
     serial = machine.from_controller(np.where(unknown, given, shown))
-    reach = np.tile(np.abs(np.linalg.inv(machine.controller_matrix)) @ half, (len(serial), 1))
+    reach = np.broadcast_to(np.abs(np.linalg.inv(machine.controller_matrix)) @ half, serial.shape)
     rows = np.flatnonzero(unknown.any(axis=1))
     if len(rows):
+        reach = reach.copy()
         columns, away, about = _to_tip(cell, serial[rows], path, rows) if asked is None else _to_flange(
             cell, serial[rows], path, asked[rows], rows)
         inverse = np.linalg.pinv(columns * unknown[rows, None, :], rcond=1e-9)

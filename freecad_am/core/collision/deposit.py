@@ -22,13 +22,14 @@ PART = 25_000  # points of the parts of a deposit that is made again whenever it
 
 def of_beads(
     points: Array, build: Array, width: Array | float, height: Array | float, starts: Mask | Index,
-    moments: Index | None = None, grain: float = 0.0, beside: float = 0.0,
+    moments: Index | None = None, grain: float = 0.0, beside: float = 0.0, short: bool = False,
 ) -> Obstacles:
     """The deposit of points (n, 3) in the order of deposition, on which beads stand along unit vectors build (n, 3).
 
     width, height: mm, of all or (n,). starts: the points at which beads begin, by numbers or (n,) marks. moments: (n,) at
     which each point is laid, rising; by default its number. grain: mm, pieces are joined as long as they are not longer than
     this. beside: mm, pieces of the layer being laid are next to the tip no farther from it than they are wide, or than this.
+    short: pieces are short against what is asked about them.
     A piece is there from the moment of the point at its end. Where no bead has a width, or a height, they are lines.
     """
     n = len(points)
@@ -78,7 +79,7 @@ def of_beads(
     return Obstacles(
         np.concatenate([hull, wedge]), np.concatenate([since, since[turned + 1]]),
         np.concatenate([round_, np.maximum(round_[turned], round_[turned + 1])]),
-        np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), beside),
+        np.concatenate([line, line[turned + 1]]), np.maximum(np.concatenate([wide, wide[turned]]), beside), short,
     )
 
 
@@ -108,19 +109,28 @@ class InParts:
         begins[self.starts] = True
         for first in range(0, count, PART):
             rows = np.flatnonzero(~found if moment is None else ~found & (moment > first))
-            if not len(rows):
-                continue
             # with the two pieces before, for what is filled at the corner between two
             part = slice(max(first - 2, 0), min(first + PART, count))
+            rows = rows[self._near(part, solid.rows(rows), tip[rows], axis[rows])]
+            if not len(rows):
+                continue
             laid = of_beads(
                 self.points[part], self.build[part], self.width[part], self.height[part], begins[part],
-                np.arange(part.start, part.stop), **self.what,
+                np.arange(part.start, part.stop), short=True, **self.what,
             )
             found[rows] = laid.touched(
                 solid.rows(rows), tip[rows], axis[rows], None if moment is None else moment[rows],
                 None if own is None else own[rows],
             )
         return found
+
+    def _near(self, part: slice, solid: Frustum, tip: Array, axis: Array) -> Mask:
+        """False for solids (k,) that surely miss all pieces of a part: none is farther from its points than it is wide and
+        high."""
+        low, high = self.points[part].min(axis=0), self.points[part].max(axis=0)
+        size = float(self.width[part].max() + self.height[part].max())
+        half = np.broadcast_to(0.5 * (high - low), tip.shape)
+        return solid.near_box(0.5 * (low + high) - tip, axis, half, np.full(len(tip), size))
 
 
 def _unit(vectors: Array) -> Array:

@@ -32,14 +32,15 @@ class Obstacles:
 
     since: (m,) the moment from which each is there; none, then always. line: (m, 2, 3) the segments along which the pieces
     of beads are laid, which they count as where they are of the layer being laid, no farther from the tip than `beside`
-    (m,) mm.
+    (m,) mm. chained: they are short, and those that follow each other mostly touch.
     """
 
     def __init__(
         self, corners: Array, since: Index | None = None, radius: Array | None = None, line: Array | None = None,
-        beside: Array | None = None,
+        beside: Array | None = None, chained: bool = False,
     ) -> None:
-        order = tree.packed(corners.mean(axis=1))
+        middles = separation.middles(corners)
+        order = tree.chained(middles) if chained else tree.packed(middles)
         self.corners = corners[order]
         self.since = np.full(len(corners), ALWAYS, dtype=np.intp) if since is None else since[order]
         self.radius = None if radius is None else radius[order]
@@ -64,7 +65,7 @@ class Obstacles:
         centre = 0.5 * (low + high)
         apart = self.corners - np.repeat(centre, size, axis=0)[: len(self.corners), None]
         squared = np.einsum("ijk,ijk->ij", apart, apart)
-        away = np.sqrt(np.maximum.reduce([squared[:, k] for k in range(squared.shape[1])]))
+        away = np.sqrt(separation.largest(squared))
         round_ = np.zeros(len(starts))
         if self.radius is not None:
             away = away + self.radius
@@ -156,7 +157,7 @@ class Obstacles:
         rows, line = beside[next_], line[next_]
         meets[rows] = solid.rows(rows).meets_segments(line[:, 0], line[:, 1], axis[rows])
         # most are below the solid's lower end: a box about a piece that lies across the axes tells it less well
-        whole = np.einsum("kcj,kj->kc", offset, axis).max(axis=1) + self.radius[node] > solid.low
+        whole = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius[node] > solid.low
         whole[rows] = False
         rows = np.flatnonzero(whole)
         meets[rows] = separation.any_within(

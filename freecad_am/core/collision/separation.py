@@ -25,7 +25,7 @@ def bounds(
     count = len(points)
     low, high = np.zeros(count), np.zeros(count)
     nearer, farther = np.broadcast_to(nearer, count), np.broadcast_to(farther, count)
-    middle = points.mean(axis=1)
+    middle = middles(points)
     place = solid.nearest(middle, axis) - middle
     high[:] = np.sqrt(_dot(place, place))
     rows = np.flatnonzero(high > np.maximum(nearer, CONVERGED))
@@ -67,7 +67,7 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     """(k,) as `within`, but of the hulls asked for by one query (k,) no more than needed to know whether any does: those
     with the nearest middle are looked at first, and the others where that does not."""
     deep = np.maximum(radius - CONVERGED, 0.0)
-    middle = points.mean(axis=1)
+    middle = middles(points)
     place = solid.nearest(middle, axis) - middle
     gap = np.sqrt(_dot(place, place))
     found: Mask = (gap < deep) | (gap == 0.0)
@@ -75,7 +75,7 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     met[query[found]] = True
     # no point of a hull is farther from its middle than a corner
     spread = points - middle[:, None]
-    spread = np.sqrt(np.einsum("kcj,kcj->kc", spread, spread).max(axis=1))
+    spread = np.sqrt(largest(np.einsum("kcj,kcj->kc", spread, spread)))
     left = np.flatnonzero(~met[query] & (gap - spread < deep + ROUNDING))
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
     first = np.diff(query[left], prepend=-1) != 0
@@ -83,6 +83,21 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
         now = some[~met[query[some]]]
         found[now] = within(solid.rows(now), axis[now], points[now], radius[now])
         met[query[now[found[now]]]] = True
+    return found
+
+
+def middles(points: Array) -> Array:
+    """(k, 3) the means of points (k, c, 3): column by column many times as fast as along an axis of so few."""
+    middle = points[:, 0].copy()
+    for column in range(1, points.shape[1]):
+        middle += points[:, column]
+    middle /= points.shape[1]
+    return middle
+
+
+def largest(values: Array) -> Array:
+    """(k,) the largest of values (k, c), column by column as well."""
+    found: Array = np.maximum.reduce([values[:, column] for column in range(values.shape[1])])
     return found
 
 

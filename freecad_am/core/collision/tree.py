@@ -41,6 +41,16 @@ def packed(points: Array) -> Index:
     return found
 
 
+def chained(points: Array) -> Index:
+    """The same of points (n, 3) of which those that follow each other are near each other: BRANCH of them in a row stay one
+    node, which takes a fraction of the time."""
+    whole = len(points) // BRANCH
+    middle = np.add.reduceat(points[: whole * BRANCH], np.arange(whole) * BRANCH) if whole else points[:0]
+    node = packed(middle)
+    rest = np.arange(whole * BRANCH, len(points))
+    return np.concatenate([(node[:, None] * BRANCH + np.arange(BRANCH)).ravel(), rest])
+
+
 def sizes(count: int) -> list[int]:
     """How many things a node holds, level by level from the single ones up, of so many things in all."""
     found = [1]

@@ -253,8 +253,15 @@ def _moves(
         position=position, rotation=rotation, configuration=configuration, direction=direction, wire=wire if told else None,
         flange=flange,
         interpolation=LINEAR_MOVE if kind == DEPOSIT and parameters.motion == "cartesian" else JOINT_MOVE,
-        stops=motion.stops[rows], role=tuple(ROLES[role] for role in motion.role[rows].tolist()),
+        stops=motion.stops[rows], role=_roles(motion.role[rows]),
     )
+
+
+def _roles(role: NDArray[np.int64]) -> tuple[str, ...]:
+    """The words (n,) of roles; those of a bead are alike."""
+    if (role == role[0]).all():
+        return (ROLES[int(role[0])],) * len(role)
+    return tuple(ROLES[one] for one in role.tolist())
 
 
 def _frames(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:

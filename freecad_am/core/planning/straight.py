@@ -45,10 +45,11 @@ def deviation(task: Task, bead: Bead, joints: Array) -> Array:
     start, end = joints[:-1], joints[1:]
     away = task.cell.tip_at(start[:, None] + (end - start)[:, None] * INSIDE[:, None]) - bead.points[:-1, None]
     along = np.diff(bead.points, axis=0)
-    squared = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
-    share = np.clip(np.einsum("nki,ni->nk", away, along) / squared[:, None], 0.0, 1.0)
+    length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-18)
+    share = np.clip(np.einsum("nki,ni->nk", away, along) / length[:, None], 0.0, 1.0)
     away -= share[..., None] * along[:, None]
-    distance: Array = np.sqrt(np.einsum("nki,nki->nk", away, away).max(axis=1))
+    squared = np.einsum("nki,nki->nk", away, away)
+    distance: Array = np.sqrt(np.maximum.reduce([squared[:, k] for k in range(len(INSIDE))]))
     return distance
 
 
