@@ -45,6 +45,7 @@ from .core.parameters.strategy import (
     SolidParameters,
     SurfaceParameters,
 )
+from .core.planning.program import written_by
 from .objects import stage as stages
 from .objects import user_machines
 from .objects.cell import Cell
@@ -257,7 +258,7 @@ def make_all(
         toolpath = make_toolpath(doc, features, made[0], **(process or {}))
         path = make_joint_path(doc, toolpath, made[0])
         made += [*features, toolpath, path]
-        posts = machines.load(chosen.machine, user_machines.folders()).posts
+        posts = written_by(machines.load(chosen.machine, user_machines.folders()))
         wanted = post or ProgramParameters().post
         post = wanted if posts is None or wanted in posts else next(iter(posts), "")
         if path.Status == "up to date" and post:

@@ -166,13 +166,14 @@ class Program:
     comments. motion: 'joint' or 'cartesian', whether places are told as joint values or as positions; rapids are joint moves
     in either. deposit points run at constant speed at the deposition point. blend: percent of the rounding of corners that
     the controller knows, where moves pass through.
-    max_speed: rad/s of each axis, mm/s of linear ones, infinite where not known. station, carried: X Y Z mm, RX RY RZ
-    rad. With the part on the robot, of the deposition point in the maker's base frame and of the program's origin on the
-    flange; with the tool on the robot, of the program's origin in the maker's base frame and of the nozzle's tip on the
-    flange. On a rotary table, of the torch's tip with all axes at zero, and of the program's origin on the table's face:
-    the work offset with the rotary axes at zero. axis_names: how the controller writes each axis, such as X Y Z A C;
-    axis_kinds: 'linear' or 'rotary', one each. Both are empty for robots, whose axes go by number. nc: for five-axis
-    machines alone.
+    max_speed: rad/s of each axis, mm/s of linear ones, infinite where not known. pulses_per_degree: of each axis, and
+    speed_unit of path speeds, of controllers that count so, as far as the machine file says.
+    station, carried: X Y Z mm, RX RY RZ rad. With the part on the robot, of the deposition point in the maker's base frame
+    and of the program's origin on the flange; with the tool on the robot, of the program's origin in the maker's base frame
+    and of the nozzle's tip on the flange. On a rotary table, of the torch's tip with all axes at zero, and of the program's
+    origin on the table's face: the work offset with the rotary axes at zero.
+    axis_names: how the controller writes each axis, such as X Y Z A C; axis_kinds: 'linear' or 'rotary', one each. Both are
+    empty for robots, whose axes go by number. nc: for five-axis machines alone.
     """
 
     name: str
@@ -189,6 +190,8 @@ class Program:
     dry_run: bool = False
     remarks: tuple[str, ...] = ()
     max_speed: tuple[float, ...] = ()
+    pulses_per_degree: tuple[float, ...] = ()
+    speed_unit: str = ""
     station: Six | None = None
     carried: Six | None = None
     axis_names: tuple[str, ...] = ()
@@ -244,7 +247,8 @@ class ReadMoves:
 
     joints: (n, axes) controller values, rad, and mm of linear axes, exactly as many digits as the text has; rows told in
     Cartesian positions are NaN, None when all are; of texts that give positions and rotary axes, the linear axes alone
-    are NaN. digits: half of the last digit of the joint values, rad; linear_digits: of linear axes, mm. duration: (n,) s,
+    are NaN. digits: half of the last digit of the joint values, rad, one or (axes,); linear_digits: of linear axes, mm.
+    duration: (n,) s,
     NaN where the text gives a speed; duration_digits: (n,) s by which its digits may be off, milliseconds and tenths
     when left out. deposit: (n,) bool, whether the deposit is on during the move that ends at the point.
     position, rotation, position_digits (mm), rotation_digits (rad): the same for Cartesian texts; direction (n, 3), as
@@ -262,6 +266,7 @@ class ReadMoves:
     linear: (n,) bool, moves whose tip runs straight, where joints do not. stops: (n,) bool, moves at whose end the machine
     stands still. blend, percent, or rounding, mm: (n,) how far corners are rounded where it does not, if the text says so;
     rounding is NaN at stops that name none.
+    level: (n,) of the eight by which the controller grades rounded corners, 0 where it stops.
     blend_radius: (n,) mm about the end of a move in which it may be left for the next one, 0 where it stops, counted on the
     way of the tool in `tool`. near: (n, axes) rad, joint values that those of a position are to be next to, NaN where the
     text gives none, with near_digits.
@@ -271,7 +276,7 @@ class ReadMoves:
     """
 
     joints: Array | None
-    digits: float
+    digits: float | Array
     duration: Array
     deposit: Mask
     linear: Mask
@@ -299,6 +304,7 @@ class ReadMoves:
     wire_output: int | None = None
     blend: Array | None = None
     rounding: Array | None = None
+    level: Array | None = None
     blend_radius: Array | None = None
     near: Array | None = None
     near_digits: float = 0.0

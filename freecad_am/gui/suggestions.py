@@ -9,6 +9,7 @@ from typing import Any
 from ..core.issues import InputError
 from ..core.kinematics import machine
 from ..core.parameters.program import ProgramParameters
+from ..core.planning.program import written_by
 from ..core.process import bead_table
 from ..objects import preferences, user_machines
 from ..posts import catalogue
@@ -46,8 +47,11 @@ def no_post(name: str) -> str:
         told = machine.load(name, user_machines.folders())
     except InputError:
         return ""
-    if told.posts is None or told.posts:
+    if written_by(told) is None or written_by(told):
         return ""
+    if told.posts:
+        return tr("Programs for this machine need what only its controller tells, its pulses per degree, in a machine file "
+                  "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
     return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
               "written. Export Path… writes its points as a table.")
 
@@ -58,7 +62,7 @@ def post_for(path: Any) -> str:
     if path is None or path.Cell is None:
         return ""
     try:
-        posts = machine.load(path.Cell.Machine, user_machines.folders()).posts
+        posts = written_by(machine.load(path.Cell.Machine, user_machines.folders()))
     except InputError:
         return ""
     wanted = preferences.post() or ProgramParameters().post

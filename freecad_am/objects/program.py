@@ -101,7 +101,8 @@ class Program(Stage):
 
 
 def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramParameters) -> None:
-    """What can be refused before anything is planned: InputError WRONG_CONTROLLER, NOT_FOR_WRIST, NO_WIRE_OUTPUT,
+    """What can be refused before anything is planned: InputError WRONG_CONTROLLER, NOT_FOR_WRIST,
+    NO_PULSES, NO_SPEED_UNIT, NO_WIRE_OUTPUT,
     UNSUPPORTED_FRAME and others of the post. A cell resolved without the feature's frame will do; an origin that is given by
     numbers is then not looked at."""
     if parameters.post == "none":
@@ -109,6 +110,7 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
     post: Any = catalogue.load(parameters.post)
     programs.check_controller(cell.machine, parameters.post)
     programs.check_wrist(cell.machine, parameters.motion, parameters.post)
+    programs.check_pulses(cell.machine, parameters.motion, parameters.post)
     post.refuse_setup(parameters.motion, cell.setup)
     carried = programs.on_table(cell, parameters)
     if parameters.post == "linuxcnc" and parameters.motion == "cartesian" and carried is not None:

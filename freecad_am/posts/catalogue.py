@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from ..core.issues import InputError
 from ..core.program import Program, ReadMoves
 
-NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "abb")  # of the modules beside this one
+NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb")  # of the modules beside this one
 # whose linear moves with the part on the robot run straight as the part sees them: their beads need no points in between
 STRAIGHT_IN_PART = ("abb",)
 

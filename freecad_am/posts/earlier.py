@@ -13,7 +13,7 @@ import re
 # of every main program: remarks that it begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
 # endings of main programs, and those of their parts
-PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".mod": ".mod"}
+PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".jbi": ".jbi", ".mod": ".mod"}
 APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
 # how a program of a kind says its own name: a copy under another name is somebody's
 _TITLES = {".ls": r"/PROG\s+{}\s", ".mod": r"MODULE\s+{}\s"}
@@ -44,9 +44,10 @@ def programs(folder: str) -> dict[str, set[str]]:
 
 
 def _is_ours(text: str, stem: str, ending: str) -> bool:
-    head = text[:_HEAD]
+    start = text.find("//INST") if ending.lower() == ".jbi" else 0  # remarks of a job follow its positions
+    head = text[start : start + _HEAD] if start >= 0 else ""
     title = _TITLES.get(ending.lower())
-    if title and not re.match(title.format(re.escape(stem)), head, re.IGNORECASE):
+    if title and not re.match(title.format(re.escape(stem)), text, re.IGNORECASE):
         return False
     return all(remark in head for remark in OUR_REMARKS)
 

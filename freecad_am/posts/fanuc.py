@@ -34,7 +34,7 @@ from . import fanuc_numbers as numbers
 from .fanuc_read import read
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed
+from .parts import Piece, Run, continued, grouped, packed
 from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
 
 __all__ = ["read", "write"]
@@ -79,7 +79,7 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
     head = [f"  UFRAME_NUM={program.user_frame} ;", f"  UTOOL_NUM={program.tool_frame} ;"]
     groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), _cut)
+    parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), continued(text.remark))
     if len(parts) == 1:
         _refuse_calls_of_own(program, {name})
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
@@ -189,28 +189,6 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, Call):
         return [text.call(block.program.upper())]
     raise TypeError(f"no instruction for {block!r}")
-
-
-def _cut(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """One bead too long for a file, cut inside its moves, which says so at both sides of the cut."""
-    going_on, resumed = text.remark("bead goes on in the next part"), text.remark("bead goes on here")
-    events = sum(len(piece) for piece in group if isinstance(piece, list))
-    most = min(most_points, most_lines - events - len(going_on) - len(resumed))
-    chunk: list[Piece] = []
-    room = most
-    for piece in group:
-        if isinstance(piece, list):
-            chunk.append(piece)
-            continue
-        start = piece.start
-        while piece.stop - start > room:
-            if room:
-                chunk.append(Run(piece.moves, piece.words, start, start + room))
-            yield [*chunk, going_on]
-            start, chunk, room = start + room, [resumed], most
-        chunk.append(Run(piece.moves, piece.words, start, piece.stop))
-        room -= piece.stop - start
-    yield chunk
 
 
 def _file(program: Program, name: str, comment: str, head: list[str], pieces: Sequence[Piece]) -> bytes:

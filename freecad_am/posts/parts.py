@@ -95,3 +95,29 @@ def withdrawn(parts: list[list[Piece]]) -> list[list[Piece]]:
 def size(pieces: Sequence[Piece]) -> tuple[int, int]:
     """How many points the pieces have, and how many lines a file with one line per move takes for them."""
     return sum(len(piece) for piece in pieces if isinstance(piece, Run)), sum(len(piece) for piece in pieces)
+
+
+def continued(remark: Callable[[str], list[str]]) -> Callable[[list[Piece], int, int], Iterator[list[Piece]]]:
+    """How a bead too long for a file is cut inside its moves, with remarks at both sides of the cut that say so."""
+    going_on, resumed = remark("bead goes on in the next part"), remark("bead goes on here")
+
+    def cut(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+        events = sum(len(piece) for piece in group if isinstance(piece, list))
+        most = min(most_points, most_lines - events - len(going_on) - len(resumed))
+        chunk: list[Piece] = []
+        room = most
+        for piece in group:
+            if isinstance(piece, list):
+                chunk.append(piece)
+                continue
+            start = piece.start
+            while piece.stop - start > room:
+                if room:
+                    chunk.append(Run(piece.moves, piece.words, start, start + room))
+                yield [*chunk, going_on]
+                start, chunk, room = start + room, [resumed], most
+            chunk.append(Run(piece.moves, piece.words, start, piece.stop))
+            room -= piece.stop - start
+        yield chunk
+
+    return cut

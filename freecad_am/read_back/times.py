@@ -84,5 +84,5 @@ def _share_times(cell: Cell, planned: Planned, read: ReadMoves, share: Array) ->
     turned = np.abs(np.diff(shown, axis=0, prepend=shown[:1]))
     times = (turned / cell.machine.max_speed).max(axis=1) / share
     # a move that begins where the text has no joint values is off by the digits of both its ends
-    ends = 2.0 * read.digits / cell.machine.max_speed.min() / share
+    ends = 2.0 * float(np.max(read.digits)) / cell.machine.max_speed.min() / share
     return times, times * read.share_digits / share + ends + COMPUTED_AXIS, turned.max(axis=1)

@@ -18,6 +18,8 @@ Mask = NDArray[np.bool_]
 
 # mm by which a distance that a text rounds to thousandths may be off
 THOUSANDTH = 0.0011
+# of rounded corners, where a controller grades them
+LEVELS = 8
 # of the shorter way beside a point, the largest blend radius there
 BLEND_SHARE = 0.4
 # rad: where an axis stands this near to half a turn, either number of turns is right
@@ -44,6 +46,9 @@ def way_issues(cell: Cell, planned: Planned, program: Program, read: ReadMoves) 
 
 def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, read: ReadMoves) -> Mask:
     """(n,) moves that do not stop where they should, or pass through where they should not, or by another rounding."""
+    if read.level is not None:
+        level = np.where(planned.stops, 0.0, np.ceil(0.01 * LEVELS * program.blend))
+        return np.asarray(read.level != level)
     if read.blend_radius is not None:
         return _blended_otherwise(cell, planned, program, read)
     if read.blend is not None:

@@ -405,6 +405,71 @@ UR: dict[str, tuple[str, Change]] = {
     "no end": (r"^end\n", DROP),
 }
 
+_YA_MOVE, _YA_OUT, _YA_TIMER, _YA_IN, _YA_CALL, _YA_PART = (
+    rf"^{line}\r\n" for line in (r"MOV[JL] [^\r]*", r"DOUT [^\r]*", r"TIMER T=[.\d]+", r"WAIT IN#[^\r]*", "CALL JOB:CLEAN",
+                               r"CALL JOB:JOB\d+"))
+
+
+def next_position(match: re.Match, rng: np.random.Generator) -> str:
+    """The position after the one named."""
+    return f"{match[1]}{int(match[2]) + 1:05d}"
+
+
+YASKAWA: dict[str, tuple[str, Change]] = {
+    "a point moved": (r"^C\d{5}=[^\r]*,(-?\d+)(?=\r)", moved(30.0)),
+    "another axis moved": (r"^C\d{5}=-?\d+,(-?\d+)", moved(30.0)),
+    "a digit changed": (r"^C\d{5}=(?:-?\d+,){2}(-?\d{3,})", digit),
+    "a sign changed": (r"^C\d{5}=(?:-?\d+,){4}(-?\d{3,})", negated),
+    "a turn more": (r"^C\d{5}=(-?\d+)", moved(516708.0)),
+    "two points exchanged": (r"^(C\d{5}=)([^\r]*)(\r\nC\d{5}=)([^\r]*)", r"\1\4\3\2"),
+    "another point named": (r"^(MOV[JL] C)(\d{5})", next_position),
+    "a point too many": (r"^///NPOS ([1-9]\d*)", one_more),
+    "a blend added": (r"PL=0(?=\r)", "PL=8"),
+    "a stop added": (r"PL=8(?=\r)", "PL=0"),
+    "a blend changed": (r"PL=8(?=\r)", "PL=4"),
+    "no blend told": (r" PL=\d(?=\r)", ""),
+    "a move's kind changed": (r"^MOV([JL])", other("J", "L", "C", "S")),
+    "a rapid made linear": (r"^MOVJ (C\d{5}) VJ=[\d.]+ PL=0", r"MOVL \1 V=8.0 PL=0"),
+    "another acceleration": (r"(PL=\d)(?=\r)", r"\1 ACC=20"),
+    "a share of speed changed": (r"VJ=(\d+\.\d\d)", scaled(1.1)),
+    "a speed changed": (r"V=(\d+\.\d)", scaled(1.1)),
+    "the first move faster": (r"VJ=(10\.00)", other("50.00", "100.00")),
+    "an output dropped": (_YA_OUT, DROP),
+    "an output switched the other way": (r"^DOUT OT#\(1\) (ON|OFF)", other("ON", "OFF")),
+    "another output": (r"OT#\((1)\)", one_more),
+    "an output doubled": (_YA_OUT, TWICE),
+    "two moves swapped": (rf"({_YA_MOVE})({_YA_MOVE})", SWAP),
+    "a move and an output swapped": (rf"({_YA_OUT})({_YA_MOVE})", SWAP),
+    "an output and a wait swapped": (rf"({_YA_OUT})({_YA_TIMER})", SWAP),
+    "a move dropped": (_YA_MOVE, DROP),
+    "a move doubled": (_YA_MOVE, TWICE),
+    "an approach dropped": (rf"{_YA_MOVE}(?=DOUT)", DROP),
+    "a retract dropped": (rf"(^DOUT OT#\(1\) OFF\r\n){_YA_MOVE}", r"\1"),
+    "a wait dropped": (_YA_TIMER, DROP),
+    "a wait changed": (r"TIMER T=([.\d]+)", moved(0.2)),
+    "an input dropped": (_YA_IN, DROP),
+    "another input": (r"IN#\((\d+)\)", one_more),
+    "an input the other way": (r"(?<=IN#\(3\)=)ON", "OFF"),
+    "a call dropped": (_YA_CALL, DROP),
+    "another call": (r"JOB:CLEAN", "JOB:CLEAN2"),
+    "a call doubled": (_YA_CALL, TWICE),
+    "a wait and a call swapped": (rf"({_YA_TIMER})({_YA_IN})({_YA_CALL})", r"\3\2\1"),
+    "another tool": (r"^///TOOL (\d+)", one_more),
+    "another ratio": (r"^'pulses/deg [SLURBT] (-?\d+\.\d+)", moved(0.5)),
+    "a ratio of the other sign": (r"^'pulses/deg [SLURBT] (-?\d+\.\d+)", negated),
+    "no ratio": (r"^'pulses/deg [SLURBT] [^\r]*\r\n", DROP),
+    "another unit": (r"^'V in (mm/s)", other("cm/min", "mm/min")),
+    "positions of another kind": (r"^///PULSE", "///RECTAN"),
+    "positions in another frame": (r"^///POSTYPE (PULSE)", other("USER", "BASE")),
+    "a relative job": (r"SC,RW(?=\r)", "SC,RW,RJ"),
+    "another robot": (r"^///GROUP1 RB(1)", one_more),
+    "another layer": (r"^'layer (\d+)", one_more),
+    "no end": (r"^END\r\n", DROP),
+    "a part dropped": (_YA_PART, DROP),
+    "a part doubled": (_YA_PART, TWICE),
+    "parts in another order": (rf"({_YA_PART})({_YA_PART})", SWAP),
+}
+
 # ABB
 _MOVE_ABB = r"^    Move(?:AbsJ|L) [^\n]*\n"
 _SETDO, _WAITTIME, _WAITDI, _CLEAN_ABB = (
@@ -479,7 +544,9 @@ ABB: dict[str, tuple[str, Change]] = {
     "another routine": (r"PROC (main|job\d+_p)", other("job_p")),
 }
 
-KINDS = {"fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR, "abb": ABB}
+KINDS = {
+    "fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR, "abb": ABB, "yaskawa": YASKAWA,
+}
 
 # the least change of a number, in steps of its last digit, that is always refused (docs/decisions/0005-read-back.md). What
 # is written is off by half a step itself, and as much is allowed: of one number a step is refused, of three coordinates of
@@ -516,6 +583,10 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
         "joint": (_UR_JOINT, 1), "position": (_UR_PLACE, 5), "angle": (_UR_ANGLE, 10),
         "frame": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", 10), "time": (r"t=(\d+\.\d+)", 3),
         "speed": (r"v=(0\.00\d+)", 1), "blend": (_UR_BLEND, 3), "wait": (r"sleep\(((?!0\.010)[.\d]+)\)", 1),
+    },
+    "yaskawa": {
+        "first axis": (r"^C\d{5}=(-?\d+)", 1), "last axis": (r"^C\d{5}=[^\r]*,(-?\d+)(?=\r)", 1),
+        "share": (r"VJ=(\d+\.\d\d)", 4), "speed": (r"V=(\d+\.\d)", 1), "wait": (r"TIMER T=([.\d]+)", 1),
     },
 }
 

@@ -71,6 +71,15 @@ SETUPS = {
         machine="abb-irb1600-6-12", mount="part", platform_diameter=60.0,
         deposition_point=(700.0, 0.0, 600.0, np.pi, 0.0, 0.0),
     ), FLAT, 50.0),
+    "yaskawa part-on-robot": Setup(CellParameters(
+        machine="motoman-ma2010", mount="part", platform_diameter=60.0,
+        deposition_point=(1000.0, 0.0, 300.0, 0.0, 0.0, 0.0),
+    ), FLAT, 50.0),
+    "yaskawa tool-on-robot": Setup(CellParameters(
+        machine="motoman-ma2010", setup="tool-on-robot", mount="part", platform_diameter=100.0,
+        deposition_point=(1000.0, 0.0, -300.0, 0.0, 0.0, 0.0),
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
     "table": Setup(CellParameters(
         machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
     ), STEEP, 90.0),
@@ -89,6 +98,8 @@ WAYS = (
     ("ur", "cartesian", "time", "ur tool-on-robot"),
     *(("abb", motion, "time", f"abb {setup}") for motion in ("joint", "cartesian")
       for setup in ("part-on-robot", "tool-on-robot")),
+    ("yaskawa", "joint", "time", "yaskawa part-on-robot"), ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
+    ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
@@ -127,6 +138,9 @@ def planned(name, lift=LIFT):
     before: the straight way back to the next start leads through what was just laid."""
     setup = SETUPS[name]
     cell = cells.resolve(setup.cell, np.eye(4), "developable")
+    if name.startswith("yaskawa"):  # what only a user's machine file tells; of no robot that there is
+        cell = dataclasses.replace(cell, machine=dataclasses.replace(
+            cell.machine, pulses_per_degree=(1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75), speed_unit="mm/s"))
     sides = range(SIDES if lift else 1)
     layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in sides)) for k in range(2))
     path = plan_joints(

@@ -32,6 +32,7 @@ from .urdf_reference import Reference, reference
 BUILT_IN = Path(__file__).resolve().parents[2] / "machines"
 MAKER = "maker"
 NOT_TOLD = "a URDF does not tell what the controller shows"
+SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
 REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is no machine file
 KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "verified",
@@ -51,7 +52,8 @@ class Machine:
     the floor plate in which `chain` and `arm` speak. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
     `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give what the controller shows:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
-    the file does not say. `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
+    the file does not say; `pulses_per_degree` (axes,) and the `speed_unit` of its path speeds, empty where it does not say.
+    `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
     `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first.
     """
 
@@ -68,6 +70,8 @@ class Machine:
     controller_offset: Array
     controller_remark: str
     posts: tuple[str, ...] | None
+    pulses_per_degree: tuple[float, ...]
+    speed_unit: str
     sources: tuple[str, ...]
     remarks: tuple[str, ...]
     max_acceleration: Array
@@ -203,7 +207,7 @@ def _parse(top: Node) -> Machine:
     units = unit_values(sliding)
     # the axes of a robot go by number unless the file has what its pendant shows; those of a machine tool have names
     names = tuple(_called(joint, f"q{index + 1}", bool(sliding.any())) for index, joint in enumerate(joints))
-    controller = top["controller"].only("matrix", "offset", "remark", "posts")
+    controller = top["controller"].only("matrix", "offset", "remark", "posts", "pulses_per_degree", "speed_unit")
     chain = Chain(
         np.stack([joint.pose() for joint in joints]),
         np.stack([_unit(joint["axis"]) for joint in joints]),
@@ -223,6 +227,8 @@ def _parse(top: Node) -> Machine:
         controller_offset=controller["offset"].numbers(count) * units,
         controller_remark=controller["remark"].text(),
         posts=controller["posts"].texts() if controller.has("posts") else None,
+        pulses_per_degree=_pulses(controller["pulses_per_degree"], count) if controller.has("pulses_per_degree") else (),
+        speed_unit=_speed_unit(controller["speed_unit"]) if controller.has("speed_unit") else "",
         sources=top["sources"].texts(),
         remarks=top["remarks"].texts() if top.has("remarks") else (),
         max_acceleration=np.array([_most(joint, "max_acceleration", "an acceleration") for joint in joints]) * units,
@@ -256,8 +262,22 @@ def _of_urdf(meant: Reference) -> Machine:
         id=found.name, title=found.name, axes=names, chain=found.chain, arm=arm, no_arm="",
         base=np.eye(4) if found.base is None else found.base, max_speed=found.max_speed, limit_sets={MAKER: limits},
         controller_matrix=np.eye(count), controller_offset=np.zeros(count), controller_remark=NOT_TOLD, posts=(),
+        pulses_per_degree=(), speed_unit="",
         sources=(f"{meant}",), remarks=found.notes, max_acceleration=unknown, max_jerk=unknown, shapes=found.shapes,
     )
+
+
+def _pulses(node: Node, count: int) -> tuple[float, ...]:
+    pulses = node.numbers(count)
+    if (pulses == 0.0).any():
+        raise node.bad(f"{node.value} has a 0; give the pulses of a degree of each axis, negative where they count down")
+    return tuple(pulses.tolist())
+
+
+def _speed_unit(node: Node) -> str:
+    if node.text() not in SPEED_UNITS:
+        raise node.bad(f"{node.value!r} is not a unit of path speeds; use {', '.join(SPEED_UNITS)}")
+    return node.text()
 
 
 def _called(joint: Node, numbered: str, has_name: bool) -> str:

@@ -57,6 +57,8 @@ class Draft:
     sources: tuple[str, ...]
     horizontal: tuple[float, float] | None = None
     posts: tuple[str, ...] | None = None
+    pulses_per_degree: tuple[float, ...] = ()
+    speed_unit: str = ""
     values: Array | None = None
     poses: Array | None = None
     notes: tuple[str, ...] = ()
@@ -108,7 +110,8 @@ def of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
         max_jerk=machine.max_jerk, base=machine.base, shown=shown, shapes=machine.shapes,
         sources=(f"copy of {machine.id}", *machine.sources),
         horizontal=(coupled[0][0] + shown.zeros[2], coupled[0][1] + shown.zeros[2]) if coupled else None,
-        posts=machine.posts, values=machine.to_controller(q) / machine.unit_values, poses=poses,
+        posts=machine.posts, pulses_per_degree=machine.pulses_per_degree, speed_unit=machine.speed_unit,
+        values=machine.to_controller(q) / machine.unit_values, poses=poses,
         labels=None if machine.axes == machine.columns else machine.axes,
     )
 
@@ -193,6 +196,10 @@ def _controller(draft: Draft) -> dict[str, Any]:
     if draft.shown.coupling == pendant.HORIZONTAL:
         remark += f"; J3 is shown against the horizontal, {_coupled_label(matrix[2])}"
     found: dict[str, Any] = {"matrix": [_figures(row) for row in matrix], "offset": _figures(offset), "remark": remark}
+    if draft.pulses_per_degree:
+        found["pulses_per_degree"] = list(draft.pulses_per_degree)
+    if draft.speed_unit:
+        found["speed_unit"] = draft.speed_unit
     return found if draft.posts is None else {"posts": list(draft.posts), **found}
 
 

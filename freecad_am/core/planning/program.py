@@ -48,6 +48,8 @@ Array = NDArray[np.float64]
 
 # posts whose programs count on where the flange is, and those whose positions need no words for configurations of the arm
 FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
+# posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
+IN_PULSES = frozenset({"yaskawa"})
 # what the rows of a motion are for, by its numbers
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
@@ -63,10 +65,11 @@ def build(
     towards them. Before the first layer that is run there is nothing to wait for.
 
     Raises InputError: START_AT for a start past the last bead, WRONG_CONTROLLER for a post the machine cannot read,
-    NOT_FOR_WRIST.
+    NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT.
     """
     check_controller(cell.machine, parameters.post)
     check_wrist(cell.machine, parameters.motion, parameters.post)
+    check_pulses(cell.machine, parameters.motion, parameters.post)
     blocks = _blocks(motion, cell, process, parameters, waits, returns)
     return Program(
         name=name,
@@ -83,6 +86,7 @@ def build(
         dry_run=parameters.dry_run,
         remarks=_remarks(cell, parameters, [block for block in blocks if isinstance(block, Moves)]),
         max_speed=tuple(cell.machine.max_speed.tolist()),
+        pulses_per_degree=cell.machine.pulses_per_degree, speed_unit=cell.machine.speed_unit,
         station=_six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0]),
         carried=_six(_frames(cell, parameters)[1]),
         axis_names=tuple(_letter(name) for name in cell.machine.axes) if cell.machine.is_table else (),
@@ -130,6 +134,28 @@ def check_wrist(machine: Machine, motion: str, post: str) -> None:
             "NOT_FOR_WRIST", "program.motion", f"{machine.title} has no spherical wrist, and what its controller calls the "
             "configurations of cartesian positions is not known; use joint",
         )
+
+
+def check_pulses(machine: Machine, motion: str, post: str) -> None:
+    """InputError NO_PULSES, NO_SPEED_UNIT where a post needs what only the controller of that very robot tells."""
+    if post in IN_PULSES and not machine.pulses_per_degree:
+        raise InputError(
+            "NO_PULSES", "cell.machine", f"how many pulses {machine.title} counts to a degree of each axis is not known, "
+            "and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the "
+            "pendant tells (a position in pulses over the same in degrees), or plan without a program",
+        )
+    if post in IN_PULSES and motion == "cartesian" and not machine.speed_unit:
+        raise InputError(
+            "NO_SPEED_UNIT", "cell.machine", f"the unit of V is a setting of the controller of {machine.title}, and another "
+            "one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`",
+        )
+
+
+def written_by(machine: Machine) -> tuple[str, ...] | None:
+    """The posts that programs for a machine can be written by, with what its file tells; None for any."""
+    if machine.posts is None or machine.pulses_per_degree:
+        return machine.posts
+    return tuple(post for post in machine.posts if post not in IN_PULSES)
 
 
 def on_table(cell: Cell, parameters: ProgramParameters) -> Six | None:

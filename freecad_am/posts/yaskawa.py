@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Yaskawa: INFORM jobs (.JBI) of joint moves, or of beads in linear moves with the tool on the robot, all to pulses.
+
+Rapids are joint moves that stop at every point, in either. Pulses need no option of the controller and say the arm's
+configuration and turns by themselves; how many there are to a degree is in the machine file, for each robot has its own.
+What is written, what must be set on the controller and what was confirmed where: docs/posts/yaskawa.md.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.issues import InputError
+from ..core.program import (
+    DEPOSIT,
+    FIRST_SHARE,
+    LINEAR_MOVE,
+    Block,
+    Call,
+    DepositOff,
+    DepositOn,
+    LayerStart,
+    Moves,
+    Program,
+    Wait,
+    WaitInput,
+)
+from . import nc_parts as common
+from .names import Naming, plain
+from .on_controller import on_controller
+from .parts import Piece, Run, continued, grouped, packed
+from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .yaskawa_read import read
+
+__all__ = ["read", "write"]
+
+Array = NDArray[np.float64]
+
+NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
+# why the speed of the wire cannot follow that of the torch
+NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
+ON_CONTROLLER = on_controller(
+    "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
+    "VJ is a share of the largest speeds of the machine file, those of the axis that takes longest",
+    "The tool file of the number in the job is the nozzle's tip, and speeds have the unit of the remarks",
+    "The deposit output switches the process",
+)
+AXES = "SLURBT"
+MOST_LINES = 9999
+OUTPUTS = 4096
+LONGEST_WAIT = 600.0  # s of one TIMER
+# percent of the largest joint speed: the step it is told in, and what a bead may go at least, of which that step is 10 %
+STEP_PERCENT, LEAST_PERCENT = 0.01, 0.1
+LEVELS = 8  # of rounded corners
+# what a unit of path speed is in mm/s, its decimals, and the largest number written
+UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
+FASTEST = 1500.0  # mm/s
+
+_END_OF_LINE = "\r\n"
+_COMMENT = 32
+# names of 8 characters at most on older controllers
+NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=32, spare=4, prefix="AM_")
+
+
+def write(program: Program) -> dict[str, bytes]:
+    """The jobs of a program, file name -> content; the same bytes for the same program.
+
+    One job where it fits, else NAME.JBI that calls NAME01.JBI and so on, cut between beads wherever a bead fits. The
+    duration of the very first move is not used.
+
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_PULSES, NO_SPEED_UNIT,
+    NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, DEPOSIT_OUTPUT, NO_WIRE_OUTPUT, NO_ANALOGUE_INPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
+    """
+    name = program_name(program.name, "name")
+    _refuse(program)
+    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in _remark(words)]
+    meaning = [line for words in _meaning(program) for line in _remark(words)]
+    groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
+    room = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
+    parts = packed(groups, min(program.max_points, room), room, continued(_remark))
+    if len(parts) == 1:
+        common.refuse_calls_of_own(program, {name}, program_name)
+        return {f"{name}.JBI": _job(program, name, [*remarks, *meaning], parts[0])}
+    names = NAMING.parts(name, len(parts))
+    common.refuse_calls_of_own(program, {name, *names}, program_name)
+    told = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
+    files = {f"{name}.JBI": _job(program, name, [*told, *(f"CALL JOB:{part}" for part in names)], [])}
+    for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
+        head = [*_remark(f"part {number} of {len(parts)}"), *meaning]
+        files[f"{part}.JBI"] = _job(program, part, head, pieces)
+    return files
+
+
+def program_name(name: str, where: str) -> str:
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    return NAMING.checked(name, where)
+
+
+def refuse_setup(motion: str, setup: str) -> None:
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    if motion == "cartesian" and setup == "part-on-robot":
+        raise InputError(
+            "REMOTE_TCP", "program.motion",
+            "linear moves at the speed of a fixed nozzle over a part on the robot need the controller's external reference"
+            " point, whose instruction is not documented well enough to write it; use `motion: joint`",
+        )
+    if setup not in ("part-on-robot", "tool-on-robot"):
+        raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post yaskawa cannot write {setup}")
+
+
+def _refuse(program: Program) -> None:
+    refuse_setup(program.motion, program.setup)
+    refuse_incomplete(program, "yaskawa", len(AXES))
+    refuse_wire(program, NO_WIRE)
+    refuse_cooling(program, 0, NO_ANALOGUE)
+    if any(program.endless):
+        axis = AXES[program.endless.index(True)]
+        raise InputError(
+            "ENDLESS_AXIS", "cell.limits",
+            f"axis {axis} has no limits, but pulses count every turn; use limits that have one for axis {axis}",
+        )
+    if len(program.pulses_per_degree) != len(AXES):
+        raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
+    if program.motion == "cartesian" and program.speed_unit not in UNITS:
+        raise InputError("NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it")
+    if len(program.max_speed) != len(AXES) or not np.isfinite(program.max_speed).all():
+        raise InputError(
+            "NO_JOINT_SPEED", "cell.machine",
+            "INFORM tells the speed of joint moves in percent of the axes' largest speeds, and the machine file does not"
+            " give them; add max_speed to its joints",
+        )
+    if not program.dry_run and program.deposit_output > OUTPUTS:
+        raise InputError(
+            "DEPOSIT_OUTPUT", "program.deposit_output",
+            f"digital outputs are 1 to {OUTPUTS}, not {program.deposit_output}; use one of these",
+        )
+
+
+def _own_remarks(program: Program) -> Iterator[str]:
+    if program.dry_run:
+        yield "dry run: no deposit"
+
+
+def _meaning(program: Program) -> Iterator[str]:
+    """What the numbers of a job mean, which its own words do not tell."""
+    for axis, pulses in zip(AXES, program.pulses_per_degree, strict=True):
+        yield f"pulses/deg {axis} {pulses!r}"
+    if program.motion == "cartesian":
+        yield f"V in {program.speed_unit}"
+
+
+def _remark(text: str) -> list[str]:
+    """A comment on as many lines as its width needs."""
+    return [f"'{line}" for line in textwrap.wrap(plain(text), _COMMENT)]
+
+
+def pulses(program: Program, joints: Array) -> NDArray[np.int64]:
+    """(n, 6) whole pulses of controller joint values (n, 6), rad."""
+    counts: NDArray[np.int64] = np.rint(np.degrees(joints) * np.array(program.pulses_per_degree)).astype(np.int64)
+    return counts
+
+
+def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
+    """The words of each move behind its position, asked for in the order of motion."""
+    before: Array | None = None
+    level = math.ceil(0.01 * LEVELS * program.blend)
+    per_degree = np.array(program.pulses_per_degree)
+
+    def words(moves: Moves) -> Sequence[str]:
+        nonlocal before
+        shown = np.radians(pulses(program, moves.joints) / per_degree)
+        start = shown[:1] if before is None else before
+        if moves.interpolation == LINEAR_MOVE:
+            speeds = _path_speeds(program, moves)
+        else:
+            percent = _percent(program, moves, np.diff(shown, axis=0, prepend=start), before is None)
+            speeds = [f"VJ={share:.2f}" for share in percent.tolist()]
+        before = shown[-1:]
+        return [f"{speed} PL={0 if stops else level}" for speed, stops in zip(speeds, moves.stops.tolist(), strict=True)]
+
+    return words
+
+
+def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array:
+    """Of the largest joint speeds, (n,): the axis that takes longest gets through its step in the time of the move."""
+    share = (np.abs(steps) / np.array(program.max_speed)).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        percent = 100.0 * share / moves.duration
+    wrong = (share > 0.0) & ~(percent <= 100.0 + 0.5 * STEP_PERCENT)
+    if moves.kind == DEPOSIT:
+        wrong |= percent < LEAST_PERCENT
+    if first:
+        wrong[0] = False
+    if wrong.any():
+        raise InputError(
+            "JOINT_SPEED", _place(moves),
+            f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which is told in steps of"
+            f" {STEP_PERCENT} %; use another speed, so that it is {LEAST_PERCENT} to 100 %",
+        )
+    percent = np.where(share > 0.0, np.clip(percent, STEP_PERCENT, 100.0), 100.0)
+    if first:
+        percent[0] = 100.0 * FIRST_SHARE
+    return np.asarray(percent, dtype=np.float64)
+
+
+def _path_speeds(program: Program, moves: Moves) -> list[str]:
+    unit, decimals = UNITS[program.speed_unit]
+    least = 10.0**-decimals * unit
+    fits = (moves.speed >= least) & (moves.speed <= FASTEST)
+    if not fits.all():
+        raise InputError(
+            "MOVE_SPEED", _place(moves),
+            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written in {program.speed_unit}; use {least:.3g} to"
+            f" {FASTEST:.0f} mm/s",
+        )
+    return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
+
+
+def _place(moves: Moves) -> str:
+    """Where a run of moves is, for messages."""
+    return f"layer {moves.layer} bead {moves.bead}"
+
+
+def _instructions(program: Program, block: Block) -> list[str]:
+    output = f"DOUT OT#({program.deposit_output})"
+    if isinstance(block, DepositOn):
+        return [] if program.dry_run else [f"{output} ON", *_timer(block.lead)]
+    if isinstance(block, DepositOff):
+        return [] if program.dry_run else [*_timer(block.lead), f"{output} OFF"]
+    if isinstance(block, LayerStart):
+        return _remark(f"layer {block.layer}")
+    if isinstance(block, Wait):
+        return _timer(block.seconds)
+    if isinstance(block, WaitInput):
+        return [f"WAIT IN#({block.number})=ON"]
+    if isinstance(block, Call):
+        return [f"CALL JOB:{program_name(block.program, common.CALL)}"]
+    raise TypeError(f"no instruction for {block!r}")
+
+
+def _timer(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.01 s; nothing for no time."""
+    hundredths, most = max(round(100.0 * seconds), int(seconds > 0.0)), round(100.0 * LONGEST_WAIT)
+    whole, rest = divmod(hundredths, most)
+    return [f"TIMER T={step / 100.0:.2f}" for step in (*(most,) * whole, rest) if step]
+
+
+def _job(program: Program, name: str, head: Sequence[str], pieces: Sequence[Piece]) -> bytes:
+    runs = [piece for piece in pieces if isinstance(piece, Run)]
+    rows = [row for run in runs for row in pulses(program, run.moves.joints[run.start : run.stop]).tolist()]
+    positions = [f"///TOOL {program.tool_frame}", "///POSTYPE PULSE", "///PULSE"] if rows else []
+    positions += [f"C{number:05d}={','.join(map(str, row))}" for number, row in enumerate(rows)]
+    lines, point = ["NOP", *head], 0
+    for piece in pieces:
+        if isinstance(piece, Run):
+            letter = "L" if piece.moves.interpolation == LINEAR_MOVE else "J"
+            words = piece.words[piece.start : piece.stop]
+            lines += [f"MOV{letter} C{point + k:05d} {word}" for k, word in enumerate(words)]
+            point += len(piece)
+        else:
+            lines += piece
+    text = [
+        "/JOB", f"//NAME {name}", "//POS", f"///NPOS {len(rows)},0,0,0,0,0", *positions, "//INST",
+        "///DATE 2000/01/01 00:00", "///COMM Robotic AM", "///ATTR SC,RW", "///GROUP1 RB1", *lines, "END",
+    ]  # fmt: skip
+    return (_END_OF_LINE.join(text) + _END_OF_LINE).encode("ascii")
