@@ -1197,6 +1197,11 @@
         <translation>Un tableau de Denavit et Hartenberg</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move</source>
+        <translation>AOUT entre deux mouvements d&apos;un job INFORM est réglé quand sa ligne est atteinte, ce que les coins arrondis déplacent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>AO[] between two moves of a FANUC is set when its line is read, ahead of the motion</source>
         <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
@@ -2507,6 +2512,11 @@
         <translation>Moyeu</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>INFORM tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
+        <translation>INFORM dit la vitesse des mouvements articulaires en pour cent des plus grandes vitesses des axes, et le fichier machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Image (*.png)</source>
         <translation>Image (*.png)</translation>
@@ -3712,6 +3722,11 @@
         <translation>Programmes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/suggestions.py"/>
+        <source>Programs for this machine need what only its controller tells, its pulses per degree, in a machine file of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.</source>
+        <translation>Les programmes de cette machine demandent ce que seule sa commande indique, ses impulsions par degré, dans un fichier machine à vous. Tout est planifié, contrôlé et simulé sans elles ; Export Path… écrit les points dans un tableau.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Program…</source>
         <translation>Programme…</translation>
@@ -3720,6 +3735,11 @@
         <location filename="../../freecad_am/gui/cell_panel.py"/>
         <source>Proposed for {}; enter what yours really has.</source>
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>Pulses per degree of the machine file are the controller&apos;s, and zero pulses the zero of its angles</source>
+        <translation>Les impulsions par degré du fichier machine sont celles de la commande, et zéro impulsion le zéro de ses angles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -4742,6 +4762,11 @@
         <translation>Le temps du travail</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>The tool file of the number in the job is the nozzle&apos;s tip, and speeds have the unit of the remarks</source>
+        <translation>Le fichier outil du numéro dans le job est la pointe de la buse, et les vitesses ont l&apos;unité des remarques</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The tool keeps away from singularities while it deposits</source>
         <translation>L’outil reste loin des singularités pendant le dépôt</translation>
@@ -5077,6 +5102,11 @@
         <translation>Repère utilisateur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>V has two units</source>
+        <translation>V a deux unités</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>VAL 3 sets outputs while the moves before are still in the queue</source>
         <translation>VAL 3 règle les sorties pendant que les mouvements précédents sont encore dans la file</translation>
@@ -5085,6 +5115,11 @@
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>VAL 3 tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
         <translation>VAL 3 dit la vitesse des mouvements articulaires en pour cent des plus grandes vitesses des axes, et le fichier machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>VJ is a share of the largest speeds of the machine file, those of the axis that takes longest</source>
+        <translation>VJ est une part des plus grandes vitesses du fichier machine, celle de l&apos;axe qui met le plus de temps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -5540,6 +5575,11 @@
         <location filename="../../freecad_am/posts/staubli_numbers.py"/>
         <source>a move would need {0} % of the largest joint speed, which cannot be written; use another speed, so that it is {1} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, ce qui ne peut pas être écrit ; utilisez une autre vitesse, pour qu&apos;il soit de {1} à 100 %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>a move would need {0} % of the largest joint speed, which is told in steps of {1} %; use another speed, so that it is {2} to 100 %</source>
+        <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
@@ -6002,6 +6042,11 @@
         <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de VAL 3 comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>axis {0} has no limits, but pulses count every turn; use limits that have one for axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les impulsions comptent chaque tour ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/points.py"/>
         <source>axis {0} is up to {1} {2} from the planned value</source>
         <translation>l&apos;axe {0} est jusqu&apos;à {1} {2} de la valeur planifiée</translation>
@@ -6457,6 +6502,11 @@
         <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>digital outputs are 1 to {0}, not {1}; use one of these</source>
+        <translation>les sorties numériques vont de 1 à {0}, pas {1} ; utilisez l&apos;une d&apos;elles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>displacement</source>
         <translation>déplacement</translation>
@@ -6722,6 +6772,16 @@
         <translation>nid d&apos;abeilles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>how a job waits for an analogue input differs with the controller&apos;s options, and the post yaskawa knows none</source>
+        <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>how many pulses {0} counts to a degree of each axis is not known, and no two models are alike; make a machine file of your own of it, with controller.pulses_per_degree as the pendant tells (a position in pulses over the same in degrees), or plan without a program</source>
+        <translation>combien d&apos;impulsions {0} compte par degré de chaque axe n&apos;est pas connu, et deux modèles diffèrent toujours ; faites-en un fichier machine à vous, avec controller.pulses_per_degree d&apos;après le pupitre (une position en impulsions divisée par la même en degrés), ou planifiez sans programme</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/tilt.py"/>
         <source>however far it is tilted back, the nozzle touches platform or deposit, beads of {0} mm, in {1} layer(s), from layer {2} on; use a slimmer nozzle, another wall, or a smaller process.bead_width where beads are not that wide</source>
         <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
@@ -6900,6 +6960,16 @@
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>it does not hold the code of a program {0}</source>
         <translation>il ne contient pas le code d&apos;un programme {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>it does not say how many pulses there are to a degree of each axis</source>
+        <translation>il ne dit pas combien d&apos;impulsions fait un degré de chaque axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>it does not say what unit V has</source>
+        <translation>il ne dit pas quelle unité a V</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/standing.py"/>
@@ -7312,6 +7382,11 @@
         <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>it is not a job from /JOB to END</source>
+        <translation>ce n&apos;est pas un job de /JOB à END</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc_read.py"/>
         <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
         <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
@@ -7507,6 +7582,11 @@
         <translation>sa fonction s&apos;appelle {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>its job is called {0}</source>
+        <translation>son job s&apos;appelle {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop/source.py"/>
         <source>its joint path is gone; choose a joint path</source>
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
@@ -7520,6 +7600,11 @@
         <location filename="../../freecad_am/posts/abb_modules.py"/>
         <source>its module is called {0}, and the file is not, or another one is too</source>
         <translation>son module s&apos;appelle {0}, mais pas le fichier, ou un autre porte ce nom aussi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>its positions are not pulses of one tool</source>
+        <translation>ses positions ne sont pas des impulsions d&apos;un seul outil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -7785,6 +7870,11 @@
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>line</source>
         <translation>ligne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>linear moves at the speed of a fixed nozzle over a part on the robot need the controller&apos;s external reference point, whose instruction is not documented well enough to write it; use `motion: joint`</source>
+        <translation>les mouvements linéaires à la vitesse d&apos;une buse fixe sur une pièce portée par le robot demandent le point de référence externe de la commande, dont l&apos;instruction n&apos;est pas assez documentée pour l&apos;écrire ; utilisez `motion: joint`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -9022,6 +9112,11 @@
         <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>the instructions do not begin as those of a robot&apos;s job do</source>
+        <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>the joint frames give</source>
         <translation>les repères articulaires donnent</translation>
@@ -9117,6 +9212,16 @@
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>the machine file has no controller.pulses_per_degree; add them</source>
+        <translation>le fichier machine n&apos;a pas de controller.pulses_per_degree ; ajoutez-les</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>the machine file has no controller.speed_unit; add it</source>
+        <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez-le</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>the machine file tells no largest speeds</source>
         <translation>le fichier machine ne donne pas de vitesses maximales</translation>
@@ -9200,6 +9305,11 @@
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the move is not told in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>the move {0} is not understood, or its position is not there</source>
+        <translation>le mouvement {0} n&apos;est pas compris, ou sa position n&apos;existe pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/touching.py"/>
@@ -9292,6 +9402,11 @@
         <translation>le post-processeur ur ne sait pas écrire {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>the post yaskawa cannot write {0}</source>
+        <translation>le post-processeur yaskawa ne sait pas écrire {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>the post {0} cannot write {1} ({2} motion), only rotary-table</source>
         <translation>le post-processeur {0} ne peut pas écrire {1} (mouvement {2}), seulement rotary-table</translation>
@@ -9330,6 +9445,11 @@
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the program holds no moves; check where it starts</source>
         <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>the pulses per degree of {0} differ, or are none</source>
+        <translation>les impulsions par degré de {0} diffèrent, ou n&apos;en sont pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc_records.py"/>
@@ -9420,6 +9540,11 @@
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>the speed of the wire in the text is not the planned one</source>
         <translation>la vitesse du fil dans le texte n&apos;est pas celle planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>the speed {0} is none</source>
+        <translation>la vitesse {0} n&apos;en est pas une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/store.py"/>
@@ -9515,6 +9640,11 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>the transformation changes while the deposit is on</source>
         <translation>la transformation change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/program.py"/>
+        <source>the unit of V is a setting of the controller of {0}, and another one is another speed; give controller.speed_unit in a machine file of your own, or use `motion: joint`</source>
+        <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_modules.py"/>
@@ -10372,6 +10502,11 @@
         <translation>{0} donne {1}, qui n&apos;est pas un nombre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} has a 0; give the pulses of a degree of each axis, negative where they count down</source>
+        <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/rows.py"/>
         <source>{0} has another dimension; give {1}</source>
         <translation>{0} a une autre dimension ; donnez {1}</translation>
@@ -10738,6 +10873,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} is not a unit of path speeds; use {1}</source>
+        <translation>{0} n&apos;est pas une unité de vitesse ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>{0} is not a unit vector</source>
         <translation>{0} n&apos;est pas un vecteur unitaire</translation>
     </message>
@@ -10790,6 +10930,11 @@
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>{0} is not known; {1}</source>
         <translation>{0} n&apos;est pas connu ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>{0} is not position {1}</source>
+        <translation>{0} n&apos;est pas la position {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -10917,6 +11062,11 @@
         <translation>{0} est {1} ; donnez un nombre d&apos;au plus {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa_read.py"/>
+        <source>{0} jobs are called by none of the others, expected one</source>
+        <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/support.py"/>
         <source>{0} layers more have beads over nothing, {1} mm of them</source>
         <translation>{0} autres couches ont des cordons au-dessus du vide, sur {1} mm</translation>
@@ -11005,6 +11155,11 @@
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
         <source>{0} mm of the wall are left at the top, less than a layer</source>
         <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa.py"/>
+        <source>{0} mm/s cannot be written in {1}; use {2} to {3} mm/s</source>
+        <translation>{0} mm/s ne s&apos;écrit pas en {1} ; utilisez {2} à {3} mm/s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_numbers.py"/>
