@@ -23,6 +23,7 @@ from freecad_am.batch import console, outputs, staging
 from freecad_am.core.issues import InputError
 
 KINDS = ("plan", "plan", "export", "batch")
+PATIENCE = 900  # s for a command, on a machine that may be busy
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 OLD = {"cup.FCStd": b"old", "program/CUP.LS": b"old", "program/CUP01.LS": b"old", "report.html": b"old"}
 NEW = {"cup.FCStd": b"new", "program/CUP.LS": b"new", "report.html": b"new", "waypoints.csv": b"new"}
@@ -168,7 +169,7 @@ class Bench:
         self.took, self.finished = {}, 0
         for kind in dict.fromkeys(KINDS):
             began = time.monotonic()
-            assert self.start(kind).wait(timeout=120) == 0
+            assert self.start(kind).wait(timeout=PATIENCE) == 0
             self.took[kind] = time.monotonic() - began
 
     def start(self, kind):
@@ -216,7 +217,7 @@ class Bench:
         time.sleep(share * self.took[kind])
         with contextlib.suppress(ProcessLookupError):
             (os.killpg if number == signal.SIGKILL or kind == "batch" else os.kill)(process.pid, number)
-        process.wait(timeout=60)
+        process.wait(timeout=PATIENCE)
         return f"{share:.3f} {signal.Signals(number).name}"
 
     def folders(self):
@@ -273,11 +274,12 @@ def assert_survives(workshop, seed, kills, whole_every):
     for number in range(kills):
         kind = KINDS[number % len(KINDS)]
         moment = bench.kill(kind)
+        print(f"kill {number} of {kind}, {moment}", flush=True)
         try:
             bench.assert_one_set()
             if number % whole_every == whole_every - 1:
                 for other in dict.fromkeys(KINDS):
-                    assert bench.start(other).wait(timeout=120) == 0, other
+                    assert bench.start(other).wait(timeout=PATIENCE) == 0, other
                 bench.assert_one_set()
                 bench.assert_no_litter()
         except AssertionError as error:

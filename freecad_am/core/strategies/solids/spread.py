@@ -91,14 +91,15 @@ class Zones:
     def stretches(self, s: Array) -> Array:
         """Half the stretch (n,) at places (n,), rising: the same as far as its ramp goes, then less."""
         half = np.zeros(len(s))
-        for low, high, most in zip(self.low.tolist(), self.high.tolist(), self.half.tolist()):
-            for moved in self._copies():
-                first, last = np.searchsorted(s, [low + moved - 2.0 * most, high + moved + 2.0 * most])
-                if first < last:
-                    here = s[first:last]
-                    away = np.maximum(np.maximum(low + moved - here, here - high - moved), 0.0) / most
-                    share = np.where(away <= 1.0, 1.0, 0.5 + 0.5 * np.cos(np.pi * np.clip(away - 1.0, 0.0, 1.0)))
-                    half[first:last] = np.maximum(half[first:last], most * share)
+        moved = np.array(self._copies())[:, None]
+        low, high = self.low + moved, self.high + moved
+        first, last = np.searchsorted(s, low - 2.0 * self.half), np.searchsorted(s, high + 2.0 * self.half)
+        for copy, zone in np.argwhere(first < last).tolist():
+            some, most = slice(first[copy, zone], last[copy, zone]), self.half[zone]
+            here = s[some]
+            away = np.maximum(np.maximum(low[copy, zone] - here, here - self.high[zone] - moved[copy, 0]), 0.0) / most
+            share = 0.5 + 0.5 * np.cos(np.pi * np.minimum(np.maximum(away - 1.0, 0.0), 1.0))
+            half[some] = np.maximum(half[some], most * share)
         return half
 
     def places(self, s: Array) -> Array:
@@ -126,24 +127,26 @@ class Zones:
 
     def widened(self, places: Array, factor: float) -> Zones:
         """With longer stretches at the zones next to places (n,); a place that none reaches becomes one."""
-        low, high, half = self.low, self.high, self.half.copy()
-        lost = []
-        near: set[int] = set()
-        for place in places.tolist():
-            if not len(low):
-                lost.append(place)
-                continue
-            away = np.min([np.maximum(np.maximum(low + m - place, place - high - m), 0.0) for m in self._copies()], axis=0)
-            best = int(np.argmin(away))
-            if away[best] < 3.0 * half[best] + LEAST:
-                near.add(best)
-            else:
-                lost.append(place)
-        half[sorted(near)] *= factor
-        if lost:
+        low, high, half, lost = self.low, self.high, self.half.copy(), places
+        if len(low):
+            best, away = self._nearest(places)
+            reached = away < 3.0 * half[best] + LEAST
+            half[np.unique(best[reached])] *= factor
+            lost = places[~reached]
+        if len(lost):
             low, high = np.r_[low, lost[:1]], np.r_[high, lost[:1]]
             half = np.r_[half, 2.0 * LEAST]
         return Zones(low, high, half, self.length)
+
+    def _nearest(self, places: Array) -> tuple[NDArray[np.intp], Array]:
+        """The zone (n,) next to each of the places (n,), and how far (n,) mm off it is."""
+        best, away = np.zeros(len(places), dtype=np.intp), np.zeros(len(places))
+        for at in range(0, len(places), BLOCK):
+            here = places[at : at + BLOCK, None]
+            off = [np.maximum(np.maximum(self.low + m - here, here - self.high - m), 0.0) for m in self._copies()]
+            nearest = np.min(off, axis=0)
+            best[at : at + BLOCK], away[at : at + BLOCK] = np.argmin(nearest, axis=1), nearest.min(axis=1)
+        return best, away
 
 
 def too_fast(line: Line, weights: Array, most: float, length: float | None, end: float) -> Zones:
