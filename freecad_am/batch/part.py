@@ -27,22 +27,35 @@ def bring(document: Any, part: PartSource, key: str = "part", meshes: bool = Fal
     Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
     """
     if key == "part" and not meshes and part.file.lower().endswith(MESHES):
-        raise InputError(
-            "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part of this family needs STEP, IGES, "
-            "BREP or FCStd; a mesh may be the substrate, or a fixture",
-        )
+        raise _no_surfaces()
+    obj = _opened(document, part, key)
+    if key == "part" and not meshes and getattr(obj, "Mesh", None) is not None:
+        raise _no_surfaces()
+    return _only_solids(obj, part, key)
+
+
+def _no_surfaces() -> InputError:
+    return InputError(
+        "UNSUPPORTED_FILE", "part.file", "a mesh has no exact surfaces: a part of this family needs STEP, IGES, "
+        "BREP or FCStd; a mesh may be the substrate, or a fixture",
+    )
+
+
+def _opened(document: Any, part: PartSource, key: str) -> Any:
     if not part.settings:
-        return _only_solids(api.open_part(document, part.file, part.object or "", part.scale), part, key)
+        return api.open_part(document, part.file, part.object or "", part.scale)
     with tempfile.TemporaryDirectory() as folder:
         changed = os.path.join(folder, os.path.basename(part.file))
         apart(lambda _: _save_changed(part, changed, key), part.file, patience=PATIENCE)
-        return _only_solids(api.open_part(document, changed, part.object or ""), part, key)
+        return api.open_part(document, changed, part.object or "")
 
 
 def _only_solids(obj: Any, part: PartSource, key: str) -> Any:
     """The object, with those solids alone that are named. InputError BAD_VALUE for one that there is not."""
     if not part.solids:
         return obj
+    if getattr(obj, "Mesh", None) is not None:
+        raise InputError("BAD_VALUE", f"{key}.solids", f"{obj.Label} is a mesh, which has no solids; leave them out")
     solids = obj.Shape.Solids
     numbers = [int(name.removeprefix("Solid")) for name in part.solids]
     wrong = [name for name, number in zip(part.solids, numbers) if number > len(solids)]

@@ -66,6 +66,14 @@ def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
     return apart(_mesh, file, where, scale)
 
 
+def placed_mesh(mesh: Any, placement: Any) -> Any:
+    """A Mesh.Mesh where its own placement, and another after that, put it; it has none left itself."""
+    found = Mesh.Mesh()
+    found.addFacets(mesh.Topology)
+    found.transform(placement.toMatrix())
+    return found
+
+
 def _mesh(file: Path, where: str, scale: float) -> Any:
     mesh = Mesh.Mesh()
     if file.suffix.lower() == ".3mf":

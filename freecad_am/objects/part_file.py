@@ -9,16 +9,16 @@ from typing import Any
 import FreeCAD as App
 
 from ..brep.apart import apart
-from ..brep.read import read_mesh, read_shape
+from ..brep.read import placed_mesh, read_mesh, read_shape
 from ..core.geometry.file_unit import MESHES, refuse_scale
 from ..core.issues import InputError
 from . import document_file, hooks
-from .feature import global_shape
+from .shapes import global_shape, outer_placement
 
 
 def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
-    """The shape of a part file, the mesh of an STL, OBJ or 3MF file, and a label for it. `object_name`: Name or Label
-    of an object of an FCStd file. scale: mm of one unit of an STL or OBJ file.
+    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, and a label for it.
+    `object_name`: Name or Label of an object of an FCStd file. scale: mm of one unit of an STL or OBJ file.
 
     Raises the InputErrors of `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of another file or none above 0.
     """
@@ -48,13 +48,18 @@ def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
 
 
 def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
+    """The shape of the object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
     shapes = [obj for obj in document.Objects if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()]
+    meshes = [obj for obj in document.Objects if getattr(getattr(obj, "Mesh", None), "CountFacets", 0)]
+    known = [*shapes, *meshes]
     if object_name:
-        found = [obj for obj in shapes if object_name in (obj.Name, obj.Label)]
+        found = [obj for obj in known if object_name in (obj.Name, obj.Label)]
     else:
-        found = [obj for obj in shapes if not any(other in shapes for other in obj.InListRecursive)]
+        found = [obj for obj in shapes or meshes if not any(other in known for other in obj.InListRecursive)]
     if len(found) != 1:
-        names = ", ".join(obj.Label for obj in shapes) or "none"
+        names = ", ".join(obj.Label for obj in known) or "none"
         asked = repr(object_name) if object_name else "one object that nothing else is made from"
         raise InputError("NO_OBJECT", path, f"{asked} is not found among the objects with a shape ({names}); name one")
-    return global_shape(found[0]).copy(), found[0].Label
+    if found[0] in shapes:
+        return global_shape(found[0]).copy(), found[0].Label
+    return placed_mesh(found[0].Mesh, outer_placement(found[0])), found[0].Label

@@ -6,6 +6,8 @@ import os
 from functools import partial
 
 import FreeCAD as App
+import Mesh
+import numpy as np
 import Part
 import pytest
 
@@ -172,6 +174,26 @@ def test_parts_from_documents_are_taken_where_they_stand(doc, part, tmp_path):
             with pytest.raises(InputError):
                 api.open_part(target, str(tmp_path / name))
         assert len(target.Objects) == 2
+    finally:
+        App.closeDocument(target.Name)
+
+
+def test_a_mesh_of_a_document_is_taken_where_it_stands(doc, tmp_path):
+    box = doc.addObject("App::Part", "Assembly")
+    scan = doc.addObject("Mesh::Feature", "Scan")
+    scan.Mesh = Mesh.createBox(20, 20, 20)
+    scan.Placement = App.Placement(App.Vector(10, 10, 10), App.Rotation())
+    box.addObject(scan)
+    box.Placement = App.Placement(App.Vector(5, 0, 0), App.Rotation(App.Vector(0, 0, 1), 90))
+    doc.recompute()
+    doc.saveAs(str(tmp_path / "scan.FCStd"))
+    App.closeDocument(doc.Name)
+    target = App.newDocument("Target")
+    try:
+        found = api.open_part(target, str(tmp_path / "scan.FCStd"))
+        low, high = np.array(found.Mesh.Topology[0]).min(axis=0), np.array(found.Mesh.Topology[0]).max(axis=0)
+        assert low == pytest.approx([-15, 0, 0], abs=1e-4) and high == pytest.approx([5, 20, 20], abs=1e-4)
+        assert found.Label == "Scan" and len(found.Mesh.Topology[1]) == 12
     finally:
         App.closeDocument(target.Name)
 

@@ -123,6 +123,8 @@ def necks(region: Region, inner: Sequence[Region], beads: Beads) -> tuple[Region
 
 
 def _is_rib(piece: Region, foot: Region, beads: Beads) -> bool:
+    if piece.area <= RIB * (2.0 * beads.inset) ** 2:  # less than the least rib has
+        return False
     out = float(foot.nearest(piece.rings()[0])[1].max())
     return out > 2.0 * beads.inset and piece.area > RIB * 2.0 * beads.inset * out
 
@@ -178,8 +180,11 @@ def moved(points: Array, inner: Sequence[Region]) -> Array:
     """Points (n, 2), those outside of all regions moved to the nearest of them; as they are where there are none."""
     if not inner:
         return points
-    inside = np.any([region.contains(points) for region in inner], axis=0)
-    near = [region.nearest(points) for region in inner]
+    outside = np.flatnonzero(~np.any([region.contains(points) for region in inner], axis=0))
+    if not len(outside):
+        return points
+    near = [region.nearest(points[outside]) for region in inner]
     best = np.argmin([away for _, away in near], axis=0)
-    moved = np.stack([place for place, _ in near])[best, np.arange(len(points))]
-    return np.where(inside[:, None], points, moved)
+    moved = points.copy()
+    moved[outside] = np.stack([place for place, _ in near])[best, np.arange(len(outside))]
+    return moved

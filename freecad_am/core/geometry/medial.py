@@ -8,6 +8,7 @@ where the edge runs between two walls and small where it runs into a corner.
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -39,7 +40,7 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
     step: mm between places on the border. A region with a single hole that the axis goes round has a closed path. Empty,
     (0, 2), where the region is nowhere that wide.
     """
-    axis = _axis(region, step)
+    axis = _axis(region, least, step)
     for spread in (BETWEEN_WALLS, ANYWHERE):
         links = axis.links[(axis.spread >= spread) & (axis.clearance[axis.links] >= least).all(axis=1)]
         if not len(links):
@@ -54,24 +55,30 @@ def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
     return np.zeros((0, 2)), False
 
 
-def _axis(region: Region, step: float) -> _Axis:
+def _axis(region: Region, least: float, step: float) -> _Axis:
+    """The axis inside of a region where it is wider than 2 `least` mm, without what runs into corners."""
     places, follows = _places(region.rings(), step)
     middle, size = places.mean(axis=0), max(region.extent, 1e-300)
     diagram = Voronoi((places - middle) / size)
     corners = diagram.vertices * size + middle
-    pairs = np.asarray(diagram.ridge_points)
-    ends = np.asarray(diagram.ridge_vertices)
+    pairs = diagram.ridge_points
+    ends = np.fromiter(chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)).reshape(-1, 2)
     beside = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
     use = (ends >= 0).all(axis=1) & ~beside
     pairs, ends = pairs[use], ends[use]
-    inside = winding(region.rings(), corners) > 0
-    use = inside[ends].all(axis=1)
-    pairs, ends = pairs[use], ends[use]
-    clearance = np.zeros(len(corners))
     away = np.hypot(*(corners[ends] - places[pairs[:, :1]]).transpose(2, 0, 1))
-    clearance[ends] = away
     apart = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
-    return _Axis(corners, clearance, ends, apart / np.maximum(2.0 * away.mean(axis=1), 1e-300))
+    spread = apart / np.maximum(2.0 * away.mean(axis=1), 1e-300)
+    use = (spread >= ANYWHERE) & (away >= least).all(axis=1)  # before it is asked what is inside, which takes longest
+    ends, away, spread = ends[use], away[use], spread[use]
+    members = np.unique(ends)
+    inside = np.zeros(len(corners), dtype=bool)
+    inside[members] = winding(region.rings(), corners[members]) > 0
+    use = inside[ends].all(axis=1)
+    ends = ends[use]
+    clearance = np.zeros(len(corners))
+    clearance[ends] = away[use]
+    return _Axis(corners, clearance, ends, spread[use])
 
 
 def _places(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]:
