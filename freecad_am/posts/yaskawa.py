@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,8 +54,8 @@ AXES = "SLURBT"
 MOST_LINES = 9999
 OUTPUTS = 4096
 LONGEST_WAIT = 600.0  # s of one TIMER
-# percent of the largest joint speed: the step it is told in, and what a bead may go at least, of which that step is 10 %
-STEP_PERCENT, LEAST_PERCENT = 0.01, 0.1
+# percent of the largest joint speed: the step it is told in, and what a bead may go at least, where that is right to 10 %
+STEP_PERCENT, LEAST_PERCENT = 0.01, 0.05
 LEVELS = 8  # of rounded corners
 # what a unit of path speed is in mm/s, its decimals, and the largest number written
 UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
@@ -79,9 +79,10 @@ def write(program: Program) -> dict[str, bytes]:
     """
     name = program_name(program.name, "name")
     _refuse(program)
-    remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in _remark(words)]
-    meaning = [line for words in _meaning(program) for line in _remark(words)]
-    groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
+    words = _Words(program)
+    groups = list(grouped(program, words, lambda block: _instructions(program, block)))
+    remarks = [line for text in (*program.remarks, *_own_remarks(program, words.off)) for line in _remark(text)]
+    meaning = [line for text in _meaning(program) for line in _remark(text)]
     room = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
     parts = packed(groups, min(program.max_points, room), room, continued(_remark))
     if len(parts) == 1:
@@ -142,7 +143,9 @@ def _refuse(program: Program) -> None:
         )
 
 
-def _own_remarks(program: Program) -> Iterator[str]:
+def _own_remarks(program: Program, off: float) -> Iterator[str]:
+    if off > 0.0:
+        yield f"VJ has steps of {STEP_PERCENT} %: speed of beads is right to {100.0 * off:.1f} %"
     if program.dry_run:
         yield "dry run: no deposit"
 
@@ -166,25 +169,30 @@ def pulses(program: Program, joints: Array) -> NDArray[np.int64]:
     return counts
 
 
-def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
-    """The words of each move behind its position, asked for in the order of motion."""
-    before: Array | None = None
-    level = math.ceil(0.01 * LEVELS * program.blend)
-    per_degree = np.array(program.pulses_per_degree)
+class _Words:
+    """The words of each move behind its position, asked for in the order of motion.
 
-    def words(moves: Moves) -> Sequence[str]:
-        nonlocal before
-        shown = np.radians(pulses(program, moves.joints) / per_degree)
-        start = shown[:1] if before is None else before
+    off: by what share of it the speed of a joint move of a bead is off at most, for the steps of VJ.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.program, self.off = program, 0.0
+        self.before: Array | None = None
+        self.level = math.ceil(0.01 * LEVELS * program.blend)
+
+    def __call__(self, moves: Moves) -> Sequence[str]:
+        shown = np.radians(pulses(self.program, moves.joints) / np.array(self.program.pulses_per_degree))
+        start = shown[:1] if self.before is None else self.before
         if moves.interpolation == LINEAR_MOVE:
-            speeds = _path_speeds(program, moves)
+            speeds = _path_speeds(self.program, moves)
         else:
-            percent = _percent(program, moves, np.diff(shown, axis=0, prepend=start), before is None)
+            percent = _percent(self.program, moves, np.diff(shown, axis=0, prepend=start), self.before is None)
             speeds = [f"VJ={share:.2f}" for share in percent.tolist()]
-        before = shown[-1:]
-        return [f"{speed} PL={0 if stops else level}" for speed, stops in zip(speeds, moves.stops.tolist(), strict=True)]
-
-    return words
+            if moves.kind == DEPOSIT:
+                self.off = max(self.off, float(np.abs(np.round(percent, 2) / percent - 1.0).max()))
+        self.before = shown[-1:]
+        levels = np.where(moves.stops, 0, self.level).tolist()
+        return [f"{speed} PL={level}" for speed, level in zip(speeds, levels, strict=True)]
 
 
 def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array:

@@ -63,6 +63,9 @@ def test_programs_that_nobody_can_check_are_refused(workshop):
     workshop.write_job(JOB.format(machine="mine.json", cell=cell, post="fanuc"))
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 2 and "error[WRONG_CONTROLLER]" in done.err and "no post for it yet" in done.err
+    workshop.write_job(JOB.format(machine="motoman-ma2010", cell=cell, post="yaskawa"))
+    done = workshop.run("plan", "cup.yaml")
+    assert done.status == 2 and "error[NO_PULSES]" in done.err and "controller.pulses_per_degree" in done.err
     cell = "deposition_point: [710, 0, 839, 0, 0, 0], branch: [front, up, noflip]"
     workshop.write_job(JOB.format(machine="fanuc-crx10ia", cell=cell, post="fanuc, motion: cartesian"))
     done = workshop.run("plan", "cup.yaml", "--no-page")

@@ -12,7 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import machine
 from freecad_am.core.planning.program import check_pulses, written_by
 from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitBelow, WaitInput
-from freecad_am.posts import yaskawa
+from freecad_am.posts import earlier, ur, yaskawa
 from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program
 
 PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)
@@ -124,7 +124,7 @@ def test_the_order_of_a_layer():
         DepositOff(0.125), Wait(1300.0), WaitInput(4), Call("Clean_1"), deposit_output=9, blend=13,
     ))  # fmt: skip
     (content,) = yaskawa.write(of).values()
-    assert body(content) == [
+    assert body(content)[2:] == [
         "'layer 12", "MOVJ C00000 VJ=10.00 PL=0", "MOVJ C00001 VJ=100.00 PL=0", "DOUT OT#(9) ON", "TIMER T=0.50",
         "MOVJ C00002 VJ=0.53 PL=2", "MOVJ C00003 VJ=0.53 PL=0", "TIMER T=0.12", "DOUT OT#(9) OFF", "TIMER T=600.00",
         "TIMER T=600.00", "TIMER T=100.00", "WAIT IN#(4)=ON", "CALL JOB:CLEAN_1",
@@ -140,6 +140,14 @@ def test_speeds_have_the_unit_of_the_controller(unit, told):
     assert f"MOVL C00001 {told} PL=0".encode() in content and f"'V in {unit}\r\n".encode() in content
 
 
+def test_how_far_off_the_speed_of_beads_is_is_told():
+    """VJ of 0.526 % is written as 0.53 %."""
+    of = known(program(moves("rapid", np.zeros(6)), moves("deposit", np.full((1, 6), 2.0), 2.0 / 190.0 / 0.00526)))
+    text = yaskawa.write(of)["PART.JBI"].decode()
+    assert "VJ=0.53" in text and "speed of\r\n'beads is right to 0.8 %" in text.replace("'VJ has steps of 0.01 %: ", "")
+    assert "beads is right" not in yaskawa.write(GOLDENS["linear"])["LINEAR.JBI"].decode()
+
+
 def test_parts_hold_whole_beads_and_their_sum_is_told():
     files = yaskawa.write(linear(beads(3, 20, layers=4, max_points=50)))
     assert list(files) == ["PART.JBI"] + [f"PART{n:02d}.JBI" for n in range(1, 7)]
@@ -148,6 +156,18 @@ def test_parts_hold_whole_beads_and_their_sum_is_told():
         assert body(files[name]).count("DOUT OT#(1) ON") == body(files[name]).count("DOUT OT#(1) OFF") == 2
     long = dataclasses.replace(linear(beads(3, 4000, max_points=10**6)), max_speed=(1e3,) * 6)
     assert len(yaskawa.write(long)) == 3
+
+
+def test_programs_of_ours_are_known_again_in_their_folder(tmp_path):
+    """A later program of the same name replaces all of an earlier one; remarks of a job follow its positions."""
+    for post, of in ((yaskawa, GOLDENS["parts"]), (yaskawa, GOLDENS["joint"]), (ur, dataclasses.replace(
+            GOLDENS["joint"], name="script", setup="tool-on-robot"))):
+        told = dataclasses.replace(of, remarks=("Limits: maker", "Travel speed 6 mm/s"))
+        files = post.write(told)
+        for name, content in files.items():
+            (tmp_path / name).write_bytes(content)
+        main = min(files, key=len)
+        assert earlier.programs(str(tmp_path))[main] == set(files)
 
 
 # refusals
