@@ -2,6 +2,7 @@
 """The table of imports of docs/architecture.md, enforced: data flows one way, hosts stay where they belong."""
 
 import ast
+import subprocess
 import sys
 from pathlib import Path
 
@@ -128,6 +129,19 @@ def test_imports_run_one_way():
 def test_files_that_use_more_need_it():
     for file, more in ALONE.items():
         assert more <= {module.split(".")[0] for module, _ in imported(PACKAGE / f"{file}.py")}
+
+
+def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
+    """What planning them imports, in a process of its own: these parts of scipy take as long to import as all of ours."""
+    used = (
+        "strategies.size", "strategies.revolution", "strategies.sequence", "strategies.clearance_look", "planning.plan",
+        "planning.motion", "planning.program", "process.deposit_balance", "process.support", "preflight.checks",
+    )
+    lines = ["import sys", *(f"import freecad_am.core.{module}" for module in used),
+             "print([name for name in ('scipy.interpolate', 'scipy.optimize', 'shapely') if name in sys.modules])"]
+    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], cwd=PACKAGE.parent, capture_output=True, text=True,
+                          check=True)
+    assert done.stdout.strip() == "[]"
 
 
 def test_every_row_of_the_table_exists():

@@ -320,14 +320,14 @@ def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
 
 
 def test_a_large_job_is_told_before_its_work(workshop):
-    """340,000 points: the line is there while the work goes on, which is then interrupted."""
-    workshop.write_job(workshop.text.replace("4 mm", "0.1 mm").replace("chord_error: 0.1 mm", "chord_error: 0.0005 mm"))
+    """670,000 points: the line is there while the work goes on, which is then interrupted."""
+    workshop.write_job(workshop.text.replace("4 mm", "0.1 mm").replace("chord_error: 0.1 mm", "chord_error: 0.0001 mm"))
     process = subprocess.Popen(
         [str(workshop.launcher), "plan", "cup.yaml"], cwd=workshop.folder, env=workshop.environment(),
         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
     )
     line = process.stderr.readline()
-    assert re.fullmatch(r"note\[LARGE\] job: about 3\d0,000 points in 6\d0 layers are planned, .+\n", line), line
+    assert re.fullmatch(r"note\[LARGE\] job: about 6\d0,000 points in 6\d0 layers are planned, .+\n", line), line
     assert process.poll() is None
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=120)[1] == "interrupted: nothing was written\n"

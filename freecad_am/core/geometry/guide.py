@@ -6,11 +6,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import cKDTree
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
@@ -91,6 +94,8 @@ class Guide:
 
     @cached_property
     def _curve(self) -> CubicHermiteSpline:
+        from scipy.interpolate import CubicHermiteSpline  # slow to import, and most jobs have no guide
+
         return CubicHermiteSpline(self.way, self.points, self.tangents)
 
     @cached_property

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.clad_faces import CladFaces
 from ..geometry.on_hub import SolidsOnHub
 from ..geometry.profile import Array, RevolvedWall
 from ..geometry.surroundings import Body
@@ -30,6 +29,7 @@ from ..parameters.strategy import (
 )
 
 if TYPE_CHECKING:
+    from ..geometry.clad_faces import CladFaces
     from ..geometry.patch_wall import PatchWall
     from ..geometry.surface_wall import SurfaceWall
 
@@ -43,7 +43,7 @@ FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to layer
-_SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 1.3e-4, SurfaceParameters: 2e-3, FilledParameters: 2.5e-4}
+_SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 7e-5, SurfaceParameters: 2e-3, FilledParameters: 2.5e-4}
 
 
 @dataclass(frozen=True)
