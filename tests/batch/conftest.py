@@ -136,11 +136,15 @@ class Workshop:
         return {str(path.relative_to(top)): path.read_bytes() for path in sorted(top.rglob("*")) if path.is_file()}
 
 
+def make_cup(folder: Path) -> None:
+    """A hemisphere of 40 mm radius as STEP."""
+    Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360).exportStep(str(folder / "cup.step"))
+
+
 @pytest.fixture
 def workshop(tmp_path, root):
-    """A hemisphere of 40 mm radius as STEP, and its job."""
-    shape = Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360)
-    shape.exportStep(str(tmp_path / "cup.step"))
+    """A hemisphere as STEP, and its job."""
+    make_cup(tmp_path)
     shop = Workshop(tmp_path, root / "freecad-am")
     shop.write_job()
     return shop

@@ -2,30 +2,41 @@
 """`export`: programs out of a saved document, computed again."""
 
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import FreeCAD
 import pytest
 
 from freecad_am import api
+from tests.batch.conftest import make_cup
 
 
-@pytest.fixture
-def saved(workshop):
+@pytest.fixture(scope="module")
+def two_cups(tmp_path_factory):
     """A document with two programs, made through the macro interface and saved."""
+    folder = tmp_path_factory.mktemp("two cups")
+    make_cup(folder)
     document = FreeCAD.newDocument("Two")
-    part = api.open_part(document, str(workshop.folder / "cup.step"))
+    part = api.open_part(document, str(folder / "cup.step"))
     cell = api.make_cell(document, limits="paper", platform_diameter=100)
     feature = api.make_feature(document, part, layer_height=8, chord_error=0.1)
     toolpath = api.make_toolpath(document, feature, cell)
     joint_path = api.make_joint_path(document, toolpath, cell)
     api.make_program(document, joint_path, "First one", name="first")
     api.make_program(document, joint_path, "Second", name="second", dry_run=True)
-    path = workshop.folder / "Two Cups.FCStd"
+    path = folder / "Two Cups.FCStd"
     document.saveAs(str(path))
     FreeCAD.closeDocument(document.Name)
     return path
+
+
+@pytest.fixture
+def saved(workshop, two_cups):
+    """A copy of that document beside the part."""
+    return Path(shutil.copy(two_cups, workshop.folder))
 
 
 @pytest.fixture

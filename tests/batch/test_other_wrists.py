@@ -15,7 +15,7 @@ pytest.importorskip("PyKDL")
 
 JOB = """\
 part: {{file: cup.step}}
-strategy: {{layer_height: 5 mm, chord_error: 0.1 mm}}
+strategy: {{layer_height: 10 mm, chord_error: 0.1 mm}}
 cell: {{machine: {machine}, platform_diameter: 100 mm, {cell}}}
 joints: {{method: layer-by-layer}}
 program: {{post: {post}}}
