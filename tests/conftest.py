@@ -80,6 +80,12 @@ def doc():
         FreeCAD.closeDocument(name)
 
 
+@pytest.fixture
+def no_remedies(monkeypatch):
+    """What would make an infeasible job feasible is not looked for: it is planned several times over for that."""
+    monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: [])
+
+
 @pytest.fixture(scope="session")
 def root():
     """The top folder of the repository."""

@@ -303,7 +303,7 @@ def test_the_open_window_of_a_program_follows_it(person, hemisphere, coarse):
     person.field(window, "close").click()
 
 
-def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere):
+def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere, no_remedies):
     ring = hemisphere.Document.addObject("Part::Cylinder", "Ring")
     ring.Radius, ring.Height = 6000.0, 2.0
     hemisphere.Document.recompute()
@@ -320,7 +320,7 @@ def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere):
     assert person.console().rstrip().endswith("Joint path is infeasible. Double-click a stage in the tree to change it.")
 
 
-def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere, coarse):
+def test_what_a_change_makes_impossible_is_told_in_the_report_view(person, hemisphere, coarse, no_remedies):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     person.double_click(doc.Cell)

@@ -101,8 +101,7 @@ def load(doc, *names):
 
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
-def test_a_wall_on_a_part_is_told_from_its_faces(person, coarse, monkeypatch, order):
-    monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: [])  # this robot is too small for it
+def test_a_wall_on_a_part_is_told_from_its_faces(person, coarse, no_remedies, order):
     doc = App.newDocument("Wall")
     parts = load(doc, "tube-on-pipe.step", "pipe.step")
     person.gui.Selection.clearSelection()

@@ -27,7 +27,7 @@ def tip(cell):
     return np.array(cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue())[3, :3]
 
 
-def test_marks_of_what_is_wrong_go_and_come_back_with_undo_and_redo(person, toolpath):
+def test_marks_of_what_is_wrong_go_and_come_back_with_undo_and_redo(person, toolpath, no_remedies):
     document = toolpath.Document
     cell = api.make_cell(document, limits="paper")
     joint_path = api.make_joint_path(document, toolpath, cell)

@@ -59,7 +59,7 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     assert scale.ticks == () and scale.told(1) == "joint margin -20 %"
 
 
-def test_unreachable_points_are_red(person, hemisphere):
+def test_unreachable_points_are_red(person, hemisphere, no_remedies):
     document = hemisphere.Document
     cell = api.make_cell(document, limits="paper")
     toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)

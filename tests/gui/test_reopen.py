@@ -115,7 +115,7 @@ def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path)
     assert_shown(person, App.openDocument(str(tmp_path / "again.FCStd")))
 
 
-def test_directions_and_infeasible_points_are_drawn_on_demand(person, hemisphere):
+def test_directions_and_infeasible_points_are_drawn_on_demand(person, hemisphere, no_remedies):
     document = hemisphere.Document
     cell = api.make_cell(document, limits="paper")
     toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=5), cell)

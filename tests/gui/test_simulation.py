@@ -271,7 +271,7 @@ def test_what_is_near_a_singularity_turns_red(person, hemisphere):
     assert (True, True) in said and (False, True) not in said
 
 
-def test_a_robot_that_reaches_nothing_stands_in_one_piece(person, hemisphere):
+def test_a_robot_that_reaches_nothing_stands_in_one_piece(person, hemisphere, no_remedies):
     path = job(hemisphere)
     path.Cell.DepositionPoint = App.Placement(App.Vector(5000, -630, 650), App.Rotation())
     hemisphere.Document.recompute()

@@ -161,7 +161,7 @@ def test_deleting_the_part_fails_the_feature(job):
     assert statuses(job) == [OK] + [FAILED] * 4
 
 
-def test_an_infeasible_path_is_kept_and_stops_the_program(job):
+def test_an_infeasible_path_is_kept_and_stops_the_program(job, no_remedies):
     job.joint_path.Method = "constant"
     job.doc.recompute()
     assert job.joint_path.Status == "infeasible" and job.program.Status == "infeasible"
