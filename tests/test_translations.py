@@ -9,9 +9,11 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from freecad_am import api
+from freecad_am.core.geometry.mesh_repair import repaired
 from freecad_am.core.issues import AmError, Issue
 from freecad_am.core.kinematics import machine
 from freecad_am.core.parameters.process import ProcessParameters
@@ -266,6 +268,19 @@ def test_errors_of_the_core_are_recognised(mistake, phrases):
     with pytest.raises(AmError) as caught:
         mistake()
     assert phrases.find(caught.value.message) is not None, caught.value.message
+
+
+def test_what_was_mended_of_a_mesh_is_told_in_french(told):
+    """A box without two of its triangles, with one turned and one twice."""
+    points = np.array([[x, y, z] for x in (0, 9) for y in (0, 9) for z in (0, 9)], dtype=float)
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    faces[0], faces[9:] = faces[0][::-1], [faces[9], faces[9]]
+    issues = repaired(points, np.array(faces), "box", hole=20.0).issues
+    assert {issue.code for issue in issues} == {"MESH_REPAIRED", "MENDED"}
+    text = " ".join(told(issue.message) for issue in issues)
+    for words in ("en double ont été écartés", "retournés pour s'accorder", "trous ont été bouchés"):
+        assert words in text
+    assert not re.search(r"\b(?:were|across|triangles? .* to|holes)\b", text), text
 
 
 def test_the_place_of_a_finding_is_recognised(phrases):

@@ -81,7 +81,7 @@ class Templates:
                 names = names[1:] if names[:1] in (["self"], ["cls"]) else names
                 used = {node.id for text in texts for node in ast.walk(text) if isinstance(node, ast.Name)}
                 for at, name in enumerate(names):
-                    if name in used and self._is_text(function, name):
+                    if name in used and (self._is_text(function, name) or _is_list(function, name)):
                         self.makers.setdefault(function.name, set()).add(at)
         return sum(map(len, self.makers.values())) > before
 
@@ -148,9 +148,22 @@ class Templates:
         own = [] if function is None else _values(name, function)
         for value in own:
             self._collect(value, module, function, depth - 1)
-        if not own:
+        filled = [] if function is None else list(self._filled(name, function))
+        for where, other, parameter in filled:
+            self._collect_name(parameter, where, other, depth - 1)
+        if not own and not filled:
             for where, value in self.code.constants.get(name, []):
                 self._collect(value, where, None, depth - 1)
+
+    def _filled(self, name: str, function: Function) -> Iterator[tuple[Module, Function, str]]:
+        """The functions that get a list to put texts into, and what they call it."""
+        for call in (node for node in ast.walk(function) if isinstance(node, ast.Call)):
+            for at, argument in enumerate(call.args):
+                if getattr(argument, "id", "") == name:
+                    for where, other in self.code.functions.get(called(call), []):
+                        names = [one.arg for one in other.args.args]
+                        if at < len(names) and other is not function and _is_list(other, names[at]):
+                            yield where, other, names[at]
 
     # ---- the cases of a text
 
@@ -229,6 +242,12 @@ def _values(name: str, function: Function) -> list[ast.expr]:
         elif isinstance(node, ast.Call) and _adds_to(node, name):
             found.append(node.args[-1])
     return found
+
+
+def _is_list(function: Function, name: str) -> bool:
+    """Whether a parameter is a list of texts."""
+    note = next(one.annotation for one in function.args.args if one.arg == name)
+    return note is not None and ast.unparse(note) == "list[str]"
 
 
 def _adds_to(call: ast.Call, name: str) -> bool:
