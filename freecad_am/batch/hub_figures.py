@@ -7,8 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from freecad_am.core.geometry.guide import Guide
 from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
 from freecad_am.core.geometry.plane import Plane
+from freecad_am.core.layers.along_layer import between
 from freecad_am.core.process.bead_model import MINUTE
 from freecad_am.core.toolpath import Array, Bead, Layer, Toolpath
 from freecad_am.plots.look import shade
@@ -42,15 +44,20 @@ def _runs(layers: Sequence[Layer]) -> list[range]:
 
 
 def _flat(group: Group, layer: Layer, place: int, height: float) -> str:
-    surface = group.base.surface.offset(place * height)
-    middle = middle_azimuth(group.base, np.vstack([bead.points for bead in layer.beads]))
-    lines = [surface.flat(group.base.inside(bead.points), middle) for bead in layer.beads]
+    base, lines = group.base, [group.base.inside(bead.points) for bead in layer.beads]
+    if isinstance(base.surface, Guide):
+        plane = between(base.surface, place * height, (place + 1) * height, 0.0)
+        lines = [plane.unroll(line) for line in lines]
+    else:
+        surface = base.surface.offset(place * height)
+        middle = middle_azimuth(base, np.vstack([bead.points for bead in layer.beads]))
+        lines = [surface.flat(line, middle) for line in lines]
     low, high = np.vstack(lines).min(axis=0), np.vstack(lines).max(axis=0)
     pad = 0.03 * float((high - low).max())
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
     plot = svg.Plot(
         f"{group.base.name}, layer {place}, laid flat", (low[0] - pad, high[0] + pad), (low[1] - pad, high[1] + pad),
-        *AXES[isinstance(surface, Plane)], height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
+        *AXES[isinstance(base.surface, (Plane, Guide))], height=int(np.clip(EDGES + ratio * WIDE, 140.0, 620.0)),
     )
     speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
     slow, fast = float(speeds.min()), float(speeds.max())

@@ -12,7 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.strategy import LayerParameters
+from freecad_am.core.parameters.strategy import LayerParameters, SolidParameters
 from freecad_am.core.strategies.families import AUTO, KINDS, NEEDED, NONE, Family, family_of
 
 from . import fields, quantity, tree
@@ -100,6 +100,13 @@ def chosen(feature: JobFeature, kind: str, layers: str, path: str, earlier: bool
     if kind != "solid" and isinstance(values["part"], dict):
         values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
     return one_feature(values, feature.name, path, earlier)
+
+
+def stacking(feature: JobFeature) -> tuple[float, float, float] | None:
+    """The direction in which planes would be stacked, of a feature whose family is left open; None for auto."""
+    section = _with_direction(feature.sections["strategy"])
+    given = {"direction": section["direction"]} if "direction" in section else {}
+    return fields.build(SolidParameters, given, "strategy").stacking()
 
 
 def _beside(kind: str) -> tuple[str, ...]:

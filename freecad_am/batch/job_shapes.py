@@ -15,7 +15,7 @@ from freecad_am.core.issues import NOTE, InputError, Issue
 from freecad_am.core.strategies.families import NONE, family_of
 
 from .job import Job
-from .job_features import about_feature, chosen
+from .job_features import about_feature, chosen, stacking
 from .part import bring
 from .part_source import PartSource
 
@@ -57,6 +57,7 @@ class Shapes:
             found = proposed(
                 taken(self.part), self.faces, None if ground is None else taken(ground), bool(self.of.part.start_edges),
                 self.of.process.bead_width, self.job.cell is not None,
+                base=() if self.of.substrate is None else self.of.substrate.faces, direction=stacking(self.of),
             )
             self.of = chosen(self.of, found.kind, found.layers, self.job.path, bool(earlier))
         except InputError as error:

@@ -16,20 +16,34 @@ WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer o
 
 
 class Note(QtGui.QLabel):
-    """A text that has room for all its lines; a form cuts off the last ones of other labels where it is narrow."""
+    """A text that has room for all its lines; a form cuts off the last ones of other labels where it is narrow. Its place
+    stays once it was there: a field that is put right would else move those below it as the next one is being clicked."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setWordWrap(True)
+        self.tallest = 0  # pixels that it took so far
 
     def minimumSizeHint(self) -> Any:
         """Called by Qt."""
         hint = super().minimumSizeHint()
         return QtCore.QSize(hint.width(), max(hint.height(), self.heightForWidth(self.width())))
 
+    def heightForWidth(self, width: int) -> int:
+        """Called by Qt."""
+        return max(super().heightForWidth(width), self.tallest)
+
+    def showEvent(self, event: Any) -> None:
+        """Called by Qt: from now on it takes its place."""
+        super().showEvent(event)
+        policy = self.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        self.setSizePolicy(policy)
+
     def resizeEvent(self, event: Any) -> None:
         """Called by Qt: another width may take more lines, or fewer."""
         super().resizeEvent(event)
+        self.tallest = max(self.tallest, event.size().height()) if event.oldSize().width() == event.size().width() else 0
         if event.oldSize().width() != event.size().width():
             QtCore.QTimer.singleShot(0, self._renew)  # the layout that gives it the width would overlook it
 

@@ -13,10 +13,10 @@ from ..core.parameters.strategy import DevelopableParameters
 from ..core.strategies import size
 from ..objects import deposit
 from ..objects.developable_feature import DevelopableFeature
+from ..objects.proposed_family import COARSE
 from ..objects.shapes import FIXTURES
 from ..objects.stage import Link, Outcome
 from . import picking, recorded
-from .guess import COARSE
 from .hub_nodes import NOTHING, Drawing, HubNodes, drawing
 from .lines import Array
 from .pick_field import PickField

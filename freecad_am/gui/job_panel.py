@@ -16,13 +16,15 @@ from ..core.issues import AmError, Issue
 from ..core.parameters.cell import CellParameters
 from ..objects import preferences
 from ..objects.progress import Cancelled
+from ..objects.proposed_family import GEODESIC
 from ..objects.staleness import UP_TO_DATE
-from . import choices, guess, icons, inputs, picking, recorded, suggestions
+from . import choices, icons, inputs, job_proposal, picking, recorded, suggestions
 from .busy import carry_out
 from .colours import WRONG
 from .fold import Fold
-from .guess import Guess
+from .job_proposal import CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 from .later import Background
+from .left_out import left_out
 from .picking import Pick
 from .signals import connect
 from .stage_panel import CLOSED
@@ -41,12 +43,12 @@ class JobPanel:
     def __init__(self) -> None:
         self.document = App.ActiveDocument
         self.kinds = {
-            guess.REVOLUTION: tr("Part of revolution"), guess.SURFACE: tr("Wall on a part"),
-            guess.SOLID: tr("Solids in plane layers"),
-            guess.DEVELOPABLE: tr("Solids on a hub"),
+            REVOLUTION: tr("Part of revolution"), SURFACE: tr("Wall on a part"), SOLID: tr("Solids in plane layers"),
+            GEODESIC: tr("Solids in layers that need no support"), DEVELOPABLE: tr("Solids on a hub"),
+            CURVES: tr("Curves as beads"),
         }
         self.picks: list[Pick] = []
-        self.guess = Guess("", "")
+        self.found = JobProposal("", "")
         self.asked = ""  # the family the user chose, '' for the one that is proposed
         self.proposed = ""
         self._lay_out()
@@ -142,38 +144,33 @@ class JobPanel:
         """Find out what the picks mean, beside the window where it may take long."""
         self.background.cancel()
         try:
-            found = self._meaning()
+            if self.asked:
+                self._understood(job_proposal.as_kind(self.asked, self.picks, tr("as you chose")))
+                return
+            work = job_proposal.proposal(self.picks)
         except AmError as error:
-            self.guess = Guess(self.asked, "", missing=translated_error(error))
+            self.found = JobProposal(self.asked, "", missing=translated_error(error))
             self._show()
             return
-        if isinstance(found, Guess):
-            self._understood(found)
-        else:
-            self.guess = Guess(guess.REVOLUTION, tr("looking at the shape"), (picking.whole(self.picks[0]),))
-            self._show()
-            self.background.start(found, self._look)
-
-    def _meaning(self) -> Any:
-        if self.asked:
-            return guess.as_kind(self.asked, self.picks, tr("as you chose"))
-        return guess.of_one(self.picks[0]) if len(self.picks) == 1 else guess.of_several(self.picks)
+        self.found = JobProposal("", tr("Looking at the shape."), (picking.whole(self.picks[0]),))
+        self._show()
+        self.background.start(work, self._look)
 
     def _look(self, worker: Worker) -> None:
         try:
             self._understood(worker.result())
         except AmError as error:
-            self._understood(Guess(guess.REVOLUTION, "", missing=translated_error(error)))
+            self._understood(JobProposal("", "", missing=translated_error(error)))
         except Cancelled:
             pass
 
-    def _understood(self, found: Guess) -> None:
+    def _understood(self, found: JobProposal) -> None:
         """Show it, and find out what of the part would be left out."""
-        self.guess = found
+        self.found = found
         self._show()
         if found.parts and not found.missing:
             with contextlib.suppress(AmError):  # told when the job is made
-                self.background.start(guess.left_out(found), self._look_at_left_out)
+                self.background.start(left_out(found), self._look_at_left_out)
 
     def _look_at_left_out(self, worker: Worker) -> None:
         with contextlib.suppress(AmError, Cancelled, RuntimeError):  # so is this; or the panel is closed
@@ -186,20 +183,22 @@ class JobPanel:
     def _show(self) -> None:
         """Show how the selection is understood, and what is missing."""
         self._tell_left_out(())
-        found = self.guess
+        found = self.found
         if found.kind:
-            self.kind.setCurrentIndex(self.kind.findData(found.kind))
+            self.kind.setCurrentIndex(self.kind.findData(found.choice))
         for widget, picks in ((self.part, found.parts), (self.ground, () if found.ground is None else (found.ground,))):
             text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in picks)
             widget.setText(text)
             widget.setCursorPosition(0)
             widget.setToolTip(text or widget.whatsThis())
-        self.fold.enable(self.ground, found.kind not in (guess.REVOLUTION, guess.SOLID))
+        self.fold.enable(self.ground, found.kind != REVOLUTION)
         missing = found.missing if self.picks else tr(
             "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
         )
-        reason = tr("{}: {}.").format(self.kinds[found.kind], found.reason) if found.reason else ""
-        whole = guess.taken_whole(found, self.picks)
+        reason = found.reason
+        if found.kind and found.reason:
+            reason = tr("{}: {}.").format(self.kinds[found.choice], found.reason)
+        whole = job_proposal.taken_whole(found, self.picks)
         self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
         self.reason.setStyleSheet(f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}")
         self.reason.setVisible(bool(self.reason.text()))
@@ -234,8 +233,8 @@ class JobPanel:
         self._entered_anew()
         try:
             self._wait()
-            if self.guess.missing or not self.guess.parts:
-                self.say(self.guess.missing or self.reason.text())
+            if self.found.missing or not self.found.parts:
+                self.say(self.found.missing or self.reason.text())
                 return False
             before = {obj.Name for obj in self.document.Objects}
             recorded.make(self.document, "make_all", self._arguments())
@@ -264,13 +263,15 @@ class JobPanel:
             self.background.at_once()
 
     def _arguments(self) -> dict[str, str]:
-        found = self.guess
+        found = self.found
         first = found.parts[0]
         told = {"source": recorded.reference(first.obj)}
-        if found.kind != guess.REVOLUTION:
+        if found.kind != REVOLUTION:
             told["kind"] = repr(found.kind)
-        if found.kind in (guess.DEVELOPABLE, guess.SOLID):
-            told.update(_of_hub(found))
+        if found.layers == GEODESIC:
+            told["layers"] = repr(found.layers)
+        if found.kind in (DEVELOPABLE, SOLID):
+            told.update(_of_solids(found))
         else:
             told["faces"] = repr(list(first.names))
             if found.ground is not None:
@@ -297,8 +298,8 @@ class JobPanel:
             self.background.cancel()
 
 
-def _of_hub(found: Guess) -> dict[str, str]:
-    """Solids and hub, which may be one, as a macro says it."""
+def _of_solids(found: JobProposal) -> dict[str, str]:
+    """Solids and what they stand on, which may be one with them, as a macro says it."""
     first, *further = (pick.obj for pick in found.parts)
     told, ground = {}, found.ground
     if further:
@@ -307,7 +308,8 @@ def _of_hub(found: Guess) -> dict[str, str]:
         told["faces"] = repr(list(ground.names))
     elif ground is not None:
         told["substrate"] = recorded.reference(ground.obj)
-        told["base_faces"] = repr(list(ground.names))
+        if ground.names:
+            told["base_faces"] = repr(list(ground.names))
     return told
 
 

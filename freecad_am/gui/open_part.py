@@ -14,18 +14,20 @@ from PySide import QtGui
 from ..brep.read import READABLE
 from ..core.geometry.file_unit import MESHES
 from ..core.issues import AmError
+from ..objects import table_part
 from ..objects.progress import Cancelled
 from . import recorded
 from .texts import error_line, tr, translated_error
 
-ENDINGS = (*READABLE, *MESHES, ".FCStd")
+ENDINGS = (*READABLE, *MESHES, ".FCStd", table_part.ENDING)
 
 
 def ask() -> None:
     """Let a file be chosen, and open it."""
     document = App.ActiveDocument
     folder = os.path.dirname(document.FileName) if document is not None and document.FileName else ""
-    kinds = tr("Parts and meshes ({})").format(" ".join(f"*{ending} *{ending.upper()}" for ending in ENDINGS))
+    endings = " ".join(f"*{ending} *{ending.upper()}" for ending in ENDINGS)
+    kinds = tr("Parts, meshes and tables of points ({})").format(endings)
     path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), tr("Open part"), folder, kinds)
     if path:
         opened(path)

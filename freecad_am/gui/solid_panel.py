@@ -16,11 +16,11 @@ from ..core.layers.leaning import Leaning, leaning
 from ..core.layers.stacking import STANDING, stacked
 from ..core.parameters.strategy import SolidParameters
 from ..core.strategies import size
+from ..objects.proposed_family import COARSE
 from ..objects.shapes import FIXTURES
 from ..objects.solid_feature import SolidFeature
 from ..objects.stage import Link, Outcome
 from . import picking, recorded
-from .guess import COARSE
 from .hub_nodes import NOTHING, Drawing, HubNodes, drawing
 from .lines import Array, Faces
 from .pick_field import PickField
@@ -168,7 +168,7 @@ class SolidPanel(PickPanel):
             if guided:  # at once what is higher or lower than allowed
                 list(along.slices(solids.groups[0].base, bodies, strategy))
             slit = strategy.chord_error if strategy.fuse == "auto" else None
-            lean = leaning(bodies, solids.groups[0].base.frame[:3, 2], STANDING * strategy.layer_height, slit)
+            lean = leaning(bodies, solids.groups[0].base, STANDING * strategy.layer_height, slit)
             asked = round(math.degrees(strategy.max_overhang))
             return Outcome(solids, solids.issues), (drawing(solids), lean, min(asked, STEEPEST))
 

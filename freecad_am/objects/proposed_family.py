@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which family and layers suit a part, and why: what `strategy.kind: auto` of a job stands for."""
+"""Which family and layers suit a part, and why: what `strategy.kind: auto` of a job stands for, and New Job proposes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..brep import hub as hubs
 from ..brep import kernel, part_depths
 from ..brep.revolution import find_wall
 from ..brep.wall_on import named_faces
+from ..core.geometry.manifold import holes, told_apart
+from ..core.geometry.mesh_repair import connected_triangles
 from ..core.geometry.profile import RevolvedWall
+from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
-from ..core.parameters.strategy import DevelopableParameters
+from ..core.layers.stacking import best, facets, judged
+from ..core.parameters.strategy import DevelopableParameters, SolidParameters
 from ..core.process.deposit_balance import LITTLE, MM3, of_wall
 from .developable_feature import found_in
 from .shapes import Taken
@@ -24,9 +28,14 @@ COARSE = 0.3  # mm; of triangles that a look at solids is content with
 TOUCHING = 0.05  # mm from the surface of a hub
 LEAST = 3  # corners of a solid that lie on what it stands on
 OVER = 0.1  # of the surface; parts of which more hangs over get layers that need no support
-STEEP = np.radians(45.0)
+STEEP = float(np.radians(45.0))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
+OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
+ROUND = ("Part::GeomCylinder", "Part::GeomCone")
+UP = (0.0, 0.0, 1.0)
 PLANES, GEODESIC = "planes", "geodesic"
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -44,29 +53,35 @@ class Proposal:
 
 
 def proposed(
-    part: Taken, faces: Sequence[str], substrate: Taken | None, edges: bool, width: float, tilts: bool
+    part: Taken, names: Sequence[str], substrate: Taken | None, edges: bool, width: float, tilts: bool, *,
+    base: Sequence[str] = (), clicked: Sequence[str] = (), direction: Sequence[float] | None = UP,
 ) -> Proposal:
-    """What suits a part, or faces of it. edges: it names edges to start from; width: mm of a bead; tilts: a machine is
-    known, which can tilt. A part that nothing serves as a whole gets the nearest, told with what that leaves out."""
-    if part.shape is None:
-        return _solid(part, f"{part.label} is a mesh, which is filled", tilts)
+    """What suits a part, or faces or edges of it. edges: it names edges to start from; width: mm of a bead; tilts: a machine
+    is known, which can tilt; base: faces of the substrate; clicked: a face by which the whole part was chosen, maybe its
+    hub; direction: in which planes are stacked, None for the best. A part that nothing serves as a whole gets the nearest,
+    told with what that leaves out. InputError FAULTY, NO_FACES."""
     shape = part.shape
+    if shape is not None and (not shape.Faces or any(name.startswith("Edge") for name in names)):
+        what = f"edges of {part.label} are chosen" if names else f"{part.label} has edges and no faces"
+        return Proposal("curves", "", f"{what}, which are laid as beads")
+    if not names and substrate is not None and stands_on_hub(part, substrate, base):
+        return Proposal("developable", "", f"{part.label} stands on a cylinder or cone of {substrate.label}")
+    if shape is None:
+        return _of_mesh(part, substrate, tilts, direction)
     if edges:
         return Proposal("surface", "", f"{part.label} names the edges that it starts from")
-    stands = substrate is not None and substrate.shape is not None and bool(shape.Solids) and not faces
-    if stands and _on_hub(part, substrate):
-        assert substrate is not None
-        return Proposal("developable", "", f"{part.label} stands on a cylinder or cone of {substrate.label}")
-    if substrate is not None and (faces or not shape.Solids):
+    if substrate is not None and (names or not shape.Solids):
         return Proposal("surface", "", f"{part.label} is a thin wall that grows on {substrate.label}")
-    if len(shape.Solids) > 1 and not faces:
+    if len(shape.Solids) > 1 and not names:
         if _own_hub(part):
             why = f"most solids of {part.label} stand on a cylinder or cone of another of them"
             return Proposal("developable", "", why)
-        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids", tilts)
+        return _solid(part, f"{part.label} holds {len(shape.Solids)} solids", tilts, direction)
     left = ""
-    wall = _turned(part, faces) if substrate is None else None
+    wall = _turned(part, names) if substrate is None else None
     if wall is not None:
+        if names:
+            return Proposal("revolution", "", f"the faces chosen of {part.label} turn about one axis")
         if not shape.Solids:
             return Proposal("revolution", "", f"{part.label} is a skin that turns about one axis")
         deep = part_depths.of_revolved(shape, wall, part.label)
@@ -79,36 +94,64 @@ def proposed(
             f"; it turns about one axis, but a wall of one bead would leave out {out / MM3:.3g} of its "
             f"{(balance.part or 0.0) / MM3:.3g} cm3"
         )
+    if names:
+        return Proposal(
+            "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall; it "
+            "needs a substrate, or edges to start from",
+        )
     if not shape.Solids:
         return Proposal(
             "surface", "", f"{part.label} is an open skin and not of revolution, and nothing else serves it; it needs a "
-            "substrate, or part.start_edges, and what does not grow from there is left out"
+            "substrate, or edges to start from, and what does not grow from there is left out"
         )
+    if clicked and not left and substrate is None and _own_hub(part, clicked):
+        return Proposal("developable", "", f"{', '.join(clicked)} of {part.label} is chosen, which the rest of it stands on")
     if substrate is not None and _thin(part, width):
         return Proposal("surface", "", f"{part.label} is a thin shell, one bead of {width:.4g} mm, on {substrate.label}")
-    return _solid(part, f"{part.label} is a solid{left}", tilts)
+    return _solid(part, f"{part.label} is a solid{left}", tilts, direction)
 
 
-def _solid(part: Taken, reason: str, tilts: bool) -> Proposal:
+def _of_mesh(part: Taken, substrate: Taken | None, tilts: bool, direction: Sequence[float] | None) -> Proposal:
+    """A wall where it is wide open, else filled."""
+    body = part.body()
+    found = connected_triangles(body.vertices, body.triangles, part.label, 0.0)
+    opening = max((hole.size for hole in holes(told_apart(found.vertices, found.triangles))), default=0.0)
+    if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
+        return _solid(part, f"{part.label} is a mesh, which is filled", tilts, direction)
+    where = "starts on the platform" if substrate is None else f"grows on {substrate.label}"
+    return Proposal("surface", "", f"{part.label} is an open mesh, so it is a thin wall that {where}")
+
+
+def _solid(part: Taken, reason: str, tilts: bool, direction: Sequence[float] | None) -> Proposal:
     """Filled in plane layers, or in ones that need no support where much hangs over and the machine can tilt."""
-    over = _overhang(part)
+    bodies = [part.body()]
+    least = best(bodies, SolidParameters(max_overhang=STEEP))[0].way
+    way = least if direction is None else np.array(direction) / np.linalg.norm(direction)
+    over = _overhang(bodies[0], way)
+    along = "" if np.array_equal(way, UP) else f", stacked along {_told(way)}"
+    why = f"{reason}, and {over:.0%} of its surface hang over by more than 45 deg{along}"
     if over <= OVER:
-        return Proposal("solid", PLANES, f"{reason}, and {over:.0%} of its surface hang over by more than 45 deg")
-    why = f"{reason}, and {over:.0%} of its surface hang over by more than 45 deg"
+        return Proposal("solid", PLANES, why)
+    other = _overhang(bodies[0], least)
+    hint = f"; strategy.direction along {_told(least)} has {other:.0%}" if other <= OVER else ""
     if tilts:
-        return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry")
-    return Proposal("solid", PLANES, f"{why}; a machine that tilts could lay layers: {GEODESIC}, which need no support")
+        return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry{hint}")
+    what = f"a machine that tilts could lay layers: {GEODESIC}, which need no support"
+    return Proposal("solid", PLANES, f"{why}; {what}{hint}")
 
 
-def _overhang(part: Taken) -> float:
-    """The share of the surface that faces down by more than 45 deg from the vertical, but for what the part stands on."""
-    corners = part.body().corners()
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    double = np.linalg.norm(normal, axis=1)
-    low, high = float(corners[..., 2].min()), float(corners[..., 2].max())
-    stands = corners[..., 2].max(axis=1) <= low + FLAT * (high - low)
-    down = normal[:, 2] < -np.sin(STEEP) * double
-    return float(double[down & ~stands].sum() / max(double.sum(), 1e-300))
+def _overhang(body: Body, way: Array) -> float:
+    """The share of the surface that leans out by more than 45 deg from the direction of stacking (3,), but for what the part
+    stands on."""
+    corners, normals, areas = facets([body], None)
+    heights = corners @ way
+    found = judged(way, corners, normals, areas, float(np.sin(STEEP)), FLAT * float(np.ptp(heights)))
+    return found.area / max(float(areas.sum()), 1e-300)
+
+
+def _told(way: Array) -> str:
+    x, y, z = (round(float(value), 3) + 0.0 for value in way)
+    return f"({x:g}, {y:g}, {z:g})"
 
 
 def _turned(part: Taken, faces: Sequence[str]) -> RevolvedWall | None:
@@ -133,19 +176,26 @@ def _thin(part: Taken, width: float) -> bool:
     return balance is not None and (balance.left_out or 0.0) <= LITTLE * (balance.part or 0.0)
 
 
-def _own_hub(part: Taken) -> bool:
-    """Whether most solids of a part stand on a cylinder or cone of another of them."""
+def _own_hub(part: Taken, faces: Sequence[str] = ()) -> bool:
+    """Whether most solids of a part stand on a cylinder or cone of another of them, or what it is of stands on faces of
+    it that are nothing else."""
+    chosen = [part.shape.getElement(name) for name in faces]
+    if any(face.Surface.TypeId not in ROUND for face in chosen):
+        return False
     try:
-        found_in([part], (), None, None, DevelopableParameters(chord_error=COARSE))
+        found_in([part], faces, None, None, DevelopableParameters(chord_error=COARSE))
     except (InputError, *kernel.FAULTS):
         return False
     return True
 
 
-def _on_hub(part: Taken, substrate: Any) -> bool:
-    """Whether a solid has corners on a cylinder or cone of the substrate."""
-    corners = np.array([tuple(vertex.Point) for vertex in part.shape.Vertexes]).reshape(-1, 3)
+def stands_on_hub(part: Taken, substrate: Taken, faces: Sequence[str] = ()) -> bool:
+    """Whether a solid or mesh has corners on a cylinder or cone of the substrate, on the faces chosen of it or any."""
+    if substrate.shape is None or (part.shape is not None and not part.shape.Solids):
+        return False  # a surface is no solid to be filled
+    corners = part.body().vertices if part.shape is None else np.array(
+        [tuple(vertex.Point) for vertex in part.shape.Vertexes]).reshape(-1, 3)
     named = [(f"Face{number}", face) for number, face in enumerate(substrate.shape.Faces, start=1)]
-    seats = hubs.seats(named, False)
+    seats = hubs.seats([(name, face) for name, face in named if not faces or name in faces], False)
     near = [np.abs(seat.base.surface.distance(seat.base.inside(corners))) < TOUCHING for seat in seats]
     return any(int(some.sum()) >= LEAST for some in near)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writes the parts of the examples beside this script (Chalvin 2020, eqs. 20 to 22; Chalvin 2019, eq. 1), in `walls`,
-in `thruster` and `rotor` (after Dai 2020), a bracket, a Y and a hub with fins.
+in `thruster` and `rotor` (after Dai 2020), a bracket, a Y, a hub with fins, a bent
+pipe and a rosette.
 
 Each wall is a surface, so that the wall deposited has exactly the radius of the equation.
 Run it in any Python that finds FreeCAD: python3 resources/examples/make_examples.py
@@ -9,6 +10,7 @@ Run it in any Python that finds FreeCAD: python3 resources/examples/make_example
 from __future__ import annotations
 
 import bracket_part
+import curves_parts
 import finned_hub_part
 import parts_of_revolution
 import rotor_parts
@@ -24,7 +26,7 @@ ROTOR = step_files.HERE / "rotor"
 PLAIN = (
     parts_of_revolution.hemisphere, parts_of_revolution.laval_nozzle, parts_of_revolution.intake_funnel,
     tubes_on_pipes.tube_on_pipe, tubes_on_pipes.pipe, bracket_part.bracket,
-    wye_part.wye, finned_hub_part.finned_hub,
+    wye_part.wye, finned_hub_part.finned_hub, curves_parts.pipe_bend,
 )
 ON_PARTS = {
     "wide-tube-on-pipe": tubes_on_pipes.wide_tube_on_pipe,
@@ -46,6 +48,7 @@ if __name__ == "__main__":
     WALLS.mkdir(exist_ok=True)
     for make in PLAIN:
         step_files.write_step(step_files.HERE / f"{make.__name__.replace('_', '-')}.step", make())
+    curves_parts.write_rosette()
     for name, make in ON_PARTS.items():
         step_files.write_step(WALLS / f"{name}.step", make())
     THRUSTER.mkdir(exist_ok=True)

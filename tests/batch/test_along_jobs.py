@@ -3,6 +3,7 @@
 
 import csv
 import json
+import re
 
 import FreeCAD
 import numpy as np
@@ -197,3 +198,17 @@ def test_only_layers_along_have_a_guide(workshop, layers):
     job = JOB.format(guide="{edges: [Edge1]}", band="20 %", more="", mode="").replace("along", layers)
     done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
     assert done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and "strategy.guide" in done.err, done.err
+
+
+def test_the_report_shows_layers_in_their_planes(workshop):
+    """The circle of the pipe, 9 mm, less half a bead, wherever along the bend it is cut."""
+    elbow().exportStep(str(workshop.folder / "part.step"))
+    job = JOB.format(guide="auto", band="40 %", more="", mode="").replace("2.5 mm", "6 mm")
+    done = workshop.run("plan", workshop.write_job(job).name, "-o", "out")
+    assert done.status == 0, done.err
+    page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
+    pictures = [part for part in page.split("<svg") if ", laid flat</" in part]
+    assert len(pictures) == 2
+    for picture in pictures:
+        width, height = (float(re.search(rf'[ "]{name}="([\d.]+)"', picture)[1]) for name in ("width", "height"))
+        assert 0.9 < height / width < 1.25  # as wide as high, with the frame

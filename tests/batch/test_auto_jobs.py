@@ -28,9 +28,9 @@ def tee():
     return Part.makeBox(20, 20, 40).fuse(Part.makeBox(90, 20, 12, Vector(-35, 0, 40))).removeSplitter()
 
 
-def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True):
+def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, **more):
     under = None if substrate is None else Taken("ground", substrate)
-    return proposed(Taken("part", shape), faces, under, edges, width, tilts)
+    return proposed(Taken("part", shape), faces, under, edges, width, tilts, **more)
 
 
 @pytest.mark.parametrize(("shape", "kind", "layers", "why"), [
@@ -74,7 +74,60 @@ def test_what_nothing_serves_gets_the_nearest():
     bent = Part.makeSphere(30).Faces[0].toNurbs().Faces[0].Surface.toShape(0.1, 2.0, 0.1, 0.9)
     bent = bent.transformGeometry(FreeCAD.Matrix(1, 0.3, 0, 0, 0, 0.7, 0.2, 0, 0, 0, 1, 0, 0, 0, 0, 1))
     found = of(bent)
-    assert found.kind == "surface" and "needs a substrate, or part.start_edges" in found.reason
+    assert found.kind == "surface" and "needs a substrate, or edges to start from" in found.reason
+
+
+def test_overhang_counts_along_the_stacking_direction():
+    """A T of 20 mm width hangs over by two strips of 35 mm along Z, and by none along Y, which it is extruded along."""
+    share = 2 * 35 * 20 / (2 * (20 * 40 + 90 * 12) + 20 * (2 * 40 + 2 * 12 + 2 * 90))
+    upright = of(tee())
+    assert f"and {share:.0%} of its surface" in upright.reason
+    assert "strategy.direction along (0, 1, 0) has 0%" in upright.reason
+    for direction in ((0, 1, 0), (0.0, -3.0, 0.0), None):
+        lying = of(tee(), direction=direction)
+        assert (lying.kind, lying.layers) == ("solid", "planes") and "0% of its surface" in lying.reason, lying
+    assert of(tee().rotated(Vector(), Vector(1, 0, 0), 90.0), direction=(0, -1, 0)).layers == "geodesic"
+
+
+def test_edges_and_what_has_no_faces_are_curves():
+    box, bent = Part.makeBox(9, 9, 9), Part.makePolygon([Vector(0, 0, 0), Vector(9, 0, 0), Vector(9, 9, 0)])
+    assert (of(bent).kind, of(box, faces=("Edge1", "Edge2")).kind, of(box).kind) == ("curves", "curves", "solid")
+
+
+def test_faces_that_are_chosen_are_not_the_whole():
+    """Of a solid that a bead would not fill: its side turns about one axis, two sides of a box are a wall. A lone face that
+    was clicked means the whole, but the cylinder that a fin stands on is its hub."""
+    hub = Part.makeCylinder(25, 80)
+    fin = Part.makeBox(24, 30, 30, Vector(10, -15, 20))
+    whole = hub.fuse(fin)
+    side = next(f"Face{k}" for k, face in enumerate(whole.Faces, 1) if face.Surface.TypeId == "Part::GeomCylinder")
+    assert of(Part.makeCylinder(30, 20), faces=("Face1",)).kind == "revolution"
+    assert of(Part.makeBox(9, 9, 9), faces=("Face1", "Face2")).kind == "surface"
+    flat = next(f"Face{k}" for k, face in enumerate(whole.Faces, 1) if face.Surface.TypeId == "Part::GeomPlane")
+    kinds = [of(whole, clicked=clicked).kind for clicked in ((), (flat,), (side,))]
+    assert kinds == ["solid", "solid", "developable"] and of(whole, faces=(side,)).kind == "revolution"
+    drilled = Part.makeBox(60, 40, 10).cut(Part.makeCylinder(6, 10, Vector(20, 20, 0)))
+    bore = next(f"Face{k}" for k, face in enumerate(drilled.Faces, 1) if face.Surface.TypeId == "Part::GeomCylinder")
+    assert of(drilled, clicked=(bore,)).kind == "solid"
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["as it is", "with facets turned"])
+def test_an_open_mesh_is_a_wall_and_one_with_a_small_hole_is_filled(turned):
+    whole = MeshPart.meshFromShape(Shape=Part.makeCylinder(20, 60), LinearDeflection=0.2, AngularDeflection=0.2)
+    points, facets = (np.array(some) for some in whole.Topology)
+    high = points[facets][..., 2]
+    vase, nick = facets[(high < 59.9).any(axis=1)], np.delete(facets, np.flatnonzero((high > 59.9).all(axis=1))[5], axis=0)
+    for some, kind in ((vase, "surface"), (nick, "solid")):
+        if turned:
+            some = some.copy()
+            some[: len(some) // 3] = some[: len(some) // 3, ::-1]
+        found = proposed(Taken("scan", None, Mesh.Mesh(points[some].tolist()), np.eye(4)), (), None, False, 8.0, True)
+        assert found.kind == kind, found
+    assert "open mesh" in of_mesh(points[vase]).reason and "starts on the platform" in of_mesh(points[vase]).reason
+
+
+def of_mesh(corners):
+    return proposed(Taken("scan", None, Mesh.Mesh(corners.tolist()), np.eye(4)), (), None, False, 8.0, True)
 
 
 def test_a_mesh_is_filled():

@@ -150,6 +150,13 @@ class Person:
         box.setCurrentIndex(index)
         self.idle(0.05)
 
+    def as_revolution(self, panel=None):
+        """Choose parts of revolution in New Job, whatever it proposes: one bead in place of a filled solid."""
+        panel = panel or self.panel("RoboticAM_NewJob")
+        self.choose(panel, "Kind", "Part of revolution")
+        box = self.field(panel, "Kind")
+        box.activated.emit(box.currentIndex())
+
     def press(self, standard_button):
         wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
         boxes = self.window.findChildren(self.widgets.QDialogButtonBox)

@@ -72,6 +72,7 @@ def test_new_job_makes_all_stages_in_one_step_of_undo(person, hemisphere, coarse
     person.select(hemisphere, "Face1")
     person.click("RoboticAM_NewJob")
     person.screenshot("panel_new_job")
+    person.as_revolution()
     person.press("Ok")
     person.panel_closed()
     assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
@@ -309,7 +310,7 @@ def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere, n
     hemisphere.Document.recompute()
     person.select(ring)
     person.click("RoboticAM_NewJob")
-    person.panel("RoboticAM_NewJob")
+    person.as_revolution()
     said = len(person.console())
     person.press("Ok")
     person.panel_closed()

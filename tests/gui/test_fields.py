@@ -140,8 +140,11 @@ def test_what_is_wrong_is_told_while_typing_and_only_as_long_as_it_is_there(pers
         person.until(lambda told=told: note.isVisible() and note.text().startswith(told), told, 5)
     person.press("Ok")  # refused
     assert note.isVisible() and not any(obj.TypeId.startswith("App::FeatureP") for obj in hemisphere.Document.Objects)
+    below = person.field(panel, "Mount")
+    height = below.mapTo(panel, person.core.QPoint(0, 0)).y()
     person.type(panel, "PlatformDiameter", "100 mm")
     person.until(lambda: not note.isVisible(), "the error to go with what was wrong", 5)
+    assert below.mapTo(panel, person.core.QPoint(0, 0)).y() == height  # a click on the next field does not miss it
     person.press("Cancel")
     person.panel_closed()
 

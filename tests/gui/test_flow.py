@@ -11,6 +11,8 @@ from freecad_am import api
 from freecad_am.gui.commands import GROUPS
 from freecad_am.gui.stage_panel import edit
 from freecad_am.objects.job_group import is_group
+from freecad_am.objects.proposed_family import proposed
+from freecad_am.objects.shapes import taken
 from tests.gui.nested_cone import nested_cone
 
 EXAMPLES = Path(__file__).resolve().parent.parent.parent / "resources" / "examples"
@@ -25,11 +27,14 @@ def jobs(doc):
     return [obj for obj in doc.Objects if is_group(obj)]
 
 
-def new_job(person, **texts):
-    """Click the tool, look at how the selection is understood, and press OK; the panel's texts."""
+def new_job(person, turned=True, **texts):
+    """Click the tool, look at how the selection is understood, and press OK; the panel's texts. turned: as a part of
+    revolution, whatever is proposed."""
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    person.until(lambda: "looking" not in person.field(panel, "reason").text(), "the selection to be understood", 20)
+    person.until(lambda: "Looking" not in person.field(panel, "reason").text(), "the selection to be understood", 20)
+    if turned:
+        person.as_revolution(panel)
     told = {name: person.field(panel, name).text() for name in ("Source", "Ground", "reason", "error")}
     told["Kind"] = person.field(panel, "Kind").currentText()
     for name, text in texts.items():
@@ -107,7 +112,7 @@ def test_a_wall_on_a_part_is_told_from_its_faces(person, coarse, no_remedies, or
     person.gui.Selection.clearSelection()
     for k in order:
         person.gui.Selection.addSelection(doc.Name, parts[k].Name, "Face1" if k == 0 else "")
-    told = new_job(person, Machine="kuka-kr16-2")
+    told = new_job(person, False, Machine="kuka-kr16-2")
     assert told["Kind"] == "Wall on a part" and parts[1].Label in told["Ground"] and parts[0].Label in told["reason"]
     assert kinds(doc)[:3] == ["cell", "feature", "toolpath"] and doc.Feature.Substrate == parts[1]
     assert doc.Cell.Machine == "kuka-kr16-2"
@@ -122,12 +127,46 @@ def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
     person.gui.Selection.clearSelection()
     person.gui.Selection.addSelection(doc.Name, blade.Name, "")
     person.gui.Selection.addSelection(doc.Name, hub.Name, "Face1")
-    told = new_job(person, Machine="table-xyzac")
+    told = new_job(person, False, Machine="table-xyzac")
     assert told["Kind"] == "Solids on a hub" and "Blade stands on" in told["reason"]
     assert doc.Feature.Substrate == hub and list(doc.Feature.BaseFaces[1]) == ["Face1"]
     assert doc.Cell.Setup == "rotary-table"
     program = api.stages_of(doc, "program")
     assert [obj.Post for obj in program] == ["siemens"] if doc.JointPath.Status == "up to date" else not program
+
+
+def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
+    """Family, layers and reason of each shape, as `proposed_family` has them."""
+    doc = App.newDocument("Kinds")
+    post = Part.makeBox(20, 20, 40)
+    hub = Part.makeCylinder(25, 80)
+    shapes = {
+        "Bush": Part.makeCylinder(40, 50).cut(Part.makeCylinder(32, 50)), "Rod": Part.makeCylinder(30, 20),
+        "Tee": post.fuse(Part.makeBox(90, 20, 12, V(-35, 0, 40))),
+        "Wire": Part.makePolygon([V(), V(30, 0, 0), V(30, 20, 0)]),
+        "Rotor": Part.makeCompound([hub, *(Part.makeBox(20, 8, 30, V(x, -4, 20)).cut(hub) for x in (20, -40))]),
+    }
+    for name, shape in shapes.items():
+        doc.addObject("Part::Feature", name).Shape = shape
+    told = {}
+    person.gui.Selection.clearSelection()
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    for name in shapes:
+        part = doc.getObject(name)
+        person.select(part)
+        person.until(lambda name=name: f": {name} " in person.field(panel, "reason").text() or f"of {name} " in person.field(
+            panel, "reason").text(), f"a proposal for {name}", 30)
+        auto = proposed(taken(part), (), None, False, 8.0, True)
+        assert auto.reason.split(" (")[0].split(";")[0] in person.field(panel, "reason").text()
+        told[name] = person.field(panel, "Kind").currentText()
+    assert told == {
+        "Bush": "Part of revolution", "Rod": "Solids in plane layers", "Tee": "Solids in layers that need no support",
+        "Wire": "Curves as beads", "Rotor": "Solids on a hub",
+    }
+    person.screenshot("new_job_kinds")
+    person.press("Cancel")
+    person.panel_closed()
 
 
 def test_what_is_not_of_revolution_asks_for_what_it_grows_on(person):
@@ -173,6 +212,7 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere, coar
     person.select(folder)  # which holds one thing alone
     person.until(lambda: person.field(panel, "Source").text() == hemisphere.Label, "the part", 5)
     assert person.panel_error(panel) == ""
+    person.as_revolution(panel)
     person.press("Ok")
     person.panel_closed()
     assert kinds(doc) == ["cell", "cell", "feature", "toolpath", "joint path", "program"]
@@ -183,6 +223,7 @@ def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere, 
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     machine, name = (person.field(panel, f"{field}Note") for field in ("Machine", "ProgramName"))
+    person.as_revolution(panel)
     for field, note, wrong, words in (
         ("Machine", machine, "kuka-kr17", "is not known"), ("ProgramName", name, "my part!", "only the letters"),
     ):
@@ -310,7 +351,7 @@ def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
     def fail(*_, **__):
         raise RuntimeError("Bnd_Box is void")
 
-    monkeypatch.setattr("freecad_am.gui.guess.find_wall", fail)
+    monkeypatch.setattr("freecad_am.objects.proposed_family.find_wall", fail)
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")

@@ -14,6 +14,7 @@ from freecad_am import api
 from freecad_am.brep import apart, kernel_process
 from freecad_am.brep.read import read_shape
 from freecad_am.core.issues import InputError
+from freecad_am.gui import open_part
 from freecad_am.objects.progress import Cancelled
 from tests.brep.test_read import in_unit
 from tests.robust import damage
@@ -97,6 +98,21 @@ def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(person
     person.until(lambda: person.field(panel, "Source").text() == "hemisphere", "the part to be taken", 10)
     person.press("Cancel")
     person.panel_closed()
+
+
+def test_a_table_of_points_is_opened_and_laid_as_beads(person, chosen, tmp_path):
+    (tmp_path / "beads.csv").write_text("x,y,z\n0,0,0\n40,0,0\n40,30,0\n", encoding="utf-8")
+    chosen(tmp_path / "beads.csv")
+    assert ".csv" in open_part.ENDINGS  # of the files that the dialog shows
+    person.click("RoboticAM_NewJob")
+    panel = person.panel("RoboticAM_NewJob")
+    person.until(lambda: "laid as beads" in person.field(panel, "reason").text(), "the proposal", 20)
+    assert person.field(panel, "Kind").currentText() == "Curves as beads"
+    assert person.field(panel, "Source").text() == "beads"
+    person.press("Ok")
+    person.until(lambda: not person.gui.Control.activeDialog(), "the job to be made", 60)
+    toolpath = api.stages_of(App.ActiveDocument, "toolpath")[0]
+    assert toolpath.Status == "up to date" and api.result(toolpath).layers[0].beads[0].length == pytest.approx(70.0)
 
 
 def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path):

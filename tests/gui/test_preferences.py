@@ -107,6 +107,7 @@ def test_a_new_job_takes_machine_process_and_post(person, clean, hemisphere, coa
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     assert person.field(panel, "Machine").currentText() .startswith("FANUC ARC Mate 120iC/10L")
+    person.as_revolution(panel)
     person.until(lambda: person.field(panel, "Name").text() if panel.findChild(
         person.widgets.QLineEdit, "Name") else True, "a name")
     person.press("Ok")

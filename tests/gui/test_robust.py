@@ -13,7 +13,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics import machine as machines
-from freecad_am.gui import guess
+from freecad_am.gui import job_proposal
 from freecad_am.gui.picking import Pick
 from freecad_am.objects.job_group import is_group
 
@@ -232,13 +232,14 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
 
 def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monkeypatch):
     """What comes of it belongs to an object that is gone, and so does what is chosen afterwards."""
-    closed, found = threading.Event(), guess.Guess(guess.REVOLUTION, "", (Pick(hemisphere),))
+    found = job_proposal.JobProposal(job_proposal.REVOLUTION, "", (Pick(hemisphere),))
+    closed = threading.Event()
 
     def slowly():
         closed.wait(20)
         return found
 
-    monkeypatch.setattr(guess, "of_one", lambda pick: slowly)
+    monkeypatch.setattr(job_proposal, "proposal", lambda picks: slowly)
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
@@ -294,12 +295,14 @@ def test_two_documents_at_once(person, hemisphere, coarse):
     person.select(ball)
     person.idle(0.3)
     assert person.field(panel, "Source").text() == hemisphere.Label
+    person.as_revolution(panel)
     person.press("Ok")
     person.panel_closed()
     assert statuses(one) == ["up to date"] * 5 and statuses(other) == []
     person.select(ball)
     person.click("RoboticAM_NewJob")
     person.idle(0.5)
+    person.as_revolution()
     person.press("Ok")
     person.panel_closed()
     assert len(statuses(other)) >= 4

@@ -206,6 +206,7 @@ def test_a_new_job_is_seen_alone(person, hemisphere, coarse):
         before = set(api.stages_of(doc))
         person.select(part)
         person.click("RoboticAM_NewJob")
+        person.as_revolution()
         person.press("Ok")
         person.panel_closed()
         made.append([stage for stage in api.stages_of(doc) if stage not in before])

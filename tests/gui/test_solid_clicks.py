@@ -110,7 +110,7 @@ def test_new_job_fills_what_is_no_wall(person, coarse):
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     reason = person.field(panel, "reason")
-    person.until(lambda: "filled in plane layers" in reason.text(), "the proposal", 30)
+    person.until(lambda: "is a solid, and" in reason.text(), "the proposal", 30)
     assert person.field(panel, "Kind").currentText() == "Solids in plane layers"
     person.press("Cancel")
     person.panel_closed()

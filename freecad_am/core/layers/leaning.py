@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.guide import Guide
+from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
 from .stacking import facets
 
@@ -32,12 +34,18 @@ class Leaning(NamedTuple):
         return self.corners[first:], float(self.area[first:].sum())
 
 
-def leaning(bodies: Sequence[Body], way: Array, standing: float, slit: float | None = None) -> Leaning:
-    """The facets of bodies that face against the unit vector `way` (3,): 0 is a wall, a right angle a ceiling. What lies no
-    more than `standing` mm above the lowest place is carried by what the part stands on. slit: as of `stacking.facets`."""
+def leaning(bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None) -> Leaning:
+    """The facets of bodies that face against the way in which layers follow one another on a base, along a guide that there:
+    0 is a wall, a right angle a ceiling. What lies no more than `standing` mm above the lowest place is carried by what the
+    part stands on. slit: as of `stacking.facets`."""
     corners, normals, areas = facets(bodies, slit)
-    lean = np.arcsin(np.clip(-(normals @ way), -1.0, 1.0))
-    heights = corners @ way
+    inside = base.inside(corners)
+    heights = np.asarray(base.surface.distance(inside))
+    ways = base.frame[:3, 2]
+    if isinstance(base.surface, Guide):
+        middles = base.surface.distance(inside.mean(axis=1))
+        ways = base.turned(base.surface.at(middles)[1])
+    lean = np.arcsin(np.clip(-(normals * ways).sum(axis=1), -1.0, 1.0))
     out = np.flatnonzero((lean > LEAST) & (areas > 0.0) & (heights.max(axis=1) > heights.min() + standing))
     order = out[np.argsort(lean[out], kind="stable")]
     return Leaning(corners[order], lean[order], areas[order], float(areas.sum()))

@@ -58,7 +58,7 @@ def best(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
     vertices, normals, areas = facets(bodies, strategy.chord_error if strategy.fuse == "auto" else None)
     ways = _candidates(normals, areas)
     steep, standing = float(np.sin(strategy.max_overhang)), STANDING * strategy.layer_height
-    found = [_judged(way, vertices, normals, areas, steep, standing) for way in ways]
+    found = [judged(way, vertices, normals, areas, steep, standing) for way in ways]
     total = max(float(areas.sum()), 1e-300)
     return sorted(found, key=lambda one: (round(one.area / total / CLOSE), round(one.height, 6)))
 
@@ -122,7 +122,9 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
     return ways
 
 
-def _judged(way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float) -> Stacked:
+def judged(way: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float) -> Stacked:
+    """A unit direction (3,) by the facets of a part: what of them leans out by more than `steep`, the sine of an angle from
+    the direction, and reaches more than `standing` mm above the lowest place."""
     heights = corners @ way
     low, high = float(heights.min()), float(heights.max())
     over = (normals @ way < -steep - 1e-9) & (heights.max(axis=1) > low + standing)

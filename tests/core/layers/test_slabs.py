@@ -5,12 +5,17 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from freecad_am.core.geometry.guide import guide
+from freecad_am.core.geometry.on_hub import Base
+from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.layers.leaning import leaning
 from freecad_am.core.layers.slabs import below, group_of, outline, slabs
 from freecad_am.core.layers.stacking import stacked
 from freecad_am.core.parameters.strategy import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
+
+LEVEL = Base("the first layer", Plane(), np.eye(4))
 
 
 def clipped(points, height):
@@ -66,12 +71,45 @@ def test_facets_lean_by_their_slope_and_what_stands_does_not():
         # widens upwards from 10 to 50: sides lean out by the slope; the base of 10 x 30 stands
         points = np.array([[x, y, z] for z, half in ((0.0, 5.0), (rise, 25.0)) for x in (-half, half) for y in (0.0, 30.0)])
         body = hull(points)
-        found = leaning([body], np.array([0.0, 0.0, 1.0]), 0.1)
+        found = leaning([body], LEVEL, 0.1)
         side = 30.0 * np.hypot(20.0, rise)
         assert found.beyond(slope - 0.01)[1] == pytest.approx(2.0 * side, rel=1e-9)
         assert found.beyond(slope + 0.01)[1] == 0.0 and len(found.beyond(slope + 0.01)[0]) == 0
         assert found.whole == pytest.approx(ConvexHull(points).area, rel=1e-9)
         flying = Body("higher", body.vertices + [100.0, 0.0, 50.0], body.triangles)
-        both = leaning([body, flying], np.array([0.0, 0.0, 1.0]), 0.1)
+        both = leaning([body, flying], LEVEL, 0.1)
         assert both.beyond(np.radians(85.0))[1] == pytest.approx(300.0, rel=1e-9)  # its underside is a ceiling
         assert (np.diff(both.lean) >= 0.0).all()
+
+
+def elbow(widening):
+    """A pipe bent by 90 deg about a radius of 40 mm, 5 mm thick where it stands and wider by a share of the way; a base with
+    the arc as its guide."""
+    turn, round_ = np.linspace(0.0, np.pi / 2.0, 91), np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
+    way = np.stack([np.sin(turn), np.zeros_like(turn), np.cos(turn)], axis=1)
+    out = np.stack([-np.cos(turn), np.zeros_like(turn), np.sin(turn)], axis=1)
+    middle = np.array([40.0, 0.0, 0.0]) + 40.0 * out
+    radius = 5.0 + widening * 40.0 * turn
+    ring = np.cos(round_)[None, :, None] * out[:, None] + np.sin(round_)[None, :, None] * np.array([0.0, 1.0, 0.0])
+    points = (middle[:, None] + radius[:, None, None] * ring).reshape(-1, 3)
+    a = np.arange(90)[:, None] * 72 + np.arange(72)
+    b = np.arange(90)[:, None] * 72 + (np.arange(72) + 1) % 72
+    sides = np.concatenate([np.stack([a, b, a + 72], axis=-1), np.stack([b, b + 72, a + 72], axis=-1)]).reshape(-1, 3)
+    if np.linalg.det(np.stack([points[sides[0, 1]] - points[sides[0, 0]], points[sides[0, 2]] - points[sides[0, 0]],
+                               points[sides[0, 0]] - middle[0]])) < 0.0:
+        sides = sides[:, ::-1]
+    return Body("elbow", points, sides), Base("the guide", guide(middle, way), np.eye(4))
+
+
+@pytest.mark.parametrize("widening", [0.0, 0.05])
+def test_facets_lean_from_the_guide_where_they_are(widening):
+    """A bent pipe leans out nowhere from the planes across it; one that widens by as much as it does, more where the bend is
+    narrow: the way is shorter there."""
+    body, base = elbow(widening)
+    found, upright = leaning([body], base, 0.1), leaning([body], LEVEL, 0.1)
+    assert upright.beyond(np.radians(20.0))[1] > 0.2 * upright.whole
+    least, most = (np.arctan(widening * 40.0 / (40.0 + side * (5.0 + widening * 20.0 * np.pi))) for side in (1.0, -1.0))
+    flat = np.radians(0.5)  # facets are 5 deg wide
+    assert found.beyond(most + flat)[1] < 1e-6 * found.whole
+    if widening:
+        assert found.beyond(least - flat)[1] > 0.95 * found.whole  # but for what is near the first plane
