@@ -44,7 +44,7 @@ class JobPanel:
         self.document = App.ActiveDocument
         self.kinds = {
             REVOLUTION: tr("Part of revolution"), SURFACE: tr("Wall on a part"), SOLID: tr("Solids in plane layers"),
-            GEODESIC: tr("Solids in layers that need no support"), DEVELOPABLE: tr("Solids on a hub"),
+            GEODESIC: tr("Solids without support"), DEVELOPABLE: tr("Solids on a hub"),
             CURVES: tr("Curves as beads"),
         }
         self.picks: list[Pick] = []
@@ -74,6 +74,7 @@ class JobPanel:
         self.kind = QtGui.QComboBox()
         self.kind.setObjectName("Kind")
         self.kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
+        self.kind.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)  # a narrow panel stays whole
         for key, text in self.kinds.items():
             self.kind.addItem(text, key)
         self.kind.activated.connect(self._choose)

@@ -133,7 +133,7 @@ def _solid(part: Taken, reason: str, tilts: bool, direction: Sequence[float] | N
     if over <= OVER:
         return Proposal("solid", PLANES, why)
     other = _overhang(bodies[0], least)
-    hint = f"; strategy.direction along {_told(least)} has {other:.0%}" if other <= OVER else ""
+    hint = f"; stacked along {_told(least)} it would be {other:.0%}" if other <= OVER else ""
     if tilts:
         return Proposal("solid", GEODESIC, f"{why}, which layers along the way through it carry{hint}")
     what = f"a machine that tilts could lay layers: {GEODESIC}, which need no support"

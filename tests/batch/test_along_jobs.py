@@ -4,11 +4,15 @@
 import csv
 import json
 import re
+import shutil
 
 import FreeCAD
 import numpy as np
 import Part
 import pytest
+
+from freecad_am.batch.job import read_job
+from tests.batch import row_limits
 
 V = FreeCAD.Vector
 HEIGHT, RADIUS = 2.5, 40.0
@@ -200,12 +204,16 @@ def test_only_layers_along_have_a_guide(workshop, layers):
     assert done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and "strategy.guide" in done.err, done.err
 
 
-def test_the_report_shows_layers_in_their_planes(workshop):
-    """The circle of the pipe, 9 mm, less half a bead, wherever along the bend it is cut."""
-    elbow().exportStep(str(workshop.folder / "part.step"))
-    job = JOB.format(guide="auto", band="40 %", more="", mode="").replace("2.5 mm", "6 mm")
-    done = workshop.run("plan", workshop.write_job(job).name, "-o", "out")
+def test_the_example_is_planned_and_its_report_shows_layers_in_their_planes(workshop, root):
+    """Coarser: the ring of the pipe, 28 mm wide less the width of a bead, wherever along the bend it is cut."""
+    for name in ("pipe-bend.step", "pipe-bend.yaml"):
+        shutil.copy(root / "resources" / "examples" / name, workshop.folder)
+    path = workshop.folder / "pipe-bend.yaml"
+    path.write_text(path.read_text(encoding="utf-8").replace("2.5 mm", "8 mm"), encoding="utf-8")
+    done = workshop.run("plan", path.name, "-o", "out")
     assert done.status == 0, done.err
+    cell = read_job(str(path)).cell
+    assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     pictures = [part for part in page.split("<svg") if ", laid flat</" in part]
     assert len(pictures) == 2

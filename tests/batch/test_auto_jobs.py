@@ -82,7 +82,7 @@ def test_overhang_counts_along_the_stacking_direction():
     share = 2 * 35 * 20 / (2 * (20 * 40 + 90 * 12) + 20 * (2 * 40 + 2 * 12 + 2 * 90))
     upright = of(tee())
     assert f"and {share:.0%} of its surface" in upright.reason
-    assert "strategy.direction along (0, 1, 0) has 0%" in upright.reason
+    assert "; stacked along (0, 1, 0) it would be 0%" in upright.reason
     for direction in ((0, 1, 0), (0.0, -3.0, 0.0), None):
         lying = of(tee(), direction=direction)
         assert (lying.kind, lying.layers) == ("solid", "planes") and "0% of its surface" in lying.reason, lying

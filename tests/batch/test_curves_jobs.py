@@ -3,11 +3,15 @@
 
 import csv
 import json
+import shutil
 
 import FreeCAD
 import numpy as np
 import Part
 import pytest
+
+from freecad_am.batch.job import read_job
+from tests.batch import row_limits
 
 V = FreeCAD.Vector
 TABLE = """\
@@ -124,3 +128,22 @@ def test_edges_off_the_faces_are_refused(planned, workshop):
     low = next(f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.BoundBox.ZMax < 1e-6)
     done, _, _ = planned("box.step", part=f", edges: [{low}], faces: [{top}]")
     assert done.status == 2 and "error[OFF_FACE]" in done.err and "20 mm off" in done.err, done.err
+
+
+def test_the_example_lays_the_points_of_its_table(workshop, root):
+    """Twice over one another; the rose has six leaves of 5 mm about 34 mm, the ring 18 mm."""
+    for name in ("rosette.csv", "rosette.yaml"):
+        shutil.copy(root / "resources" / "examples" / name, workshop.folder)
+    path = workshop.folder / "rosette.yaml"
+    path.write_text(path.read_text(encoding="utf-8").replace("repeat: 8", "repeat: 2"), encoding="utf-8")
+    done = workshop.run("plan", path.name, "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    cell = read_job(str(path)).cell
+    assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    places = column(rows, "x_mm", "y_mm", "z_mm")
+    radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
+    rose = np.array([int(row["bead"]) == 0 for row in rows])
+    assert np.abs(radius[rose] - 34.0 - 5.0 * np.cos(6.0 * angle[rose])).max() < 0.2  # chords of the table
+    assert np.abs(radius[~rose] - 18.0).max() < 0.01 and set(places[:, 2].round(6)) == {0.0, 2.0}

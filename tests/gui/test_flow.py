@@ -161,7 +161,7 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
         assert auto.reason.split(" (")[0].split(";")[0] in person.field(panel, "reason").text()
         told[name] = person.field(panel, "Kind").currentText()
     assert told == {
-        "Bush": "Part of revolution", "Rod": "Solids in plane layers", "Tee": "Solids in layers that need no support",
+        "Bush": "Part of revolution", "Rod": "Solids in plane layers", "Tee": "Solids without support",
         "Wire": "Curves as beads", "Rotor": "Solids on a hub",
     }
     person.screenshot("new_job_kinds")
