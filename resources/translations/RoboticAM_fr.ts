@@ -1172,7 +1172,7 @@
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
         <source>A part of revolution needs exact faces; {} is a mesh.</source>
         <translation>Une pièce de révolution demande des faces exactes ; {} est un maillage.</translation>
     </message>
@@ -2937,6 +2937,11 @@
         <translation>Aspect</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Looking at the shape.</source>
+        <translation>Examen de la forme.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Looks</source>
         <translation>Aspect</translation>
@@ -3473,8 +3478,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/open_part.py"/>
-        <source>Parts and meshes ({})</source>
-        <translation>Pièces et maillages ({})</translation>
+        <source>Parts, meshes and tables of points ({})</source>
+        <translation>Pièces, maillages et tableaux de points ({})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
@@ -3937,17 +3942,17 @@
         <translation>Section de la dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
         <source>Select also, with Ctrl, the faces to deposit on {}.</source>
         <translation>Sélectionnez aussi, avec Ctrl, les faces à déposer sur {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
         <source>Select also, with Ctrl, the hub: a cylinder or cone.</source>
         <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
         <source>Select also, with Ctrl, the part that it grows on.</source>
         <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
     </message>
@@ -4150,6 +4155,11 @@
         <location filename="../../freecad_am/gui/hub_panel.py"/>
         <source>Solids on hub</source>
         <translation>Solides sur moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <source>Solids without support</source>
+        <translation>Solides sans support</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution.py"/>
@@ -4812,7 +4822,7 @@
         <translation>Tout le travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
         <source>The whole of {} is taken. For faces alone, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
@@ -5085,11 +5095,6 @@
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>Use selection</source>
         <translation>Prendre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>Use the tool Feature…: it takes an edge as the axis.</source>
-        <translation>Utilisez l&apos;outil Élément… : il prend une arête comme axe.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
@@ -6447,11 +6452,6 @@
         <translation>cylindre, R {:.4g} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>cylinders and cones of {} are picked as hub</source>
-        <translation>des cylindres et cônes de {} sont choisis comme moyeu</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>deposit</source>
         <translation>dépôt</translation>
@@ -6547,6 +6547,11 @@
         <translation>chaque court morceau de cordon, contre sa direction de dépôt, sur le dépôt précédent de sa largeur et ce qui est là</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>edges of {0} are chosen, which are laid as beads</source>
+        <translation>des arêtes de {0} sont choisies, qui sont déposées comme cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/legend.py"/>
         <source>en</source>
         <translation>fr</translation>
@@ -6577,9 +6582,9 @@
         <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>faces of {} are picked</source>
-        <translation>des faces de {} sont choisies</translation>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall; it needs a substrate, or edges to start from</source>
+        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/cladding.py"/>
@@ -7902,11 +7907,6 @@
         <translation>local : tangente à la paroi en chaque point ; layer : une direction par couche ; fixed : l&apos;axe de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
-        <source>looking at the shape</source>
-        <translation>examen de la forme</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/in_sequence.py"/>
         <source>looking for beads over nothing</source>
         <translation>recherche de cordons au-dessus du vide</translation>
@@ -7987,11 +7987,6 @@
         <translation>mesure de {0} couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>meshes have no exact faces for a wall</source>
-        <translation>les maillages n&apos;ont pas de faces exactes pour une paroi</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>middle</source>
         <translation>milieu</translation>
@@ -8025,6 +8020,11 @@
         <location filename="../../freecad_am/core/slicing/backstop.py"/>
         <source>more than {0} layers of {1} mm: use a larger layer height</source>
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>most solids of {0} stand on a cylinder or cone of another of them</source>
+        <translation>la plupart des solides de {0} se dressent sur un cylindre ou un cône de l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb_read.py"/>
@@ -8517,6 +8517,11 @@
         <translation>points de la couche {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>points up to {0} mm apart were made one</source>
+        <translation>des points écartés de {0} mm au plus ont été confondus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
         <source>polynomials</source>
         <translation>polynômes</translation>
@@ -8687,11 +8692,6 @@
         <translation>sélectionner</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>several objects are selected; they grow on the one with faces picked, else on the last one</source>
-        <translation>plusieurs objets sont sélectionnés ; ils croissent sur celui dont des faces sont choisies, sinon sur le dernier</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>several solutions of this arm bear the same configuration; along each bead the one it begins with is followed</source>
         <translation>plusieurs solutions de ce bras ont la même configuration ; le long de chaque cordon, celle du début est suivie</translation>
@@ -8765,6 +8765,11 @@
         <location filename="../../freecad_am/core/geometry/region.py"/>
         <source>solids are filled with the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
         <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <source>some of what is selected is no solid</source>
+        <translation>une partie de la sélection n&apos;est pas un solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -8850,6 +8855,11 @@
         <location filename="../../freecad_am/core/kinematics/denavit_hartenberg.py"/>
         <source>table, row {0}</source>
         <translation>tableau, ligne {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf.py"/>
+        <source>the X of {0} points out of the flange, not its Z: it is turned there, as tool0 stands to flange</source>
+        <translation>le X de {0} sort de la bride, et non son Z : il y est tourné, comme tool0 se place par rapport à flange</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
@@ -8987,6 +8997,11 @@
         <translation>la face se replie et se coupe elle-même en {0} ; un coude doit avoir un plus grand rayon que le tube</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>the faces chosen of {0} turn about one axis</source>
+        <translation>les faces choisies de {0} tournent autour d&apos;un axe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wall_checks.py"/>
         <source>the faces form {0} separate pieces: {1} and {2} are {3} mm apart at {4}; choose connected faces, edges meeting within {5} mm</source>
         <translation>les faces forment {0} morceaux séparés : {1} et {2} sont à {3} mm l&apos;une de l&apos;autre en {4} ; choisissez des faces jointes, dont les arêtes se rencontrent à {5} mm près</translation>
@@ -8995,11 +9010,6 @@
         <location filename="../../freecad_am/brep/wall.py"/>
         <source>the faces of the wall do not close around; walls that are open (half shells) cannot be deposited yet: choose a full tube</source>
         <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>the faces picked turn about one axis</source>
-        <translation>les faces choisies tournent autour d&apos;un même axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -10467,6 +10477,11 @@
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} edges of more than two triangles were divided, as at {1}</source>
+        <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>{0} face(s) ({1}) of {2} are not deposited</source>
         <translation>{0} face(s) ({1}) de {2} ne sont pas déposées</translation>
@@ -10512,6 +10527,11 @@
         <translation>{0} a une autre dimension ; donnez {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} has edges and no faces, which are laid as beads</source>
+        <translation>{0} a des arêtes et pas de faces ; elles sont déposées comme cordons</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>{0} has no limits {1}; use {2}</source>
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
@@ -10545,6 +10565,11 @@
         <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0} holds {1} solids</source>
         <translation>{0} contient {1} solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} holes were closed, the largest {1} mm across at {2}</source>
+        <translation>{0} trous ont été bouchés, le plus grand large de {1} mm en {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens_read.py"/>
@@ -10593,6 +10618,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a skin that turns about one axis</source>
+        <translation>{0} est une peau qui tourne autour d&apos;un axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0} is a solid</source>
         <translation>{0} est un solide</translation>
     </message>
@@ -10605,6 +10635,31 @@
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>{0} is a surface: it has no {1} wall, and is taken as it is</source>
         <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a thin shell, one bead of {1} mm, on {2}</source>
+        <translation>{0} est une coque mince, un cordon de {1} mm, sur {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is a thin wall that grows on {1}</source>
+        <translation>{0} est une paroi mince qui croît sur {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open mesh, so it is a thin wall that grows on {1}</source>
+        <translation>{0} est un maillage ouvert, donc une paroi mince qui croît sur {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open mesh, so it is a thin wall that starts on the platform</source>
+        <translation>{0} est un maillage ouvert, donc une paroi mince qui part du plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open skin and not of revolution, and nothing else serves it; it needs a substrate, or edges to start from, and what does not grow from there is left out</source>
+        <translation>{0} est une peau ouverte et non de révolution, et rien d&apos;autre ne lui convient ; il lui faut un substrat, ou des arêtes d&apos;où partir, et ce qui n&apos;en croît pas est laissé de côté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
@@ -11102,6 +11157,11 @@
         <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} missing triangles were put in</source>
+        <translation>{0} triangles manquants ont été ajoutés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/slicing/iso_height.py"/>
         <source>{0} mm is more than the wall is high ({1} mm); give a smaller one, or layers along the wall (spacing: arc-length)</source>
         <translation>{0} mm sont plus que la hauteur de la paroi ({1} mm) ; donnez moins, ou des couches le long de la paroi (spacing: arc-length)</translation>
@@ -11202,6 +11262,11 @@
         <translation>{0} doit être compris entre -180 et 180</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} names the edges that it starts from</source>
+        <translation>{0} nomme les arêtes d&apos;où elle part</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>{0} of its points lie on {1}; choose the object that was measured, its unit, or pairs of points to begin with</source>
         <translation>{0} de ses points sont sur {1} ; choisissez l&apos;objet qui a été mesuré, son unité, ou des paires de points pour commencer</translation>
@@ -11225,6 +11290,11 @@
         <location filename="../../freecad_am/brep/revolution.py"/>
         <source>{0} of {1} is a step of {2} mm in the wall; it is kept</source>
         <translation>{0} de {1} est une marche de {2} mm dans la paroi ; elle est gardée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} of {1} is chosen, which the rest of it stands on</source>
+        <translation>{0} de {1} est choisie, sur laquelle se dresse le reste</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution.py"/>
@@ -11260,6 +11330,16 @@
         <location filename="../../freecad_am/core/inspection/registration.py"/>
         <source>{0} pairs of points; give three or more</source>
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} pairs of triangles cross, as at {1}, and what any of them enclose counts as inside</source>
+        <translation>{0} paires de triangles se croisent, par exemple en {1}, et ce que l&apos;un d&apos;eux enferme compte comme intérieur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} pieces that enclose nothing were dropped</source>
+        <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
@@ -11327,6 +11407,16 @@
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} solids were inside out and were turned</source>
+        <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} stands on a cylinder or cone of {1}</source>
+        <translation>{0} se dresse sur un cylindre ou un cône de {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
         <source>{0} stands outside of its function</source>
         <translation>{0} est en dehors de sa fonction</translation>
@@ -11355,6 +11445,26 @@
         <location filename="../../freecad_am/posts/staubli_moves.py"/>
         <source>{0} that stands on the flange</source>
         <translation>{0} qui est sur la bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} triangles that were there twice were dropped</source>
+        <translation>{0} triangles présents en double ont été écartés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} triangles were turned to agree with their neighbours</source>
+        <translation>{0} triangles ont été retournés pour s&apos;accorder avec leurs voisins</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <source>{0} triangles without an area were dropped</source>
+        <translation>{0} triangles sans surface ont été écartés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} turns about one axis, and its wall is one bead of {1} mm</source>
+        <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/turn.py"/>
@@ -11405,6 +11515,56 @@
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} {1}; use {2}, or choose another machine</source>
         <translation>{0} {1} ; utilisez {2}, ou choisissez une autre machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}, which layers along the way through it carry</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}, which layers along the way through it carry; stacked along {3} it would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle ; empilé suivant {3}, ce serait {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, stacked along {2}; a machine that tilts could lay layers: {3}, which need no support; stacked along {4} it would be {5}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline pourrait déposer des couches : {3}, qui se passent de support ; empilé suivant {4}, ce serait {5}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, which layers along the way through it carry</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg, which layers along the way through it carry; stacked along {2} it would be {3}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle ; empilé suivant {2}, ce serait {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0}, and {1} of its surface hang over by more than 45 deg; a machine that tilts could lay layers: {2}, which need no support; stacked along {3} it would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline pourrait déposer des couches : {2}, qui se passent de support ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/front_tree.py"/>
@@ -11697,19 +11857,9 @@
         <translation>{} n&apos;a pas de forme ; sélectionnez un corps, un solide, une face, un lien ou une esquisse.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} holds {} solids</source>
-        <translation>{} contient {} solides</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/inputs.py"/>
         <source>{} is a mesh, which has no exact faces; select a part such as of a STEP file.</source>
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} is a mesh, which is filled in plane layers</source>
-        <translation>{} est un maillage, rempli en couches planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/hub_panel.py"/>
@@ -11747,11 +11897,6 @@
         <translation>{} est déplacé de {} mm et tourné de {} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} is no solid on a cylinder or cone</source>
-        <translation>{} n&apos;est pas un solide sur un cylindre ou un cône</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
         <source>{} is not a number</source>
         <translation>{} n&apos;est pas un nombre</translation>
@@ -11760,16 +11905,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
         <source>{} is not below {}</source>
         <translation>{} n&apos;est pas inférieur à {}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} is not of revolution and has no wall, so it is filled in plane layers</source>
-        <translation>{} n&apos;est pas de révolution et n&apos;a pas de paroi : il est rempli en couches planes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} is not of revolution, so it is a wall</source>
-        <translation>{} n&apos;est pas de révolution, c&apos;est donc une paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preview_panel.py"/>
@@ -11832,19 +11967,14 @@
         <translation>{} montre {} à zéro</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <source>{} solids are selected, which are filled</source>
+        <translation>{} solides sont sélectionnés, qui sont remplis</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/solid_panel.py"/>
         <source>{} solids, {:.4g} mm high; first layer: {} contours</source>
         <translation>{} solides, hauteur {:.4g} mm ; première couche : {} contours</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} stands on a cylinder or cone of {}</source>
-        <translation>{} repose sur un cylindre ou un cône de {}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{} turns about one axis</source>
-        <translation>{} tourne autour d&apos;un axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/export_panel.py"/>
@@ -11900,16 +12030,6 @@
         <location filename="../../freecad_am/gui/job_panel.py"/>
         <source>{}: {}.</source>
         <translation>{} : {}.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{}; {} is what it grows on</source>
-        <translation>{} ; {} est ce sur quoi il croît</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/guess.py"/>
-        <source>{}; {} is what they grow on</source>
-        <translation>{} ; {} est ce sur quoi elles croissent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
