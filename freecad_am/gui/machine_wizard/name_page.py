@@ -32,13 +32,13 @@ class NamePage(Page):
         self.source.setPlaceholderText(tr("such as: pendant of R-30iB, 21 November; or a simulator with its version"))
         self.remark = self._line(form, "remark", tr("Remarks"))
         self.posts = {}
-        row = QtGui.QHBoxLayout()
-        for name in catalogue.NAMES:
+        rows = QtGui.QGridLayout()
+        for number, name in enumerate(catalogue.NAMES):
             self.posts[name] = QtGui.QCheckBox(name)
             self.posts[name].setObjectName(f"post_{name}")
-            row.addWidget(self.posts[name])
-        row.addStretch(1)
-        form.addRow(tr("Its controller reads"), row)
+            rows.addWidget(self.posts[name], number // 4, number % 4)
+        rows.setColumnStretch(4, 1)
+        form.addRow(tr("Its controller reads"), rows)
         self.column.addLayout(form)
         self.summary = self.add_text("")
         self.summary.setObjectName("summary")
