@@ -16,6 +16,11 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".bench-env"
 PEERS = ("eaik", "trimesh", "python-fcl")
+# compas_slicer, and what it imports: it asks for an older numpy, and works with the distribution's
+SLICER = (
+    "compas_slicer", "compas<2", "libigl<2.5", "networkx<3.2", "progressbar2<4.4", "python-utils", "pyclipper", "rdp",
+    "imageio", "jsonschema", "schema", "typing_extensions",
+)
 BENCHMARKS = (
     "collision", "filling", "kinematics", "load", "long_work", "paths", "planning", "simulation", "slicing", "surface",
     "threads", "whole",
@@ -27,7 +32,7 @@ def environment_python() -> Path | None:
     """The Python of the benchmark's environment, made and filled when it is not there; None when that fails."""
     python = ENVIRONMENT / "bin" / "python"
     told = ENVIRONMENT / "peers.txt"
-    if python.exists() and told.exists() and told.read_text(encoding="utf-8").split() == list(PEERS):
+    if python.exists() and told.exists() and told.read_text(encoding="utf-8").split() == [*PEERS, *SLICER]:
         return python
     print(f"bench: making {ENVIRONMENT.name} with {', '.join(PEERS)}", file=sys.stderr)
     made = subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(ENVIRONMENT)], check=False)
@@ -35,7 +40,9 @@ def environment_python() -> Path | None:
         # the distribution's numpy and scipy stay as they are: FreeCAD is built against them
         filled = subprocess.run([str(python), "-m", "pip", "install", "-q", "--no-deps", *PEERS], check=False)
         if filled.returncode == 0:
-            told.write_text("\n".join(PEERS) + "\n", encoding="utf-8")
+            if subprocess.run([str(python), "-m", "pip", "install", "-q", "--no-deps", *SLICER], check=False).returncode:
+                print("bench: compas_slicer could not be installed; its row goes without", file=sys.stderr)
+            told.write_text("\n".join((*PEERS, *SLICER)) + "\n", encoding="utf-8")
             return python
     print("bench: the peers could not be installed; their rows go without", file=sys.stderr)
     return None

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 from statistics import median
 from time import process_time
 
@@ -17,6 +19,7 @@ from rows import Row
 AROUND, UP, CUTS, ROUNDS = 400, 250, 50, 5
 CHORD_ERROR = 0.05
 SECTIONS, FEWER = 1000, 3  # planes, and rounds of them
+SMALL, PLANES = 10, 20  # rows of triangles, and planes, for a slicer that takes minutes for more
 
 
 def run() -> list[Row]:
@@ -37,6 +40,7 @@ def run() -> list[Row]:
         Row(halves, whole, 2.0 * halved, "s", 0.6),
         Row(f"{2 * CUTS} cones against twice the time of {CUTS}", doubled, 2.0 * whole, "s", 0.6),
         _sections(vertices, faces),
+        _slicer(),
     ]
 
 
@@ -63,6 +67,31 @@ def _peer_sections(vertices: np.ndarray, faces: np.ndarray, heights: np.ndarray)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     mesh.section_multiplane(np.zeros(3), np.array([0.0, 0.0, 1.0]), heights)
     return process_time() - start
+
+
+def _slicer() -> Row:
+    """Plane sections with their loops, against the planar slicer of compas_slicer, which is slow: a small mesh, once."""
+    vertices, faces = wavy_ball(SMALL)
+    bottom, height = float(vertices[:, 2].min()), float(np.ptp(vertices[:, 2])) / PLANES
+    start = process_time()
+    assert all(PlaneCuts(vertices, faces).loops(bottom + height * (np.arange(PLANES) + 0.5)))
+    ours = process_time() - start
+    name = f"{len(faces):,} triangles cut by {PLANES} planes, loops included, against compas_slicer's planar slicer"
+    return Row(name, ours, _peer_slicer(vertices, faces, height), "s", 20.0)
+
+
+def _peer_slicer(vertices: np.ndarray, faces: np.ndarray, height: float) -> float | None:
+    with contextlib.redirect_stderr(io.StringIO()):  # the bar, which keeps the stream that there is when it is imported
+        try:
+            from compas.datastructures import Mesh
+            from compas_slicer.slicers import PlanarSlicer
+        except ImportError:
+            return None
+        start = process_time()
+        slicer = PlanarSlicer(Mesh.from_vertices_and_faces(vertices.tolist(), faces.tolist()), layer_height=height)
+        slicer.slice_model()
+        assert len(slicer.layers) >= PLANES - 1
+        return process_time() - start
 
 
 def _ours(vertices: np.ndarray, faces: np.ndarray, cuts: int) -> float:
