@@ -28,6 +28,7 @@ from typing import Any
 
 import FreeCAD as App
 
+from .core.geometry.curves import POINT_FILES
 from .core.issues import AmError, InputError, Issue
 from .core.kinematics import machine as machines
 from .core.kinematics.proposed_cell import cell_of
@@ -424,16 +425,16 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
 
 def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     """A part file as an object of the document: STEP, IGES, BREP, an object (Name or Label) of an FCStd file; or a mesh
-    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), which are laid
-    as beads.
+    (STL, OBJ, 3MF): solids on a hub, or what a wall grows on or is kept clear of; or a table of points (CSV), G-code of a
+    slicer or a toolpath of AdaOne (.ada3dp), which are laid as beads.
 
     scale: mm of one unit of an STL or OBJ file, which do not tell it. `am.open_part(doc, "cup.step")`
     """
-    if path.lower().endswith(".csv"):
-        from .objects.table_part import open_table
+    if path.lower().endswith(tuple(POINT_FILES)):
+        from .objects.table_part import open_points
 
         with _one_step(doc, "Open part"):
-            table = open_table(doc, path)
+            table = open_points(doc, path)
             table.purgeTouched()
         return table
     from .objects.part_file import part_shape

@@ -7,6 +7,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
+from freecad_am.core.geometry.curves import POINT_FILES
 from freecad_am.core.geometry.file_unit import MESHES
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
@@ -246,7 +247,7 @@ def _substrate(section: Any, strategy: Any, part: PartSource, path: str, earlier
     if part.start_edges and not family.edges:
         raise InputError("NOT_FOR_FAMILY", "part.start_edges", "only strategy.kind surface starts from edges; leave "
         "them out")
-    table = part.file.lower().endswith(".csv")
+    table = part.file.lower().endswith(tuple(POINT_FILES))
     if family.kind != "curves" and (part.edges or table):
         where, what = ("part.edges", "edges") if part.edges else ("part.file", "tables of points")
         raise InputError("NOT_FOR_FAMILY", where, f"only strategy.kind curves lays {what} as beads; use it")

@@ -12,14 +12,14 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ..brep.read import READABLE
+from ..core.geometry.curves import POINT_FILES
 from ..core.geometry.file_unit import MESHES
 from ..core.issues import AmError
-from ..objects import table_part
 from ..objects.progress import Cancelled
 from . import recorded
 from .texts import error_line, tr, translated_error
 
-ENDINGS = (*READABLE, *MESHES, ".FCStd", table_part.ENDING)
+ENDINGS = (*READABLE, *MESHES, ".FCStd", *POINT_FILES)
 
 
 def ask() -> None:

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves in a document that are laid as beads: edges, wires, sketches, or the points of a table."""
+"""Curves in a document that are laid as beads: edges, wires, sketches, or what a file of points says."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from ..brep.curves import curves_of
-from ..core.geometry import curve_table
 from ..core.geometry.curves import Curves
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
@@ -14,7 +13,7 @@ from ..core.parameters.strategy import CurvesParameters
 from .fingerprints import fingerprint, shape_fingerprint
 from .shapes import FIXTURES, bodies, fixtures_of, global_shape, taken
 from .stage import Link, Outcome, Section, Stage, Work
-from .table_part import table_of
+from .table_part import points_of
 
 
 class CurvesFeature(Stage):
@@ -42,14 +41,14 @@ class CurvesFeature(Stage):
         source, names = _source(obj)
         edges = tuple(name for name in names if name.startswith("Edge"))
         faces = tuple(name for name in names if name.startswith("Face"))
-        label, table = source.Label, table_of(source)
+        label, table = source.Label, points_of(source)
         shape = None if table is not None else global_shape(source)
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
         fixtures = fixtures_of(obj)
 
         def work() -> Outcome:
             if table is not None:
-                found = curve_table.curves_of(table, label)
+                found = table.curves(label, strategy.chord_error)
             else:
                 found = tuple(curves_of(shape, edges, faces, strategy.chord_error, label))
             curves = Curves(label, found, bodies((*ground, *fixtures)))
@@ -59,10 +58,10 @@ class CurvesFeature(Stage):
 
     def further_inputs(self, obj: Any) -> list[str]:
         source, names = _source(obj)
-        table = table_of(source)
+        table = points_of(source)
         ground = [] if obj.Substrate is None else [fingerprint(obj.Substrate)]
         return [
-            shape_fingerprint(source) if table is None else table, " ".join(names), *ground, "|",
+            shape_fingerprint(source) if table is None else table.text, " ".join(names), *ground, "|",
             *(fingerprint(fixture) for fixture in obj.Fixtures),
         ]
 

@@ -1,44 +1,76 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A table of points as an object of the document: its curves to be seen, and the table itself to be planned."""
+"""A file of points as an object of the document: its curves to be seen, and what the file says to be planned. Tables of
+points (CSV), G-code of a slicer, toolpaths of AdaOne."""
 
 from __future__ import annotations
 
+import base64
 import os
+from dataclasses import dataclass
 from typing import Any
 
 import FreeCAD as App
 import Part
 
-from ..core.geometry import curve_table
+from ..core.geometry import ada3dp, curve_table, gcode
+from ..core.geometry.curves import POINT_FILES, BeadCurve
 from ..core.issues import InputError
 
-ENDING = ".csv"
-_PROPERTY = "Table"
+CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
+_PROPERTY, _FORM = "Table", "TableForm"
 _LARGEST = 200_000_000  # bytes
+_DRAWN = 0.1  # mm, chord error of arcs as they are seen
 
 
-def open_table(document: Any, path: str) -> Any:
-    """A table of points from a file as an object. InputError NO_FILE, BAD_FILE, and those of `curve_table.curves_of`."""
+@dataclass(frozen=True)
+class Points:
+    """What a file of points says: its form, CSV, GCODE or ADA, and its text; of ADA the bytes as base64."""
+
+    form: str
+    text: str
+
+    def curves(self, label: str, chord_error: float) -> tuple[BeadCurve, ...]:
+        """Its beads, arcs within the chord error (mm). InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP."""
+        if self.form == GCODE:
+            return gcode.curves_of(self.text, label, chord_error)
+        if self.form == ADA:
+            return ada3dp.curves_of(base64.b64decode(self.text), label)
+        return curve_table.curves_of(self.text, label)
+
+
+def open_points(document: Any, path: str) -> Any:
+    """A file of points as an object. InputError NO_FILE, BAD_FILE, and those of `Points.curves`."""
     name = os.path.basename(path)
-    try:
-        if os.path.getsize(path) > _LARGEST:
-            raise InputError("BAD_FILE", name, f"it is larger than {_LARGEST // 1_000_000} MB; split it")
-        with open(path, encoding="utf-8") as stream:
-            text = stream.read()
-    except UnicodeDecodeError:
-        raise InputError("BAD_FILE", name, "it is not text; give a table of points as CSV") from None
-    except OSError as error:
-        raise InputError("NO_FILE", name, f"it cannot be read: {error.strerror}") from None
-    curves = curve_table.curves_of(text, name)
+    found = _read(path, name, POINT_FILES[os.path.splitext(name)[1].lower()])
+    curves = found.curves(name, _DRAWN)
     part = document.addObject("Part::Feature", "Table")
     part.Label = os.path.splitext(name)[0]
     part.addProperty("App::PropertyStringList", _PROPERTY, "Table", "The points as they were read.", 1)
-    setattr(part, _PROPERTY, text.splitlines())
+    setattr(part, _PROPERTY, found.text.splitlines())
+    if found.form != CSV:
+        part.addProperty("App::PropertyString", _FORM, "Table", "What the file is.", 1)
+        setattr(part, _FORM, found.form)
     part.Shape = Part.Compound([Part.makePolygon([App.Vector(*row) for row in one.points.tolist()]) for one in curves])
     return part
 
 
-def table_of(source: Any) -> str | None:
-    """The table that an object was made of; None for any other."""
+def _read(path: str, name: str, form: str) -> Points:
+    try:
+        if os.path.getsize(path) > _LARGEST:
+            raise InputError("BAD_FILE", name, f"it is larger than {_LARGEST // 1_000_000} MB; split it")
+        with open(path, "rb") as stream:
+            data = stream.read()
+        return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())
+    except UnicodeDecodeError:
+        what = "G-code" if form == GCODE else "a table of points as CSV"
+        raise InputError("BAD_FILE", name, f"it is not text; give {what}") from None
+    except OSError as error:
+        raise InputError("NO_FILE", name, f"it cannot be read: {error.strerror}") from None
+
+
+def points_of(source: Any) -> Points | None:
+    """What the file said that an object was made of; None for any other."""
     lines = getattr(source, _PROPERTY, None)
-    return "\n".join(lines) if isinstance(lines, list) and lines else None
+    if not isinstance(lines, list) or not lines:
+        return None
+    return Points(getattr(source, _FORM, CSV), "\n".join(lines))

@@ -33,7 +33,7 @@ build_direction: {{clearance: none{mode}}}
 @pytest.fixture
 def planned(workshop):
     def run(file="beads.csv", text=TABLE, part="", more="", mode=""):
-        if file.endswith(".csv"):
+        if not file.endswith(".step"):
             (workshop.folder / file).write_bytes(text if isinstance(text, bytes) else text.encode())
         job = workshop.write_job(JOB.format(file=file, part=part, more=more, mode=mode))
         done = workshop.run("plan", job.name, "-o", "out", "--no-page")
@@ -147,3 +147,18 @@ def test_the_example_lays_the_points_of_its_table(workshop, root):
     rose = np.array([int(row["bead"]) == 0 for row in rows])
     assert np.abs(radius[rose] - 34.0 - 5.0 * np.cos(6.0 * angle[rose])).max() < 0.2  # chords of the table
     assert np.abs(radius[~rose] - 18.0).max() < 0.01 and set(places[:, 2].round(6)) == {0.0, 2.0}
+
+
+def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
+    text = "".join(f";LAYER:{k}\nG0 X0 Y0 Z{2 * k + 2}\nG1 X30 E1\nG3 X30 Y20 I0 J10 E1\n" for k in range(2))
+    done, report, rows = planned("slicer.gcode", "G21\nM83\n" + text)
+    assert done.status == 0, done.err
+    assert report["counts"]["layers"] == report["counts"]["beads"] == 2 and report["unsupported_mm"] == 0.0
+    points = column(rows, "x_mm", "y_mm", "z_mm")
+    np.testing.assert_allclose(points[:, 2], 2.0 + 2.0 * column(rows, "layer")[:, 0], atol=1e-9)
+    straight = points[:, 0] <= 30.0
+    np.testing.assert_allclose(np.hypot(points[~straight, 0] - 30.0, points[~straight, 1] - 10.0), 10.0, atol=1e-6)
+    np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile([0, 0, 1], (len(rows), 1)), atol=1e-12)
+    for part, words in (("G20\n", "inches"), ("G0 X1\n", "no move of it extrudes")):
+        done, _, _ = planned("slicer.gcode", part)
+        assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err

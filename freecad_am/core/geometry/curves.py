@@ -13,6 +13,8 @@ from .surroundings import Body
 
 Array = NDArray[np.float64]
 
+# endings of files that are laid as beads, and what they are
+POINT_FILES = {".csv": "csv", ".gcode": "gcode", ".gco": "gcode", ".g": "gcode", ".ada3dp": "ada3dp"}
 MEETING = 1e-6  # mm between the ends of a closed curve
 
 
