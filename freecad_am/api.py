@@ -40,6 +40,7 @@ from .core.parameters.joints import JointParameters
 from .core.parameters.process import ProcessParameters
 from .core.parameters.program import ProgramParameters
 from .core.parameters.strategy import (
+    CladdingParameters,
     CurvesParameters,
     DevelopableParameters,
     RevolutionParameters,
@@ -63,7 +64,8 @@ from .objects.toolpath import Toolpath, own_process
 from .posts import written
 
 __all__ = (
-    "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell", "make_curves_feature",
+    "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
+    "make_cladding_feature", "make_curves_feature",
     "make_developable_feature", "make_feature", "make_feature_of", "make_joint_path", "make_program", "make_solid_feature",
     "make_surface_feature", "make_toolpath", "make_trajectory", "open_part", "proposed_name", "recompute", "result",
     "stages_of", "told_to",
@@ -172,6 +174,20 @@ def make_curves_feature(
     directions, and of edges where not all are laid; substrate: what they are laid on.
     """
     return make_feature_of(doc, "curves", source, faces, label=label, parameters=[strategy, build_direction],
+                           links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)
+
+
+def make_cladding_feature(
+    doc: Any, source: Any, faces: Sequence[str] = (), substrate: Any = None, label: str = "Feature", *,
+    fixtures: Sequence[Any] = (), strategy: CladdingParameters | None = None,
+    build_direction: BuildDirectionParameters | None = None, **values: Any,
+) -> Any:
+    """Faces of an object, all of one that is no solid, covered with layers of beads along their normals.
+
+    `am.make_cladding_feature(doc, doc.Die, ["Face3"], layers=2, layer_height=2, bead_spacing=4)`; substrate, fixtures: what
+    else the nozzle must not touch.
+    """
+    return make_feature_of(doc, "cladding", source, faces, label=label, parameters=[strategy, build_direction],
                            links={"Substrate": substrate, "Fixtures": list(fixtures)}, values=values)
 
 

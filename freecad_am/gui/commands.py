@@ -80,7 +80,7 @@ class Tool:
 # In the order of the work; between groups stands a separator. A tool that is in none comes last.
 GROUPS = (
     ("OpenPart", "NewJob"),
-    ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Curves"),
+    ("Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Curves", "Cladding"),
     ("Toolpath", "JointPath", "SpinMap"),
     ("Path", "Simulate"),
     ("Program", "Plots", "Inspect", "ExportPath"),
@@ -122,6 +122,10 @@ def register() -> list[str]:
         "Curves": Tool(
             "curves", marked("Curves…"), marked("Takes the selected edges, wires, sketches or tables to be laid as beads"),
             _curves, needs.document,
+        ),
+        "Cladding": Tool(
+            "cladding", marked("Cladding…"), marked("Takes the selected faces to be covered with layers of beads"),
+            _cladding, needs.faces,
         ),
         "Toolpath": Tool(
             "toolpath", marked("Toolpath…"), marked("Cuts a feature into layers and beads"), _toolpath, needs.feature
@@ -227,6 +231,12 @@ def _curves() -> None:
     from . import curves_panel, stage_panel
 
     stage_panel.show(curves_panel.CurvesPanel())
+
+
+def _cladding() -> None:
+    from . import cladding_panel, stage_panel
+
+    stage_panel.show(cladding_panel.CladdingPanel())
 
 
 def _hub() -> None:

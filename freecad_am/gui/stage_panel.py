@@ -369,6 +369,7 @@ def _panel_of(proxy: type[Stage]) -> Any:
     """The panel of a kind of stage."""
     from . import (
         cell_panel,
+        cladding_panel,
         curves_panel,
         feature_panel,
         hub_panel,
@@ -382,6 +383,7 @@ def _panel_of(proxy: type[Stage]) -> Any:
 
     panels = (
         cell_panel.CellPanel, feature_panel.FeaturePanel, wall_panel.WallPanel, hub_panel.HubPanel, solid_panel.SolidPanel,
+        cladding_panel.CladdingPanel,
         curves_panel.CurvesPanel,
         toolpath_panel.ToolpathPanel, joint_path_panel.JointPathPanel, program_panel.ProgramPanel, InspectionPanel,
     )

@@ -23,7 +23,7 @@ NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
 # of panels and docks that are not called as their tool is
 _CALLED = {
     "RevolutionFeature": "feature", "SurfaceFeature": "wall-on-part", "DevelopableFeature": "solids-on-hub",
-    "SolidFeature": "solid", "CurvesFeature": "curves",
+    "SolidFeature": "solid", "CurvesFeature": "curves", "CladdingFeature": "cladding",
     "PathDock": "path", "Simulation": "simulate", "ProgramText": "program", "Inspection": "inspect",
 }
 _SIZE = (900, 700)

@@ -161,7 +161,7 @@ class _Reader:
 
     def _middle(self, name: str, start: Array, end: Array, words: dict[str, float]) -> Array:
         if "I" in words or "J" in words:
-            return start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)])
+            return np.asarray(start[:2] + np.array([words.get("I", 0.0), words.get("J", 0.0)]))
         if "R" not in words:
             raise self._error(f"{name} has neither I and J nor R; an arc needs its middle or its radius")
         radius, chord = words["R"], end[:2] - start[:2]
