@@ -944,6 +944,11 @@
         <translation>Ce que disent les couleurs des cordons.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>What the file is.</source>
+        <translation>Ce qu&apos;est le fichier.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>What the object is, should its proxy be lost.</source>
         <translation>Ce qu&apos;est l&apos;objet, si son proxy était perdu.</translation>
@@ -1160,6 +1165,11 @@
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>A further folder of machine files, such as one that is shared; your own are in {} as well</source>
         <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <source>A further part that the nozzle is kept clear of.</source>
+        <translation>Une pièce supplémentaire que la buse évite.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
@@ -1615,6 +1625,16 @@
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Circularity defect at {0} mm, least squares</source>
         <translation>Défaut de circularité à {0} mm, moindres carrés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <source>Cladding</source>
+        <translation>Rechargement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Cladding…</source>
+        <translation>Rechargement…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -2082,7 +2102,7 @@
         <translation>Exporter…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
     </message>
@@ -2252,7 +2272,7 @@
         <translation>Ajustement des largeurs de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
         <source>Fixtures</source>
         <translation>Montages</translation>
     </message>
@@ -2340,6 +2360,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Further methods planned for the comparison of the report.</source>
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <source>Further part</source>
+        <translation>Pièce supplémentaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -4378,6 +4403,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected faces to be covered with layers of beads</source>
+        <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
         <source>Takes the selected shape of revolution to be deposited</source>
         <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
     </message>
@@ -4505,6 +4535,11 @@
         <location filename="../../freecad_am/gui/solid_panel.py"/>
         <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
         <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <source>The faces to cover; of an object that is no solid all of them, where none is picked.</source>
+        <translation>Les faces à recouvrir ; d&apos;un objet qui n&apos;est pas un solide, toutes, si aucune n&apos;est choisie.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -5607,6 +5642,11 @@
         <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/ada3dp.py"/>
+        <source>a position is not a number of at most {0} mm; export it again</source>
+        <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc_records.py"/>
         <source>a position is recorded twice</source>
         <translation>une position est enregistrée deux fois</translation>
@@ -5640,6 +5680,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>a quaternion is not all zeros</source>
         <translation>un quaternion n&apos;est pas tout à zéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>a radius of {0} mm makes no arc between points {1} mm apart; give I and J</source>
+        <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez I et J</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/filling/strips.py"/>
@@ -5915,6 +5960,16 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>arc-length</source>
         <translation>longueur d&apos;arc</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines alone</source>
+        <translation>les arcs sont dans le plan de X et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines alone</source>
+        <translation>les arcs sont dans le plan de Y et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/choices.py"/>
@@ -6507,6 +6562,11 @@
         <translation>les sorties numériques vont de 1 à {0}, pas {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>direct moves of steppers are not known</source>
+        <translation>les mouvements directs des moteurs pas à pas ne sont pas connus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>displacement</source>
         <translation>déplacement</translation>
@@ -6715,6 +6775,11 @@
         <location filename="../../freecad_am/gui/quantity.py"/>
         <source>give a quantity in {0}</source>
         <translation>donnez une grandeur en {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them</source>
+        <translation>donnez des mouvements absolus ou relatifs en mm, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/limits_page.py"/>
@@ -7015,6 +7080,11 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>it ends within a loop</source>
         <translation>il finit dans une boucle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>it extrudes before the program says where: X, Y and Z are to be told first; {0}</source>
+        <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -7322,6 +7392,11 @@
         <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>it is in inches; let the slicer write mm (G21)</source>
+        <translation>il est en pouces ; faites écrire des mm au trancheur (G21)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>it is larger than {0} MB; split it</source>
         <translation>il dépasse {0} Mo ; divisez-le</translation>
@@ -7407,6 +7482,11 @@
         <translation>ce n&apos;est pas un projet en millimètres</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/ada3dp.py"/>
+        <source>it is not a toolpath of AdaOne, or it is damaged ({0}); export it again</source>
+        <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/patch.py"/>
         <source>it is not of revolution</source>
         <translation>elle n&apos;est pas de révolution</translation>
@@ -7425,6 +7505,11 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>it is not said which axes the feed is the speed of</source>
         <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>it is not text; give G-code</source>
+        <translation>ce n&apos;est pas du texte ; donnez du G-code</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
@@ -8147,6 +8232,11 @@
         <translation>aucun corps n&apos;est porté par {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>no move of it extrudes, so there is no bead; {0}</source>
+        <translation>aucun de ses mouvements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/joints.py"/>
         <source>no point is reached</source>
         <translation>aucun point n’est atteint</translation>
@@ -8165,6 +8255,11 @@
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>no section lies where it stands</source>
         <translation>aucune section là où il repose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/ada3dp.py"/>
+        <source>no segment of it deposits, so there is no bead; export a toolpath that deposits</source>
+        <translation>aucun de ses segments ne dépose, il n&apos;y a donc pas de cordon ; exportez une trajectoire qui dépose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/api.py"/>
@@ -8812,6 +8907,11 @@
         <translation>spirale</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>splines are not known; let the slicer write lines and arcs</source>
+        <translation>les splines ne sont pas connues ; faites écrire des lignes et des arcs au trancheur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/room.py"/>
         <source>split for a limited axis</source>
         <translation>divisé pour un axe limité</translation>
@@ -8990,6 +9090,11 @@
         <location filename="../../freecad_am/brep/start_edges.py"/>
         <source>the edge is {0} mm off the wall at {1}; choose edges of the wall&apos;s own faces</source>
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>the ends of the arc are {0} and {1} mm from its middle; give I and J from its start to its middle</source>
+        <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez I et J de son début à son centre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/wall_cuts.py"/>
@@ -10022,6 +10127,11 @@
         <translation>les axes de l&apos;outil sont {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>tool lengths are not known; let the slicer leave them out</source>
+        <translation>les longueurs d&apos;outil ne sont pas connues ; faites-les omettre par le trancheur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/choices.py"/>
         <source>tool on robot</source>
         <translation>outil sur robot</translation>
@@ -10090,6 +10200,11 @@
         <location filename="../../freecad_am/core/strategies/surface_directions.py"/>
         <source>turned back by up to {0} deg to stay within build_direction.max_tilt</source>
         <translation>ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>turned coordinates are not known; let the slicer leave them out</source>
+        <translation>les coordonnées tournées ne sont pas connues ; faites-les omettre par le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -10530,6 +10645,11 @@
         <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0} has edges and no faces, which are laid as beads</source>
         <translation>{0} a des arêtes et pas de faces ; elles sont déposées comme cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <source>{0} has neither I and J nor R; an arc needs its middle or its radius</source>
+        <translation>{0} n&apos;a ni I et J ni R ; un arc a besoin de son centre ou de son rayon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
@@ -11812,7 +11932,7 @@
         <translation>{} ne peut pas être exécuté : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
         <source>{} cannot be taken for this.</source>
         <translation>{} ne convient pas ici.</translation>
     </message>
@@ -11835,6 +11955,11 @@
         <location filename="../../freecad_am/gui/cell_panel.py"/>
         <source>{} does not reach the part with the nozzle upright: all its axes are drawn at 0</source>
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <source>{} faces in {} sheets, {:.4g} cm² in each of {} layers</source>
+        <translation>{} faces en {} nappes, {:.4g} cm² dans chacune des {} couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/tool.py"/>
@@ -12063,6 +12188,19 @@
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Cell…</source>
         <translation>Cellule…</translation>
+    </message>
+</context>
+<context>
+    <name>RoboticAM_Cladding</name>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Cladding…</source>
+        <translation>Rechargement…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/commands.py"/>
+        <source>Takes the selected faces to be covered with layers of beads</source>
+        <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
     </message>
 </context>
 <context>
