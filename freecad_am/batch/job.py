@@ -10,6 +10,7 @@ from typing import Any
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import urdf_reference
+from freecad_am.core.parameters import external
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
@@ -147,6 +148,12 @@ def _cell(section: Any, path: str) -> CellParameters | None:
     section = dict(fields.mapping(section, "cell"))
     if section.get("machine") is not None:
         section["machine"] = _machine(section["machine"], path)
+    external_axes = section.pop("external", None)
+    if external_axes not in (None, []):
+        section["external"] = _external(external_axes, path)
+    if isinstance(section.get("world_up"), list):
+        numbers = [quantity.read(number, f.NUMBER, "cell.world_up") for number in section["world_up"]]
+        section["world_up"] = " ".join(f"{number:.15g}" for number in numbers)
     cell = fields.build(CellParameters, section, "cell")
     if cell.setup in PLANNED_SETUPS:
         raise InputError(
@@ -176,6 +183,29 @@ def _machine(value: Any, path: str) -> Any:
     if meant is not None:
         return str(dataclasses.replace(meant, file=absolute(meant.file, path)))
     return absolute(value, path) if os.sep in value or value.lower().endswith(".json") else value
+
+
+def _external(value: Any, path: str) -> str:
+    """What `cell.external` says as the text that a cell keeps, paths of files made absolute."""
+    if not isinstance(value, list):
+        raise InputError("BAD_VALUE", external.WHERE, "give a list such as - {machine: motoman-motopos-d500, pose: "
+                         "[1500, 0, 0, 0, 0, 0], carries: part}")
+    return f"{external.MORE} ".join(str(_one_external(one, f"{external.WHERE}[{k}]", path)) for k, one in enumerate(value))
+
+
+def _one_external(value: Any, key: str, path: str) -> external.External:
+    section = fields.mapping(value, key)
+    fields.known_keys(section, ("machine", "pose", "carries"), key)
+    pose = section.get("pose")
+    if not isinstance(pose, list) or len(pose) != 6:
+        raise InputError("BAD_VALUE", f"{key}.pose", f"{quantity.shown(pose)} is not a pose; give [x, y, z, RX, RY, RZ]")
+    kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
+    numbers = [quantity.read(number, kind, f"{key}.pose") for number, kind in zip(pose, kinds, strict=True)]
+    x, y, z, *angles = numbers
+    machine = fields.text(section.get("machine"), f"{key}.machine").strip()
+    if os.sep in machine or machine.lower().endswith(".json"):
+        machine = absolute(machine, path)
+    return external.External(machine, (x, y, z, *angles), section.get("carries") or external.PART)
 
 
 def _program(section: Any) -> ProgramParameters | None:

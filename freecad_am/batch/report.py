@@ -15,7 +15,7 @@ from freecad_am.core.kinematics.cell import Cell
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.planning import comparison
+from freecad_am.core.planning import comparison, level
 from freecad_am.core.planning.joint_path import JointPath
 from freecad_am.core.process import deposit_balance, predicted
 from freecad_am.core.process import spacing as layer_spacing
@@ -99,6 +99,7 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
         "branch": list(planned.branch),
         "limits": planned.limits,
         "stopped": _reasons(planned),
+        **({} if cell.external is None else {"external": level.figures(cell, planned)}),
     }
     report["comparison"] = others
     report["machine"] = {

@@ -8,6 +8,7 @@ file); angles in rad; speeds in mm/s.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -49,7 +50,8 @@ class Bead:
     not know them. closing: fills a gap between beads, nearer to them than a layer height. kind: what it is in the filling of
     its layer: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the middle of contours, or of a region narrower than a
     bead), 'closing' (where other beads left a gap); '' where a strategy has no fillings. ring: how many contours are outside
-    of it. returns: it is the first one of a layer on a solid that has one already.
+    of it. returns: it is the first one of a layer on a solid that has one already. external: (n, k) values of the axes
+    beside a robot, rad, once its joints are planned; None elsewhere.
     """
 
     points: Array
@@ -66,6 +68,7 @@ class Bead:
     kind: str = ""
     ring: int = 0
     returns: bool = False
+    external: Array | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -80,6 +83,8 @@ class Bead:
                 object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.tangents is not None:
             object.__setattr__(self, "tangents", _frozen(self.tangents, (n, 2, 3), "tangents"))
+        if self.external is not None:
+            object.__setattr__(self, "external", _frozen(self.external, (n, self.external.shape[1]), "external"))
         for name in ("build", "tool", *(("tangents",) if self.tangents is not None else ())):
             if np.abs(np.linalg.norm(getattr(self, name), axis=-1) - 1.0).max() > 1e-9:
                 raise ValueError(f"{name} holds a vector that is not of unit length")
@@ -116,6 +121,7 @@ class Bead:
             self, points=self.points[::-1], build=self.build[::-1], tool=self.tool[::-1],
             parameter=self.parameter[::-1], speed=self.speed[::-1],
             tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
+            external=None if self.external is None else self.external[::-1],
             **self._predicted(lambda column: column[::-1]),
         )
 
@@ -133,9 +139,16 @@ class Bead:
         return dataclasses.replace(
             self, points=self.points[order], build=self.build[order], tool=self.tool[order], parameter=parameter,
             speed=self.speed[np.where(order == 0, n, order)],
-            tangents=None if self.tangents is None else self.tangents[order],
+            tangents=None if self.tangents is None else self.tangents[order], external=self._external_from(index),
             **self._predicted(lambda column: column[order]),
         )
+
+    def _external_from(self, index: int) -> Array | None:
+        """Values of external axes of the closed bead started at another point; they go on across the old seam."""
+        if self.external is None:
+            return None
+        moved = self.external[-1] - self.external[0]
+        return np.asarray(np.concatenate([self.external[index:-1], self.external[: index + 1] + moved]))
 
     def halved(self, segments: NDArray[np.intp]) -> Bead:
         """The bead with a point in the middle of each of the segments (k,), rising: on the curve that the points outline,
@@ -155,6 +168,7 @@ class Bead:
             tool=middle_direction(self.tool), parameter=middle(self.parameter),
             speed=np.insert(self.speed, at, self.speed[at]), **self._predicted(middle),
             tangents=None if self.tangents is None else np.insert(self.tangents, at, tangents[:, None], axis=0),
+            external=None if self.external is None else middle(self.external),
         )
 
     def run_on(self, overlap: float) -> Bead:
@@ -183,6 +197,9 @@ class Bead:
             parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
             speed=np.concatenate([self.speed, self.speed[1 : count + 1]]), closed=False,
             tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
+            external=None if self.external is None else np.concatenate([
+                self.external, again(self.external) + self.external[-1] - self.external[0],
+            ]),
             **self._predicted(lambda column: np.concatenate([column, again(column)])),
         )
 
@@ -261,7 +278,8 @@ class Toolpath:
     features: where several are deposited in one go, what each one's own toolpath says, without layers; the toolpath itself
     then speaks for the first of them. uneven: (k, 3) number, least and largest height, mm, of layers that are not as
     high everywhere; None where all are. twice: mm3 of beads, as wide as they are apart, laid over others of their layer;
-    None where it is not known.
+    None where it is not known. max_from_vertical: rad, how far the tool axis may be from the vertical of a cell with a
+    positioner.
     """
 
     layers: tuple[Layer, ...]
@@ -282,6 +300,7 @@ class Toolpath:
     features: tuple[Toolpath, ...] = ()
     uneven: Array | None = None
     twice: float | None = None
+    max_from_vertical: float = math.pi
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))

@@ -82,7 +82,7 @@ def with_machine(parameters: CellParameters, toolpath: Toolpath | None, folders:
     cell = cells.resolve(parameters, frame, family, folders)
     point = resting_point(toolpath, cell.mount)
     joints = at_rest(cell, point)
-    solids = plain_links(cell.machine, parameters.platform_diameter, parameters.nozzle.length)
+    solids = plain_links(cell.robot, parameters.platform_diameter, parameters.nozzle.length)
     return Scenery(parameters, cell.mount, *_standing(cell, joints, point, solids))
 
 
@@ -91,7 +91,7 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
     to_part = frames.inverse(place.part)
     nozzle = to_part @ place.nozzle
     reached = bool(np.linalg.norm(nozzle[:3, 3] - point) < _REACHED)
-    machine = cell.machine
+    machine = cell.robot
     return nozzle, Rest(machine, to_part @ place.links, solids, meshes_of(machine), reached, cell.limits, joints)
 
 

@@ -44,13 +44,15 @@ class KdlArm:
     def __init__(self, machine: Machine) -> None:
         self.kdl = _kdl()
         self.axes = len(machine.axes)
+        self.order = machine.chain.order  # which of the joint values each joint takes
         # a fixed segment to each joint's frame, then the joint about its axis through that frame's origin
         self.chain = self.kdl.Chain()
         for index, (origin, direction) in enumerate(zip(machine.chain.origins, machine.chain.directions, strict=True)):
             self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(origin)))
             axis = self.kdl.Vector(*direction)
-            kind = self.kdl.Joint.TransAxis if machine.chain.sliding[index] else self.kdl.Joint.RotAxis
-            joint = self.kdl.Joint(f"q{index + 1}", self.kdl.Vector(), axis, kind)
+            value = int(machine.chain.order[index])
+            kind = self.kdl.Joint.TransAxis if machine.chain.sliding[value] else self.kdl.Joint.RotAxis
+            joint = self.kdl.Joint(f"q{value + 1}", self.kdl.Vector(), axis, kind)
             self.chain.addSegment(self.kdl.Segment(joint, self.kdl.Frame()))
         self.chain.addSegment(self.kdl.Segment(self.kdl.Joint(), self.frame(machine.chain.flange)))
         self._forward = self.kdl.ChainFkSolverPos_recursive(self.chain)
@@ -58,7 +60,7 @@ class KdlArm:
 
     def forward(self, q: ArrayLike) -> Array:
         """Flange poses (n, 4, 4) of joint angles `q` (n, axes)."""
-        values = np.asarray(q, float)
+        values = np.asarray(q, float)[:, self.order]
         frame, angles, solve = self.kdl.Frame(), self.kdl.JntArray(self.axes), self._forward.JntToCart
         # these calls are much of the time of a read-back: parts of the frame are looked up once, for the solver fills it in
         # place; a quaternion is one call where a matrix is nine; and joints that stay where they are need not be told again
@@ -79,7 +81,7 @@ class KdlArm:
         columns = self.kdl.Jacobian(self.axes)
         for row, angles in zip(result, np.asarray(q, float), strict=True):
             self._jacobian.JntToJac(self.angles(angles), columns)
-            row[:] = [[columns[i, k] for k in range(self.axes)] for i in range(6)]
+            row[:, self.order] = [[columns[i, k] for k in range(self.axes)] for i in range(6)]
         return result
 
     def inverse(self, poses: ArrayLike, seeds: ArrayLike, solver: str = "nr", tolerance: float = 1e-6) -> Array:
@@ -93,7 +95,7 @@ class KdlArm:
         found = self.kdl.JntArray(self.axes)
         for row, pose, seed in zip(result, np.asarray(poses, float), seeds, strict=True):
             if solve.CartToJnt(self.angles(seed), self.frame(pose), found) >= 0:
-                row[:] = [found[i] for i in range(self.axes)]
+                row[self.order] = [found[i] for i in range(self.axes)]
         return result
 
     def solver(self, name: str, tolerance: float = 1e-6) -> Any:
@@ -109,8 +111,8 @@ class KdlArm:
     def angles(self, angles: Array) -> Any:
         """Joint angles (axes,) as PyKDL's JntArray."""
         array = self.kdl.JntArray(self.axes)
-        for index, angle in enumerate(angles):
-            array[index] = float(angle)
+        for index, value in enumerate(self.order):
+            array[index] = float(angles[value])
         return array
 
     def frame(self, pose: Array) -> Any:

@@ -66,7 +66,7 @@ def arm_of(
     links no file tells enough."""
     if cell.machine.is_table:
         return None
-    rods = link_rods.of_robot(cell.machine.chain, shapes)
+    rods = link_rods.of_robot(cell.robot.chain, shapes)
     deposited = laid(motion, toolpath.bead_width or process.bead_width, toolpath.layer_height)
     return arm_touches(motion, ArmContact(cell, rods, toolpath.surroundings, deposited), most)
 

@@ -87,7 +87,8 @@ def layers_of(of: Given) -> CoreToolpath:
         raise InputError(
             "NOT_FOR_FAMILY", "process.bead_model", "a bead model sets the travel speed of solids alone; use none"
         )
-    return _PLANNERS[family.kind].layers(of)
+    made = _PLANNERS[family.kind].layers(of)
+    return dataclasses.replace(made, max_from_vertical=of.build.max_from_vertical)
 
 
 def kept_clear(

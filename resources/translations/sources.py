@@ -15,13 +15,12 @@ Function = ast.FunctionDef
 
 
 class Module:
-    """A file: its tree, all nodes of it, and for each the function it stands in."""
+    """A file: its tree, and for each node the function it stands in."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.tree = ast.parse(path.read_text(encoding="utf-8"))
-        self.nodes = list(ast.walk(self.tree))
-        self.functions = [node for node in self.nodes if isinstance(node, Function)]
+        self.functions = [node for node in ast.walk(self.tree) if isinstance(node, Function)]
         self.around: dict[int, Function | None] = {}
         self._place(self.tree, None)
 
@@ -32,7 +31,7 @@ class Module:
 
     def calls(self) -> Iterator[ast.Call]:
         """All calls."""
-        return (node for node in self.nodes if isinstance(node, ast.Call))
+        return (node for node in ast.walk(self.tree) if isinstance(node, ast.Call))
 
 
 class Code:

@@ -15,10 +15,10 @@ EXAMPLES = ROOT / "resources" / "examples"
 # mm; about eight layers each, and a few of each of FAMILIES: most of a round are jobs of these
 # fmt: off
 LAYERS = {
-    "hemisphere": 12, "hemisphere-on-table": 12, "intake-funnel": 14, "laval-nozzle": 14, "tube-on-pipe": 14,
-    "tube-on-pipe-staubli": 14, "thruster": 30, "branched-tube-on-plate": 10, "elbow-on-block": 9, "flared-shell-on-dome": 9,
-    "half-shell-on-rod": 10, "skewed-bend": 12, "spatial-pipe-on-cone": 9, "bracket": 15, "tube-on-scanned-pipe": 14,
-    "wide-tube-on-pipe": 14, "wye": 9, "finned-hub": 8, "pipe-bend": 8, "rosette": 2,
+    "hemisphere": 12, "hemisphere-on-table": 12, "hemisphere-on-positioner": 12, "intake-funnel": 14, "laval-nozzle": 14,
+    "tube-on-pipe": 14, "tube-on-pipe-staubli": 14, "thruster": 30, "branched-tube-on-plate": 10, "elbow-on-block": 9,
+    "flared-shell-on-dome": 9, "half-shell-on-rod": 10, "skewed-bend": 12, "spatial-pipe-on-cone": 9, "bracket": 15,
+    "tube-on-scanned-pipe": 14, "wide-tube-on-pipe": 14, "wye": 9, "finned-hub": 8, "pipe-bend": 8, "rosette": 2,
 }
 # fmt: on
 FAMILIES = {

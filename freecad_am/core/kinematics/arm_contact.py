@@ -62,8 +62,8 @@ class _Group:
 
 @dataclass(frozen=True)
 class ArmContact:
-    """A robot in its cell. rods: of each link (axes + 1), in the frame of the link, base first. bodies, deposit: in part
-    coordinates.
+    """A robot in its cell. rods: of each link of the robot (axes + 1), in the frame of the link, base first. bodies,
+    deposit: in part coordinates.
 
     names: what can be touched, as messages call it.
     """
@@ -99,7 +99,7 @@ class ArmContact:
 
     def _links(self, carried: bool) -> range:
         """The links that are looked at against what is carried, or what stands still."""
-        axes = self.cell.machine.chain.axes
+        axes = self.cell.robot.chain.axes
         return range(axes - 1) if carried else range(1, axes + 1)
 
     def touches(self, joints: ArrayLike, moment: Index | None = None) -> Touches:
@@ -116,9 +116,8 @@ class ArmContact:
         return Touches(link, what)
 
     def _touched(self, joints: Array, moment: Index) -> tuple[Index, Index]:
-        chain = self.cell.machine.chain
-        links = chain.links(joints)
-        carried = links[:, -1] @ (chain.flange @ self.cell.carried)
+        links = self.cell.links(joints)
+        carried = links[:, -1] @ (self.cell.robot.chain.flange @ self.cell.carried)
         still = np.broadcast_to(self.cell.station, carried.shape)
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
         part = platform @ frames.inverse(self.cell.mount)

@@ -20,8 +20,10 @@ from ..geometry import frames
 from ..geometry.columns import columns
 from ..issues import InputError
 from ..parameters.cell import CellParameters, NozzleParameters
+from ..parameters.external import externals
 from . import machine as machines
 from . import opw
+from .external import ExternalAxes, coupled
 from .limits import Limits
 from .machine import Machine
 
@@ -44,6 +46,8 @@ class Cell:
     rotary axes is a chain seen from the torch, so that the part hangs on its flange wherever its axes are.
     mount: in part coordinates, the frame that sits on the platform.
     branch: index of the branch (opw.branch_index), or None when all are to be searched.
+    external: axes beside the robot; the machine then is the robot together with them, and what stands for base_link in its
+    chain is the face that carries the part.
     """
 
     machine: Machine
@@ -55,11 +59,32 @@ class Cell:
     branch: int | None
     nozzle: NozzleParameters = field(default_factory=NozzleParameters)
     platform_diameter: float = 0.0
+    external: ExternalAxes | None = None
 
-    def pose_frames(self, position: Array, tool: Array) -> PoseFrames:
-        """What is constant in the flange poses of n points while the rotation varies.
+    @property
+    def robot(self) -> Machine:
+        """The machine without external axes, whose inverse there is."""
+        return self.machine if self.external is None else self.external.robot
 
-        position (n, 3) mm and tool (n, 3) unit vectors in part coordinates.
+    def external_of(self, joints: Array) -> Array | None:
+        """The values (..., k) of the external axes among joints (..., axes); None where there are none."""
+        return None if self.external is None else joints[..., self.robot.chain.axes :]
+
+    def links(self, joints: Array) -> Array:
+        """(..., axes + 1, 4, 4) the frames of the robot's links, base_link first, seen from where the machine's chain
+        begins, for joints (..., axes)."""
+        external = self.external_of(joints)
+        if self.external is None or external is None:
+            return self.machine.chain.links(joints)
+        own = self.robot.chain
+        moved: Array = self.external.base(external)[..., None, :, :] @ own.links(joints[..., : own.axes])
+        return moved
+
+    def pose_frames(self, position: Array, tool: Array, external: Array | None = None) -> PoseFrames:
+        """What is constant in the flange poses of n points, in base_link, while the rotation varies.
+
+        position (n, 3) mm and tool (n, 3) unit vectors in part coordinates; external (n, k) values of the external axes
+        where there are any.
         """
         to_platform = frames.inverse(self.mount)
         points = position @ to_platform[:3, :3].T + to_platform[:3, 3]
@@ -68,17 +93,21 @@ class Cell:
         if self.setup == PART_ON_ROBOT:
             moved = frames.pose(upright, -np.einsum("nij,nj->ni", upright, points))
             return PoseFrames(self.station[None], 1.0, moved @ frames.inverse(self.carried))
-        stands = frames.pose(np.swapaxes(upright, 1, 2), points)
-        return PoseFrames(self.station @ stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
+        stands = self.station @ frames.pose(np.swapaxes(upright, 1, 2), points)
+        if self.external is not None:
+            assert external is not None  # whoever asks for the poses of a cell with external axes knows where these are
+            stands = frames.inverse(self.external.base(external)) @ stands
+        return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
 
     def on_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
         """Points (n, 3) and tool axes (n, 3) of the part as seen from the flange that carries it."""
         seen = self.carried @ frames.inverse(self.mount)
         return position @ seen[:3, :3].T + seen[:3, 3], tool @ seen[:3, :3].T
 
-    def flange_poses(self, position: Array, tool: Array, phi: Array) -> Array:
-        """(n, 4, 4) poses of the flange in base_link for n points with the rotation phi (n,) about the tool axis."""
-        return self.pose_frames(position, tool).at(phi)
+    def flange_poses(self, position: Array, tool: Array, phi: Array, joints: Array | None = None) -> Array:
+        """(n, 4, 4) poses of the flange in base_link for n points with the rotation phi (n,) about the tool axis; `joints`
+        (n, axes) near there, whose external axes stay as they are."""
+        return self.pose_frames(position, tool, None if joints is None else self.external_of(joints)).at(phi)
 
     def tip_in_part(self, flange: Array) -> tuple[Array, Array]:
         """Where the nozzle is, seen from the part: its tip (n, 3) mm and tool axis (n, 3), part coordinates.
@@ -211,11 +240,19 @@ def resolve(
     platform = parameters.platform
     platform_pose = (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     carried = parameters.nozzle.tool if parameters.setup == TOOL_ON_ROBOT else platform_pose
+    limits, external = machine.limits(parameters.limits), None
     # the torch of a machine with rotary axes is where its chain begins
     station = np.eye(4) if machine.is_table else frames.bryant(parameters.deposition_point)
+    beside = externals(parameters.external)
+    if beside and parameters.setup != TOOL_ON_ROBOT:
+        raise InputError("WRONG_SETUP", "cell.external", f"{parameters.setup}: what carries the part beside the robot needs "
+                         f"the tool on the robot; use setup: {TOOL_ON_ROBOT}, or leave external out")
+    if beside:
+        machine, limits, external = coupled(machine, limits, beside, parameters.upward(), folders)
+        station = frames.bryant(platform_pose)
     return Cell(
         machine=machine,
-        limits=machine.limits(parameters.limits),
+        limits=limits,
         setup=parameters.setup,
         station=machine.base @ station,
         carried=frames.bryant(carried),
@@ -223,4 +260,5 @@ def resolve(
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
+        external=external,
     )

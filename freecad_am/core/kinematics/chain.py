@@ -8,6 +8,7 @@ slides has Trans(axis q_i) in the place of Rot(axis, q_i).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -33,24 +34,29 @@ class JointFrames(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Chain:
     """A serial chain. `origins` (axes, 4, 4) the joint frames at zero in the link before, `directions`
-    (axes, 3) unit axes in the joint frames, `flange` (4, 4) in the last link; mm. `sliding` (axes,) tells the joints
-    that slide, whose values are mm; none when left out."""
+    (axes, 3) unit axes in the joint frames, `flange` (4, 4) in the last link; mm. `order` (axes,) is which of the joint
+    values each joint takes, that of its own place when left out: of a chain that begins at the part and comes to the robot
+    by way of a positioner, the robot's values still come first. `sliding` (axes,) tells, in the order of the values, the
+    joints that slide, whose values are mm; none when left out."""
 
     origins: Array
     directions: Array
     flange: Array
     sliding: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    order: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     _links: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         if not len(self.sliding):
             object.__setattr__(self, "sliding", np.zeros(len(self.directions), dtype=bool))
+        if not len(self.order):
+            object.__setattr__(self, "order", np.arange(len(self.directions)))
         # each joint is turned into one about its own Z, which leaves constant poses between the rotations
         to_axis = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3))
         before = np.concatenate((np.eye(4)[None], frames.inverse(to_axis)))
         after = np.concatenate((self.origins @ to_axis, self.flange[None]))
         object.__setattr__(self, "_links", before @ after)
-        for array in (self.origins, self.directions, self.flange, self.sliding, self._links):
+        for array in (self.origins, self.directions, self.flange, self.sliding, self.order, self._links):
             array.flags.writeable = False
 
     @property
@@ -61,7 +67,7 @@ class Chain:
     def forward(self, q: ArrayLike) -> Array:
         """The flange poses (..., 4, 4) in base_link for joint values `q` (..., axes), rad and mm."""
         angles = np.asarray(q, float)
-        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        by_joint = self._by_joint(angles)
         flange = _upright(by_joint.shape[1])
         for start in range(0, len(flange), PIECE):
             piece = slice(start, start + PIECE)
@@ -69,16 +75,20 @@ class Chain:
         return flange.reshape(angles.shape[:-1] + (4, 4))
 
     def frames(self, q: ArrayLike) -> JointFrames:
-        """The axes and the flange in base_link for joint values `q` (..., axes), rad and mm."""
+        """The axes and the flange in base_link for joint values `q` (..., axes), rad and mm; axes in the order of the
+        values."""
         angles = np.asarray(q, float)
         lead = angles.shape[:-1]
-        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        by_joint = self._by_joint(angles)
         count = by_joint.shape[1]
         directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
         flange = _upright(count)
         for start in range(0, count, PIECE):
             piece = slice(start, start + PIECE)
             self._run_piece(by_joint[:, piece], (directions[:, :, piece], origins[:, :, piece]), flange[piece])
+        if self._is_mixed:
+            place = np.argsort(self.order)
+            directions, origins = directions[place], origins[place]
         return JointFrames(
             np.moveaxis(directions, -1, 0).reshape(lead + (self.axes, 3)),
             np.moveaxis(origins, -1, 0).reshape(lead + (self.axes, 3)),
@@ -95,13 +105,13 @@ class Chain:
 
     def links(self, q: ArrayLike) -> Array:
         """The frames (..., axes + 1, 4, 4) of the links in base_link for joint values `q` (..., axes), rad and mm: base_link
-        itself, then each joint's frame as the joint has moved it."""
+        itself, then each joint's frame, along the chain, as the joint has moved it."""
         angles = np.asarray(q, float)
         result = np.empty((*angles.shape[:-1], self.axes + 1, 4, 4))
         result[..., 0, :, :] = np.eye(4)
         for joint in range(self.axes):
-            direction, value = self.directions[joint], angles[..., joint]
-            moved = (np.eye(3), value[..., None] * direction) if self.sliding[joint] else (
+            direction, value = self.directions[joint], angles[..., self.order[joint]]
+            moved = (np.eye(3), value[..., None] * direction) if self.sliding[self.order[joint]] else (
                 frames.rotation_about(direction, value), np.zeros(3))
             result[..., joint + 1, :, :] = result[..., joint, :, :] @ self.origins[joint] @ frames.pose(*moved)
         return result
@@ -110,7 +120,7 @@ class Chain:
         """A point taken through `links` (axes + 1, 4, 4) in turn, and through the joints in that order between them, in the
         sense in which they turn or against it. A point alone takes a third of the time that a frame does."""
         angles = np.asarray(q, float)
-        by_joint = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        by_joint = self._by_joint(angles)
         found = np.empty((by_joint.shape[1], 3))
         first = links[0, :3, :3] @ point + links[0, :3, 3]
         for start in range(0, len(found), PIECE):
@@ -118,7 +128,7 @@ class Chain:
             sines, cosines = sense * np.sin(piece), np.cos(piece)
             place = np.repeat(first[:, None], piece.shape[1], axis=1)
             for joint, link in zip(order, links[1:], strict=True):
-                if self.sliding[joint]:
+                if self.sliding[self.order[joint]]:
                     place[2] += sense * piece[joint]
                 else:
                     across = place[0] * cosines[joint]
@@ -131,6 +141,21 @@ class Chain:
             found[start : start + PIECE] = place.T
         return found.reshape(angles.shape[:-1] + (3,))
 
+    @property
+    def _is_mixed(self) -> bool:
+        """Whether joints take other values than those of their own place."""
+        return bool((self.order[1:] < self.order[:-1]).any())
+
+    def _by_joint(self, angles: Array) -> Array:
+        """Values (axes, n) of the joints in the order of the chain, of joint values (..., axes)."""
+        by_value: Array = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
+        return by_value[self.order] if self._is_mixed else by_value
+
+    def reversed(self) -> Chain:
+        """The same joints seen from the flange: its flange is this one's base."""
+        back = frames.inverse(np.concatenate((self.origins, self.flange[None])))[::-1]
+        return Chain(back[:-1], -self.directions[::-1], back[-1], self.sliding, self.order[::-1].copy())
+
     def _run_piece(self, angles: Array, axes: tuple[Array, Array] | None, flange: Array) -> None:
         """Fill in flange poses (n, 4, 4), and where wanted directions and origins (axes, 3, n), of angles (axes, n)."""
         sines, cosines = np.sin(angles), np.cos(angles)
@@ -142,7 +167,7 @@ class Chain:
             columns, position = _advance(columns, position, self._links[joint])
             if axes is not None:
                 axes[0][joint], axes[1][joint] = columns[2].reshape(3, count), position.reshape(3, count)
-            if self.sliding[joint]:
+            if self.sliding[self.order[joint]]:
                 position = position + (columns[2].reshape(3, count) * angles[joint]).ravel()
             else:
                 _turn(columns.reshape(3, 3, count), sines[joint], cosines[joint])
@@ -171,3 +196,28 @@ def _turn(columns: Array, sine: Array, cosine: Array) -> None:
     columns[1] *= cosine
     columns[1] -= columns[0] * sine
     columns[0] = first
+
+
+class Piece(NamedTuple):
+    """Part of a longer chain: `chain`, which begins at the pose `start` (4, 4) seen from the flange of the piece before, and
+    the places `values` (its axes,) that its joint values have among those of the whole."""
+
+    start: Array
+    chain: Chain
+    values: NDArray[np.intp]
+
+
+def joined(pieces: Sequence[Piece], end: Array) -> Chain:
+    """One chain of pieces in a row; `end` (4, 4) is its flange as seen from that of the last."""
+    origins: list[Array] = []
+    before = np.eye(4)
+    for piece in pieces:
+        origins += [before @ piece.start @ piece.chain.origins[0], *piece.chain.origins[1:]]
+        before = piece.chain.flange
+    order = np.concatenate([piece.values[piece.chain.order] for piece in pieces])
+    sliding = np.zeros(len(order), dtype=bool)
+    for piece in pieces:
+        sliding[piece.values] = piece.chain.sliding
+    return Chain(
+        np.stack(origins), np.concatenate([piece.chain.directions for piece in pieces]), before @ end, sliding, order,
+    )

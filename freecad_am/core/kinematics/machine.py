@@ -54,7 +54,8 @@ class Machine:
     C q + c0; `controller_remark` says how well that is known. `posts` are the posts its controller can read, None where
     the file does not say; `pulses_per_degree` (axes,) and the `speed_unit` of its path speeds, empty where it does not say.
     `max_acceleration`, `max_jerk` (axes,) rad or mm and per s^2, s^3, infinite where not known.
-    `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first.
+    `shapes` (axes + 1) are the files a user gave the links to be drawn from, base first. `external`: how many of the axes,
+    the last ones, are not the robot's own (`external.coupled`).
     """
 
     id: str
@@ -77,6 +78,7 @@ class Machine:
     max_acceleration: Array
     max_jerk: Array
     shapes: tuple[LinkShape | None, ...]
+    external: int = 0
 
     @property
     def opw(self) -> OpwArm | None:
@@ -86,12 +88,13 @@ class Machine:
     @property
     def is_table(self) -> bool:
         """Whether it has axes that slide: a machine with rotary tables or heads, not a robot."""
-        return bool(self.chain.sliding.any())
+        return bool(self.chain.sliding[: len(self.axes) - self.external].any())
 
     @property
     def columns(self) -> tuple[str, ...]:
         """What tables call the axes: q1 to q6 for every robot, so that whoever reads them needs to know no machine."""
-        return self.axes if self.is_table else tuple(f"q{index + 1}" for index in range(len(self.axes)))
+        own = len(self.axes) - self.external
+        return self.axes if self.is_table else (*(f"q{index + 1}" for index in range(own)), *self.axes[own:])
 
     @property
     def units(self) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ..geometry import frames
 from ..parameters.cell import CellParameters, Pose
+from ..parameters.external import externals
 from . import machine as machines
 from . import opw
 from .cell import PART_ON_ROBOT, ROTARY_TABLE, TOOL_ON_ROBOT, Cell, resolve
@@ -51,9 +52,9 @@ def cell_of(
 
 def proposed(parameters: CellParameters, folders: Sequence[str] = ()) -> CellParameters:
     """The cell with the deposition point or the platform, on whole mm, and the branch that serve best; as it is where none
-    serves. Errors as `cell.resolve`."""
+    serves, and where the part is on a positioner. Errors as `cell.resolve`."""
     machine = machines.load(parameters.machine, tuple(folders))
-    if machine.arm is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
+    if externals(parameters.external) or machine.arm is None or parameters.setup not in (PART_ON_ROBOT, TOOL_ON_ROBOT):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
     if cell.setup == PART_ON_ROBOT:

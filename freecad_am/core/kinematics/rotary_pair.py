@@ -86,14 +86,14 @@ def with_first_locked(first: Array, second: Array, at: Array | float, source: Ar
     """Four axes: the first axis stands at an angle (rad, one or (n,)); the second turns the source as near as it can."""
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(first, -np.broadcast_to(at, len(source)))
-    return _nearest(second, source, np.einsum("nij,nj->ni", turned, target))
+    return nearest(second, source, np.einsum("nij,nj->ni", turned, target))
 
 
 def with_second_locked(first: Array, second: Array, at: Array | float, source: Array, target: Array) -> Locked:
     """Four axes: the second axis stands at an angle; the first turns."""
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(second, np.broadcast_to(at, len(source)))
-    return _nearest(first, np.einsum("nij,nj->ni", turned, source), target)
+    return nearest(first, np.einsum("nij,nj->ni", turned, source), target)
 
 
 def least_residual(
@@ -132,7 +132,9 @@ def _heights(vectors: Array, axis: Array, other: Array, angles: Array) -> Array:
     return along[:, None] + straight[:, None] * np.cos(angles) + sideways[:, None] * np.sin(angles)
 
 
-def _nearest(axis: Array, source: Array, target: Array) -> Locked:
+def nearest(axis: Array, source: Array, target: Array) -> Locked:
+    """The turn about one axis that takes unit vectors source (n, 3) as near to target (n, 3) or (3,) as it can."""
+    target = np.broadcast_to(target, source.shape)
     free = _on(source, axis) | _on(target, axis)
     angle = np.where(free, 0.0, _angle(axis, source, target))
     met = np.einsum("nij,nj->ni", frames.rotation_about(axis, angle), source)

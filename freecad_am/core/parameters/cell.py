@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from ..issues import InputError
 from . import field as f
+from .external import NONE as NO_AXES
+from .external import externals
 
 Pose = tuple[float, float, float, float, float, float]
 
@@ -60,9 +62,23 @@ class CellParameters:
     branch: str | tuple[str, str, str] = f.parameter(
         ("front", "up", "flip"), f.TEXT, "Robots: shoulder, elbow and wrist, or auto to search all eight."
     )
+    external: str = f.parameter(
+        NO_AXES, f.TEXT, "Robots: axes beside them that carry the part, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 "
+        "carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot's base frame; more than one with "
+        "; between.", advanced=True,
+    )
+    world_up: str = f.parameter(
+        "0 0 1", f.TEXT, "Against gravity, as x y z in the world.", advanced=True,
+    )
     nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
 
+    def upward(self) -> tuple[float, float, float]:
+        """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
+        return f.direction_of(self.world_up, "cell.world_up", "give three numbers such as [0, 0, 1]")
+
     def __post_init__(self) -> None:
+        externals(self.external)
+        self.upward()
         if isinstance(self.platform, (tuple, list)):
             if len(self.platform) != 6:
                 raise InputError("BAD_VALUE", "cell.platform", f"{self.platform!r} is neither a length nor six numbers")

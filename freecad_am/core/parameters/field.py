@@ -63,6 +63,17 @@ def spec_of(field: dataclasses.Field[Any]) -> Spec:
     return spec
 
 
+def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, float]:
+    """Three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
+    try:
+        x, y, z = (float(word) for word in text.replace(",", " ").split())
+    except ValueError:
+        x = y = z = math.nan
+    if not 0.0 < math.hypot(x, y, z) < math.inf:
+        raise InputError("BAD_VALUE", where, f"{text!r} is not a direction; {remedy}")
+    return x, y, z
+
+
 def outer_text(spec: Spec, value: float) -> str:
     """A value with its outer unit, for messages."""
     unit = OUTER_UNIT.get(spec.kind, "")

@@ -14,17 +14,6 @@ MEND = "Holes of meshes up to this size across are closed, which is told; larger
 MOST_LAYERS = 20_000  # more is a mistake in the units: half a millimetre each on the widest platform, 10 m
 
 
-def direction_of(text: str, where: str, remedy: str) -> tuple[float, float, float]:
-    """Three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
-    try:
-        x, y, z = (float(word) for word in text.replace(",", " ").split())
-    except ValueError:
-        x = y = z = math.nan
-    if not 0.0 < math.hypot(x, y, z) < math.inf:
-        raise InputError("BAD_VALUE", where, f"{text!r} is not a direction; {remedy}")
-    return x, y, z
-
-
 @dataclass(frozen=True)
 class LayerParameters:
     """What every family cuts its layers by. mm."""
@@ -118,7 +107,7 @@ class CurvesParameters(LayerParameters):
 
     def way(self) -> tuple[float, float, float]:
         """`direction` as a unit vector. InputError BAD_VALUE for what is no direction."""
-        x, y, z = direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]")
+        x, y, z = f.direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1]")
         size = math.hypot(x, y, z)
         return x / size, y / size, z / size
 
@@ -327,7 +316,7 @@ class SolidParameters(FilledParameters):
         """`direction` as three numbers, not of unit length; None for auto. InputError BAD_VALUE for what is no direction."""
         if self.direction == "auto":
             return None
-        return direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto")
+        return f.direction_of(self.direction, "strategy.direction", "give three numbers such as [0, 0, 1], or auto")
 
     @property
     def share_of_cut(self) -> float:

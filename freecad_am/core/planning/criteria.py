@@ -97,7 +97,7 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
     length = task.parameters.characteristic_length
     if name == "manipulability":
         w = np.maximum(jac.manipulability(matrix, length), 1e-300)
-        return np.asarray(-jac.manipulability_rate(matrix, rates, length) / w**2 / _count(points))
+        return np.asarray(-jac.manipulability_rate(matrix, rates[:, : matrix.shape[2]], length) / w**2 / _count(points))
     ratio = np.maximum(jac.condition(matrix, length), 1e-300)
     return np.asarray(-condition_rate(task, joints, rates, matrix) / ratio**2 / _count(points))
 
@@ -116,7 +116,7 @@ def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array
 
 def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:
     """(T,) derivative of sigma_min / sigma_max by the phi of each point."""
-    result: Array = jac.condition_rate(matrix, rates, task.parameters.characteristic_length)
+    result: Array = jac.condition_rate(matrix, rates[:, : matrix.shape[2]], task.parameters.characteristic_length)
     return result
 
 

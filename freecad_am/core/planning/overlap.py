@@ -31,8 +31,8 @@ def run_on(task: Task, path: BeadPath, overlap: float) -> BeadPath:
         return np.asarray(np.interp(share * np.sign(since[-1]), since * np.sign(since[-1]), column))
 
     phi = again(path.phi) + float(path.phi[-1] - path.phi[0])
-    flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi)
     near = np.stack([again(column) for column in path.joints.T], axis=1)
+    flange = task.cell.flange_poses(bead.points[fresh], bead.tool[fresh], phi, near)
     joints = _counted_from(path.joints[-1], task.inverse(flange, near))
     return dataclasses.replace(
         path, bead=bead, phi=np.concatenate([path.phi, phi]), joints=np.concatenate([path.joints, joints]),

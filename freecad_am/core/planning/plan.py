@@ -18,6 +18,7 @@ from ..toolpath import Bead, Toolpath
 from . import comparison, constant, given, layer_by_layer, point_by_point, search, table, turns
 from .findings import findings
 from .joint_path import BeadPath, JointPath
+from .level import levelled
 from .overlap import run_on
 from .points import gather
 from .speeds import corners_slowed, rings_slowed, too_fast
@@ -53,9 +54,9 @@ def plan_joints(
     NOT_FOR_SETUP for what only rotary axes can do.
     """
     places = [(layer, index) for layer, index, _ in toolpath]
-    beads = [bead for _, _, bead in toolpath]
     if cell.machine.is_table:
         return _on_table(toolpath, cell, parameters, progress)
+    beads, tilted = levelled(cell, toolpath) if cell.external else ([bead for _, _, bead in toolpath], [])
     if parameters.lock != "none":
         raise InputError("NOT_FOR_SETUP", "joints.lock", "robots need all their axes; only machines with rotary axes can do "
                          "with four; use none")
@@ -75,6 +76,7 @@ def plan_joints(
         if not has_errors(found[1]):
             task, (paths, issues) = other, found
             break
+    issues = [*tilted, *issues]
     if task.arm.followed:
         issues = [*issues, Issue(
             NOTE, "FOLLOWED", "several solutions of this arm bear the same configuration; along each bead the one it begins "

@@ -20,7 +20,8 @@ TURN = 2.0 * np.pi
 @dataclass(frozen=True)
 class Points:
     """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each bead's
-    first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts."""
+    first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends where it starts.
+    external: (T, k) values of the axes beside the robot, None where there are none."""
 
     position: Array
     tool: Array
@@ -29,6 +30,7 @@ class Points:
     bead: NDArray[np.int64]
     closed: NDArray[np.bool_]
     frames: PoseFrames
+    external: Array | None = None
 
     def __len__(self) -> int:
         return len(self.position)
@@ -56,6 +58,7 @@ class Points:
         return Points(
             self.position[index], self.tool[index], self.parameter[index], alone, alone,
             np.zeros(len(index), dtype=bool), self.frames.of(index),
+            None if self.external is None else self.external[index],
         )
 
     def only(self, bead: int) -> tuple[Points, slice]:
@@ -66,6 +69,7 @@ class Points:
         part = Points(
             self.position[chosen], self.tool[chosen], self.parameter[chosen], none[:1], none,
             self.closed[bead : bead + 1], self.frames.of(chosen),
+            None if self.external is None else self.external[chosen],
         )
         return part, chosen
 
@@ -97,6 +101,9 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None) -> Points
     counts = np.array([len(index) for index in chosen])
     position = np.concatenate([bead.points[index] for bead, index in zip(beads, chosen)])
     tool = np.concatenate([bead.tool[index] for bead, index in zip(beads, chosen)])
+    external = None
+    if cell.external is not None:
+        external = np.concatenate([bead.external[index] for bead, index in zip(beads, chosen) if bead.external is not None])
     return Points(
         position=position,
         tool=tool,
@@ -104,7 +111,8 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None) -> Points
         first=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
         bead=np.repeat(np.arange(len(beads)), counts),
         closed=np.array([bead.closed for bead in beads], dtype=bool),
-        frames=cell.pose_frames(position, tool),
+        frames=cell.pose_frames(position, tool, external),
+        external=external,
     )
 
 

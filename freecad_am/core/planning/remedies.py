@@ -20,6 +20,7 @@ from ..kinematics import cell as cells
 from ..kinematics import opw, proposed_cell
 from ..kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
 from ..parameters.cell import CellParameters, Pose
+from ..parameters.external import externals
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
 from ..toolpath import Toolpath
@@ -185,6 +186,8 @@ def _rotations(job: Tried) -> Iterator[Tried]:
 def _points(job: Tried) -> Iterator[Tried]:
     """Where the deposition point, or the fixed platform, may well be: where the machine has most room, then beside where it
     is."""
+    if externals(job.settings.external):  # the platform stands on the positioner
+        return
     best = proposed_cell.proposed(job.settings, job.folders)
     if best.deposition_point != job.settings.deposition_point:
         words = best.branch if isinstance(best.branch, str) else f"[{', '.join(best.branch)}]"

@@ -209,14 +209,17 @@ class Retracts:
             above, _ = self.cell.on_flange(tip.reshape(-1, 3), tools)
             return five.placed(np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station).reshape(
                 shape), tip
-        arm = self.cell.machine.arm
+        arm, own = self.cell.robot.arm, self.cell.robot.chain.axes
         assert arm is not None
         phi = self.ends.phi[ways.end, None] + share * ways.turn[:, None]
-        flange = self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel())
+        # external axes stand still on these ways
+        held = np.repeat(joints[:, None], moves, axis=1)
+        flange = self.cell.flange_poses(tip.reshape(-1, 3), tools, phi.ravel(), held.reshape(-1, shape[2]))
         if arm.followed:
-            raw = following.step_by_step(arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints)
+            raw = following.step_by_step(arm, flange.reshape(*shape[:2], 4, 4), self.branch, joints[:, :own])
         else:
-            raw = arm.inverse_branch(flange, self.branch).reshape(shape)
+            raw = arm.inverse_branch(flange, self.branch).reshape(*shape[:2], own)
+        raw = np.concatenate([raw, held[..., own:]], axis=2)
         before = np.concatenate([joints[:, None], raw[:, :-1]], axis=1)
         return raw + TURN * np.cumsum(np.round((before - raw) / TURN), axis=1), tip
 
@@ -243,8 +246,9 @@ class Retracts:
         return fits
 
     def condition(self, joints: Array) -> Array:
-        """(n,) the condition at joints (n, axes), as of deposit rows."""
-        chain = self.cell.machine.chain
+        """(n,) the robot's condition at joints (n, axes), as of deposit rows."""
+        chain = self.cell.robot.chain
+        joints = joints[:, : chain.axes]
         point = self.cell.deposition_point(chain.forward(joints))
         value = jac.condition(jac.jacobian(chain, joints, point), self.parameters.characteristic_length)
         return np.round(value, 12)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..issues import ERROR, Issue
-from ..kinematics.limits import Limits
+from ..kinematics.cell import Cell
 from ..toolpath import Bead
 from . import refine, search, turns, valley
 from .joint_path import BeadPath
@@ -29,13 +29,14 @@ MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
 def for_beads(task: Task, beads: Sequence[Bead], places: Sequence[Place]) -> list[list[BeadPath] | None]:
     """For each bead the path from another seam, or of its pieces; None where neither keeps all limits.
 
-    The rotations are looked for as if the last axis had no end; then a start, or cuts, are found that suit its limits.
+    The rotations are looked for as if the robot's last axis, and those beside it, had no end; then a start, or cuts, are
+    found that suit their limits.
     """
     usable = [k for k, bead in enumerate(beads) if not turns.is_spiral(bead)]
     result: list[list[BeadPath] | None] = [None] * len(beads)
     if task.endless.all() or not usable:
         return result
-    free = dataclasses.replace(task, cell=dataclasses.replace(task.cell, limits=_last_endless(task.cell.limits)))
+    free = dataclasses.replace(task, cell=_last_endless(task.cell))
     coarse = gather([beads[k] for k in usable], task.cell, search.POINTS_PER_BEAD)
     threshold = task.thresholds(coarse)
     # only with slopes of whole turns can a seam be moved after the planning
@@ -75,7 +76,7 @@ def _would_fit_endless(task: Task, path: BeadPath) -> bool:
     """
     if turns.turning_axis(task, path.joints) is not None:
         return True
-    free = dataclasses.replace(task, cell=dataclasses.replace(task.cell, limits=_last_endless(task.cell.limits)))
+    free = dataclasses.replace(task, cell=_last_endless(task.cell))
     coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
     return bool((search.everywhere(free, coarse, task.thresholds(coarse)).margin >= 0.0).any())
 
@@ -115,11 +116,13 @@ def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str)
     return judged(task, [bead], [place], points, task.thresholds(points), coefficients, given)[0]
 
 
-def _last_endless(limits: Limits) -> Limits:
-    last = np.arange(limits.axes) == limits.axes - 1
-    return dataclasses.replace(
+def _last_endless(cell: Cell) -> Cell:
+    limits = cell.limits
+    last = np.arange(limits.axes) >= cell.robot.chain.axes - 1
+    free = dataclasses.replace(
         limits, lower=np.where(last, -np.inf, limits.lower), upper=np.where(last, np.inf, limits.upper)
     )
+    return dataclasses.replace(cell, limits=free)
 
 
 def _numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:

@@ -22,6 +22,7 @@ from ..parameters.joints import JointParameters
 from ..toolpath import Bead, Toolpath
 from . import table_room
 from .joint_path import BeadPath
+from .rotary_courses import continuous, kept
 from .turns import seam_note, split_note
 
 Array = NDArray[np.float64]
@@ -176,7 +177,7 @@ def _courses(task: _Task, bead: Bead) -> list[Array]:
     found = arm.turns(_off_pole(arm.pole, tools), cell.station[:3, 2])
     turned = np.stack([found.first, found.second], axis=-1)
     for axis, free in enumerate((found.first_free, found.second_free)):
-        turned[:, :, axis] = _kept(turned[:, :, axis], free)
+        turned[:, :, axis] = kept(turned[:, :, axis], free)
     return [arm.placed(course, points, cell.station) for course in continuous(turned)]
 
 
@@ -184,25 +185,6 @@ def _off_pole(pole: Array, tools: Array) -> Array:
     """Directions (n, 3), those nearly along the pole or against it brought onto it."""
     near = np.linalg.norm(np.cross(tools, pole), axis=1) < math.sin(AT_POLE)
     return np.where(near[:, None], np.sign(tools @ pole)[:, None] * pole, tools)
-
-
-def continuous(turned: Array) -> list[Array]:
-    """Two courses (n, 2) through the branches (2, n, 2), one begun on each, that go straight on through a pole."""
-    step = np.diff(turned, axis=1)
-    across = turned[::-1, 1:] - turned[:, :-1]
-    stay, change = (np.abs(np.remainder(way + np.pi, TURN) - np.pi).sum(axis=(0, 2)) for way in (step, across))
-    swaps = np.r_[0, np.cumsum(change < stay - 1e-6)] % 2
-    rows = np.arange(turned.shape[1])
-    return [np.unwrap(turned[(start + swaps) % 2, rows], axis=0) for start in range(2)]
-
-
-def _kept(angles: Array, free: NDArray[np.bool_]) -> Array:
-    """Angles (2, n) with those that are free as they were before, or as they come to be where none was before."""
-    known = np.flatnonzero(~free)
-    if not len(known):
-        return angles
-    source = known[np.clip(np.searchsorted(known, np.arange(len(free)), side="right") - 1, 0, None)]
-    return angles[:, source]
 
 
 def _chosen(arm: FiveAxis, cell: Cell, courses: Sequence[Array], before: Array | None) -> Array:

@@ -136,7 +136,7 @@ class Task:
     @property
     def arm(self) -> SerialArm:
         """The inverse of the robot."""
-        arm = self.cell.machine.arm
+        arm = self.cell.robot.arm
         assert arm is not None  # resolve() refuses other machines
         return arm
 
@@ -149,28 +149,38 @@ class Task:
             return self._raw_joints_of_all(points, phi)
         flange = points.frames.at(phi)
         if self.arm.followed and before is not None:
-            return following.from_before(self.arm, flange, self.branch, before)
-        if self.arm.followed:
+            joints = following.from_before(self.arm, flange, self.branch, self._own(before))
+        elif self.arm.followed:
             rows = flange.reshape(-1, *flange.shape[-3:])
-            return following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
-        return self.inverse(flange.reshape(-1, 4, 4)).reshape(*phi.shape, -1)
+            joints = following.along_beads(self.arm, rows, self.branch, points).reshape(*phi.shape, -1)
+        else:
+            joints = self.arm.inverse_branch(flange.reshape(-1, 4, 4), self.branch).reshape(*phi.shape, -1)
+        return joints if points.external is None else _beside(joints, points.external)
 
     def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
         """The same of one phi (T,) for all points: their poses together would take much memory."""
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
         for some in in_pieces(len(points)):
-            joints[some] = self.inverse(points.frames.of(some).at(phi[some]))
+            own = self.arm.inverse_branch(points.frames.of(some).at(phi[some]), self.branch)
+            joints[some] = own if points.external is None else _beside(own, points.external[some])
         return joints
 
     def inverse(self, flange: Array, near: Array | None = None) -> Array:
         """(N, axes) joint values of the branch at flange poses (N, 4, 4); NaN where unreachable.
 
-        `near`: joints (N, axes) next to which they are looked for, of arms of which several solutions bear the same words.
+        `near`: joints (N, axes) next to which they are looked for, of arms of which several solutions bear the same words;
+        external axes stay where they are there.
         """
         if self.arm.followed and near is not None:
-            return following.from_before(self.arm, flange, self.branch, near)
-        joints: Array = self.arm.inverse_branch(flange, self.branch)
-        return joints
+            joints = following.from_before(self.arm, flange, self.branch, self._own(near))
+        else:
+            joints = self.arm.inverse_branch(flange, self.branch)
+        external = None if near is None else self.cell.external_of(near)
+        return joints if external is None else _beside(joints, external)
+
+    def _own(self, joints: Array) -> Array:
+        """(..., axes of the robot) joints without those of external axes."""
+        return joints[..., : self.cell.robot.chain.axes]
 
     def joints(self, points: Points, phi: Array) -> Array:
         """(..., T, axes) joint values counted on within each bead, in the turn that suits the limits best."""
@@ -187,15 +197,15 @@ class Task:
         return moved
 
     def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:
-        """The Jacobians (k, 6, axes) at the deposition point of pieces of the points, phi (T,) and joints (T, axes), with
-        which of them these are: together they would take much memory."""
+        """The robot's Jacobians (k, 6, 6) at the deposition point of pieces of the points, phi (T,) and joints (T, axes),
+        with which of them these are: together they would take much memory."""
         for some in in_pieces(len(points)):
             yield some, self.jacobian_at(points.frames.of(some).at(phi[some]), joints[some])
 
     def jacobian_at(self, flange: Array, joints: Array) -> Array:
-        """(N, 6, axes) Jacobian at the deposition point for flange poses (N, 4, 4) and joints (N, axes)."""
-        arm = self.cell.machine.chain
-        result: Array = jac.jacobian(arm, joints, self.cell.deposition_point(flange))
+        """(N, 6, 6) Jacobian of the robot at the deposition point for flange poses (N, 4, 4) and joints (N, axes)."""
+        arm = self.cell.robot.chain
+        result: Array = jac.jacobian(arm, self._own(joints), self.cell.deposition_point(flange))
         return result
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
@@ -229,7 +239,8 @@ class Task:
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
     def spin_rates(self, flange: Array, joints: Array) -> tuple[Array, Array]:
-        """d q / d phi (N, axes) and the Jacobian (N, 6, axes) at N flange poses (N, 4, 4) that are reached."""
+        """d q / d phi (N, axes), none of external axes, and the robot's Jacobian (N, 6, 6) at N flange poses (N, 4, 4) that
+        are reached."""
         matrix = self.jacobian_at(flange, joints)
         twist = np.zeros((len(joints), 6, 1))
         twist[:, 3:, 0] = self.cell.spin_axis(flange)
@@ -237,12 +248,22 @@ class Task:
             rates = np.linalg.solve(matrix, twist)[:, :, 0]
         except np.linalg.LinAlgError:
             rates = (np.linalg.pinv(matrix) @ twist)[:, :, 0]
+        if self.cell.external is not None:
+            rates = np.pad(rates, ((0, 0), (0, joints.shape[1] - rates.shape[1])))
         return np.asarray(rates, dtype=np.float64), matrix
 
 
 def in_pieces(count: int) -> list[slice]:
     """So many points in pieces that are worked on one after the other."""
     return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
+
+
+def _beside(joints: Array, external: Array) -> Array:
+    """(..., N, axes) joints (..., N, 6) of the robot with the values of external axes (N, k) beside them; NaN where the
+    robot does not reach, so that nothing is known of any axis."""
+    values = np.broadcast_to(external, (*joints.shape[:-1], external.shape[-1]))
+    lost = np.isnan(joints).any(axis=-1, keepdims=True)
+    return np.concatenate([joints, np.where(lost, np.nan, values)], axis=-1)
 
 
 def condition_margin(condition: Array, threshold: Array) -> Array:

@@ -23,8 +23,8 @@ _SPINS = 24
 
 @dataclass(frozen=True)
 class Placing:
-    """Poses in the world, mm. links: (axes + 1, 4, 4). part: (4, 4), its own coordinates. nozzle: (4, 4), the tip, its Z
-    pointing into the nozzle. platform: (4, 4), what the part stands on."""
+    """Poses in the world, mm. links: (axes + 1, 4, 4), the robot's own. part: (4, 4), its own coordinates. nozzle: (4, 4),
+    the tip, its Z pointing into the nozzle. platform: (4, 4), what the part stands on."""
 
     links: Array
     part: Array
@@ -34,8 +34,8 @@ class Placing:
 
 def placing(cell: Cell, joints: ArrayLike) -> Placing:
     """Where links, part and nozzle are for a joint vector (axes,)."""
-    chain = cell.machine.chain
-    links = chain.links(joints)
+    chain = cell.robot.chain
+    links = cell.links(np.asarray(joints, float))
     flange = links[-1] @ chain.flange
     carried = flange @ cell.carried
     on_robot = cell.setup == TOOL_ON_ROBOT
@@ -62,13 +62,15 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
         ways = np.stack([_seen(cell, np.eye(chain.axes)[axis], place) - _seen(cell, zero, place) for axis in slides], axis=1)
         zero[slides] = np.linalg.lstsq(ways, away, rcond=None)[0]
         return zero
-    arm = cell.machine.arm
+    arm = cell.robot.arm
     assert arm is not None  # a cell has no other robots
     spins = np.linspace(0.0, 2.0 * np.pi, _SPINS, endpoint=False)
-    flange = cell.flange_poses(np.tile(place, (_SPINS, 1)), np.tile(cell.mount[:3, 2], (_SPINS, 1)), spins)
+    beside = np.zeros((_SPINS, chain.axes))
+    flange = cell.flange_poses(np.tile(place, (_SPINS, 1)), np.tile(cell.mount[:3, 2], (_SPINS, 1)), spins, beside)
     branches = range(8) if cell.branch is None else (cell.branch,)
     found = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])
     found = np.arctan2(np.sin(found), np.cos(found))
+    found = np.pad(found, ((0, 0), (0, chain.axes - found.shape[1])))
     room = np.nan_to_num(cell.limits.smallest(found).margin, nan=-np.inf)
     best = int(np.argmax(room))
     return np.asarray(found[best]) if np.isfinite(room[best]) else np.zeros(chain.axes)

@@ -43,7 +43,7 @@ class Scene:
         self.to_view = frames.inverse(rest.part)
         looks = run.looks
         self.machine = MachineNodes(
-            cell.machine, plain_links(cell.machine, looks.platform_diameter, looks.nozzle.length))
+            cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length))
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
         self.part_matrix, self.nozzle_matrix = self.part.matrix, self.nozzle.matrix
         self.deposit, self.to_come = PathNodes(), PathNodes()

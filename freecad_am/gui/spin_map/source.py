@@ -84,6 +84,11 @@ def source_of(obj: Any) -> Source:
             "NO_MAP", obj.Label, "its machine has two rotary axes, which leave no rotation about the tool to choose; a map "
             "is for robots",
         )
+    if cell.external is not None:
+        raise InputError(
+            "NO_MAP", obj.Label, "its cell has external axes, along which the map is not drawn yet; the curves of Plot show "
+            "all axes",
+        )
     return Source(
         document=obj.Document.Name, name=obj.Name, title=obj.Label,
         objects=tuple(dict.fromkeys((obj.Name, obj.Toolpath.Name, obj.Cell.Name))), cell=cell,

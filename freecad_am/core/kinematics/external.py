@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""External axes: a robot and the mechanisms beside it as one machine.
+
+Seen from what the last mechanism that carries the part has on its face, robot and mechanisms are one chain: backwards
+through the positioner to the floor, and on through the robot to its flange. So everything that drives a chain - limits,
+speeds, rapids, collisions, read-back - knows of external axes without being told; the robot's own inverse alone has to
+be told where its base then is.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import frames
+from ..issues import InputError
+from ..parameters.external import PART, WHERE, External
+from . import machine as machines
+from .chain import Chain, Piece, joined
+from .limits import Limits
+from .machine import MAKER, Machine
+
+Array = NDArray[np.float64]
+
+MOST = 6  # that a controller has
+
+
+@dataclass(frozen=True, eq=False)
+class ExternalAxes:
+    """The axes beside a robot, k in all. robot: the machine without them. to_robot: the chain from the platform's face to
+    the robot's base_link. up: (3,) against gravity, in the world. first, second: (3,) unit axes of the positioner in the
+    world at zero, the second None of a single one. at_zero: (3, 3) turns directions on the face into the world, at zero."""
+
+    robot: Machine
+    to_robot: Chain
+    up: Array
+    turning: tuple[Array, ...]
+    at_zero: Array
+
+    def base(self, values: Array) -> Array:
+        """(n, 4, 4) the robot's base_link seen from the face that carries the part, mm, for values (n, k) rad."""
+        return self.to_robot.forward(values)
+
+    def upright(self, directions: Array, values: Array) -> Array:
+        """(n, 3) unit vectors of the face (n, 3) in the world, for values (n, k) rad."""
+        turned = directions @ self.at_zero.T
+        for axis, angle in list(zip(self.turning, values.T, strict=True))[::-1]:
+            turned = np.einsum("nij,nj->ni", frames.rotation_about(axis, angle), turned)
+        return turned
+
+
+def coupled(
+    robot: Machine, limits: Limits, named: Sequence[External], up: Sequence[float], folders: Sequence[str] = ()
+) -> tuple[Machine, Limits, ExternalAxes]:
+    """The machine that a robot is together with its external axes, its limits, and these axes.
+
+    Joint values are the robot's and then those of the mechanisms in the order of `named`; `up` (3,) is against gravity.
+    Raises InputError NOT_YET for what cannot be planned, UNKNOWN_MACHINE, BAD_MACHINE.
+    """
+    found = [(one, load(one.machine, folders)) for one in named]
+    for one, machine in found:
+        if one.carries != PART:
+            raise InputError("NOT_YET", WHERE, f"{machine.title} carries the robot, which cannot be planned yet; only "
+                             "mechanisms that carry the part can")
+        if machine.chain.sliding.any():
+            raise InputError("NOT_YET", WHERE, f"{machine.title} has an axis that slides and carries the part, which cannot "
+                             "be planned yet; use turning axes")
+    count = sum(machine.chain.axes for _, machine in found)
+    if count > 2:
+        raise InputError("NOT_YET", WHERE, f"{count} axes carry the part; one or two turning axes can be planned")
+    if robot.is_table:
+        raise InputError("WRONG_SETUP", WHERE, f"{robot.title} is no robot and takes no external axes; leave them out")
+    axes = robot.chain.axes
+    to_face, face = _chain(found)
+    back = to_face.reversed()
+    in_world = frames.inverse(robot.base)
+    to_robot = joined([Piece(np.eye(4), back, np.arange(count))], in_world)
+    whole = joined([
+        Piece(np.eye(4), to_robot, axes + np.arange(count)), Piece(np.eye(4), robot.chain, np.arange(axes)),
+    ], np.eye(4))
+    at_zero = to_face.frames(np.zeros(count))
+    external = ExternalAxes(robot, to_robot, _unit(up), tuple(at_zero.directions), face[:3, :3])
+    return _together(robot, [machine for _, machine in found], whole), _limits(limits, [one for _, one in found]), external
+
+
+def load(name: str, folders: Sequence[str] = ()) -> Machine:
+    """A mechanism by its id, built in or in the user's folders, or by the path of a machine file."""
+    built_in = machines.BUILT_IN / "mechanisms"
+    file = built_in / f"{name}.json"
+    if file.is_file():
+        return machines.load(file)
+    try:
+        return machines.load(name, folders)
+    except InputError as error:
+        if error.code != "UNKNOWN_MACHINE":
+            raise
+        known = ", ".join(sorted(path.stem for path in Path(built_in).glob("*.json")))
+        raise InputError("UNKNOWN_MACHINE", WHERE, f"{name!r} is not known; built in are {known}; or give the path of a "
+                         "machine file") from None
+
+
+def _unit(up: Sequence[float]) -> Array:
+    vector = np.array(up, float)
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
+    """The chain from the world to the face that carries the part, and that face (4, 4) at zero. Poses of mechanisms are
+    those they stand at in the world with all axes at zero."""
+    pieces: list[Piece] = []
+    before, first = np.eye(4), 0
+    for one, machine in found:
+        start = frames.bryant(one.pose) @ frames.inverse(machine.base)
+        pieces.append(Piece(frames.inverse(before) @ start, machine.chain, first + np.arange(machine.chain.axes)))
+        before, first = start @ machine.chain.forward(np.zeros(machine.chain.axes)), first + machine.chain.axes
+    return joined(pieces, np.eye(4)), before
+
+
+def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
+    """The robot with further axes e1, e2 ...: no post writes for it unless it says that it knows them."""
+    count, axes = sum(other.chain.axes for other in others), robot.chain.axes
+    matrix = np.eye(axes + count)
+    matrix[:axes, :axes] = robot.controller_matrix
+    offset = [robot.controller_offset]
+    at = axes
+    for other in others:
+        more = other.chain.axes
+        matrix[at : at + more, at : at + more] = other.controller_matrix
+        offset.append(other.controller_offset)
+        at += more
+    alike = {
+        name: np.concatenate([getattr(one, name) for one in (robot, *others)])
+        for name in ("max_speed", "max_acceleration", "max_jerk")
+    }
+    return dataclasses.replace(
+        robot, title=" + ".join(one.title for one in (robot, *others)), chain=chain, base=np.eye(4), external=count,
+        axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
+        controller_offset=np.concatenate(offset), posts=(), pulses_per_degree=(), **alike,
+    )
+
+
+def _limits(robot: Limits, others: Sequence[Machine]) -> Limits:
+    sets = [other.limits(MAKER) for other in others]
+    count = sum(one.axes for one in sets)
+    labels = [f"e{number + 1}" for number in range(count)]
+    coupled_ = [np.pad(robot.coefficients.reshape(-1, robot.axes), ((0, 0), (0, count)))]
+    at = robot.axes
+    for one in sets:
+        rows = one.coefficients.reshape(-1, one.axes)
+        coupled_.append(np.pad(rows, ((0, 0), (at, robot.axes + count - at - one.axes))))
+        at += one.axes
+    alike = {
+        name: np.concatenate([getattr(one, name) for one in (robot, *sets)])
+        for name in ("lower", "upper", "coupled_lower", "coupled_upper")
+    }
+    rest = [label for one in sets for label in one.labels[one.axes :]]
+    return dataclasses.replace(
+        robot, coefficients=np.concatenate(coupled_), source="; ".join(one.source for one in (robot, *sets)),
+        labels=(*robot.labels[: robot.axes], *labels, *robot.labels[robot.axes :], *rest), **alike,
+    )
+
+
+def tilt_from(directions: Array, up: Array) -> Array:
+    """(n,) rad, the angles of unit vectors (n, 3) to a unit vector (3,)."""
+    angle: Array = np.arctan2(np.linalg.norm(np.cross(directions, up), axis=1), directions @ up)
+    return np.asarray(np.minimum(angle, math.pi))

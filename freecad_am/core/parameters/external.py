@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""External axes as a cell names them: which mechanism, where it stands, and what it carries."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from ..issues import InputError
+
+Pose = tuple[float, float, float, float, float, float]
+
+NONE = "none"
+PART, ROBOT = "part", "robot"
+WHERE = "cell.external"
+MORE = ";"  # between two of them
+_TEXT = re.compile(r"(?P<machine>.+?)\s+at\s+(?P<pose>.+?)\s+carries\s+(?P<carries>\S+)")
+_FORM = "write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
+
+
+@dataclass(frozen=True)
+class External:
+    """A mechanism of one or more axes beside the robot. machine: its id, or the path of a machine file. pose: of its base in
+    the world, mm and rad (Bryant). carries: part or robot. Its text has degrees."""
+
+    machine: str
+    pose: Pose
+    carries: str = PART
+
+    def __post_init__(self) -> None:
+        if self.carries not in (PART, ROBOT):
+            raise InputError("BAD_VALUE", WHERE, f"{self.carries!r} cannot be carried; use {PART} or {ROBOT}")
+        if len(self.pose) != 6 or not all(math.isfinite(number) for number in self.pose):
+            raise InputError("BAD_VALUE", WHERE, f"{self.pose!r} is not a pose; give six numbers x y z RX RY RZ")
+
+    def __str__(self) -> str:
+        numbers = (*self.pose[:3], *(math.degrees(angle) for angle in self.pose[3:]))
+        return f"{self.machine} at {' '.join(f'{number:.12g}' for number in numbers)} carries {self.carries}"
+
+
+def externals(text: str) -> tuple[External, ...]:
+    """What a text says, in its order; nothing for none. Raises InputError BAD_VALUE."""
+    if text.strip() == NONE:
+        return ()
+    return tuple(_external(part.strip()) for part in text.split(MORE) if part.strip())
+
+
+def _external(text: str) -> External:
+    found = _TEXT.fullmatch(text)
+    if found is None:
+        raise InputError("BAD_VALUE", WHERE, f"{text!r} names no external axes; {_FORM}")
+    try:
+        numbers = [float(word) for word in found["pose"].replace(",", " ").split()]
+    except ValueError:
+        raise InputError("BAD_VALUE", WHERE, f"{found['pose']!r} is not a pose; {_FORM}") from None
+    if len(numbers) != 6:
+        raise InputError("BAD_VALUE", WHERE, f"{found['pose']!r} has {len(numbers)} numbers, a pose has six; {_FORM}")
+    x, y, z, *angles = numbers
+    a, b, c = (math.radians(angle) for angle in angles)
+    return External(found["machine"], (x, y, z, a, b, c), found["carries"])

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A job with a positioner, from the file to its rows, and what of such a file is refused."""
+
+import csv
+import json
+import math
+import shutil
+
+import numpy as np
+import pytest
+import yaml
+
+from freecad_am.batch.job import read_job
+from freecad_am.core.issues import InputError
+
+MOST = 10.0  # deg, of the job
+
+
+@pytest.fixture
+def written(workshop, root):
+    """The example with thick layers in a folder of its own, changed; its path."""
+
+    def write(change=lambda job: None):
+        folder = root / "resources" / "examples"
+        shutil.copy(folder / "hemisphere.step", workshop.folder)
+        job = yaml.safe_load((folder / "hemisphere-on-positioner.yaml").read_text(encoding="utf-8"))
+        job["strategy"].update(layer_height="8 mm", chord_error="0.2 mm")
+        change(job)
+        path = workshop.folder / "dome.yaml"
+        path.write_text(yaml.safe_dump(job), encoding="utf-8")
+        return path
+
+    return write
+
+
+def from_vertical(row):
+    """How far, deg, the row's tool axis is from the vertical: the D500 tilts about -Y, then turns about -Z (its file)."""
+    tilt, turn = (-math.radians(float(row[name])) for name in ("e1_deg", "e2_deg"))
+    about_y = np.array([[math.cos(tilt), 0, math.sin(tilt)], [0, 1, 0], [-math.sin(tilt), 0, math.cos(tilt)]])
+    about_z = np.array([[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0], [0, 0, 1]])
+    x, y, z = about_y @ about_z @ [float(row[name]) for name in ("tx", "ty", "tz")]
+    return math.degrees(math.atan2(math.hypot(x, y), z))
+
+
+def test_rows_and_report_say_where_the_positioner_is(workshop, written):
+    written()
+    done = workshop.run("plan", "dome.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0])[-3:] == ["q6_deg", "e1_deg", "e2_deg"]
+    leaning = max(from_vertical(row) for row in rows if row["kind"] == "deposit")
+    assert leaning <= MOST + 1e-4
+    assert all(abs(float(row["e1_deg"])) <= 134.9946 and abs(float(row["e2_deg"])) <= 199.9966 for row in rows)
+
+    told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+    external = told["joints"]["external"]
+    assert external["from_vertical_max_deg"] == pytest.approx(leaning, abs=1e-3)
+    turned = sum(
+        abs(float(other["e2_deg"]) - float(one["e2_deg"])) for one, other in zip(rows, rows[1:])
+        if one["kind"] == other["kind"] == "deposit" and (one["layer"], one["bead"]) == (other["layer"], other["bead"])
+    )
+    assert external["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
+    assert len(told["joints"]["min_deg"]) == 8 and told["machine"]["axes"][-2:] == ["e1", "e2"]
+
+
+@pytest.mark.parametrize(("change", "code", "where"), [
+    (lambda job: job.update(program={"post": "fanuc"}), "WRONG_CONTROLLER", "program.post"),
+    (lambda job: job["cell"]["external"][0].update(carries="robot"), "NOT_YET", "cell.external"),
+    (lambda job: job["cell"].update(setup="part-on-robot"), "WRONG_SETUP", "cell.external"),
+])
+def test_refused_when_it_is_planned(workshop, written, change, code, where):
+    written(change)
+    done = workshop.run("plan", "dome.yaml", "-o", "out")
+    assert done.status == 2 and code in done.err and where in done.err
+    assert not (workshop.folder / "out").exists()
+
+
+@pytest.mark.parametrize(("change", "code", "where"), [
+    (lambda job: job["cell"].update(external="motoman-motopos-d500"), "BAD_VALUE", "cell.external"),
+    (lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3]), "BAD_VALUE", "cell.external[0].pose"),
+    (lambda job: job["cell"]["external"][0].update(pose=[1, 2, 3, 4, 5, "6 kg"]), "BAD_UNIT", "cell.external[0].pose"),
+    (lambda job: job["cell"]["external"][0].pop("machine"), "BAD_VALUE", "cell.external[0].machine"),
+    (lambda job: job["cell"]["external"][0].update(carry="part"), "UNKNOWN_KEY", "cell.external[0].carry"),
+    (lambda job: job["cell"].update(world_up=[0, 0, 0]), "BAD_VALUE", "cell.world_up"),
+    (lambda job: job["build_direction"].update(max_from_vertical="190 deg"), "BAD_VALUE", "build_direction.max_from"),
+])
+def test_refused_when_it_is_read(written, change, code, where):
+    path = written(change)
+    with pytest.raises(InputError) as error:
+        read_job(str(path))
+    assert error.value.code == code and where in error.value.where
