@@ -19,6 +19,11 @@
         <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Against gravity, as x y z in the world.</source>
+        <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
         <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
@@ -597,6 +602,16 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Radius of the probe&apos;s ball where its centre was measured; 0 where the points lie on the surface.</source>
         <translation>Rayon de la bille du palpeur si son centre a été mesuré ; 0 si les points sont sur la surface.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part so far. 180 deg: it stands still.</source>
+        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce en conséquence. 180 deg : il reste immobile.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: axes beside them that carry the part, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
+        <translation>Robots : axes à côté d&apos;eux qui portent la pièce, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -1245,6 +1260,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>After</source>
         <translation>Après</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Against gravity, as x y z in the world.</source>
+        <translation>À l&apos;opposé de la pesanteur, sous la forme x y z dans le monde.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/spin_map/controls.py"/>
@@ -2100,6 +2120,11 @@
         <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Export…</source>
         <translation>Exporter…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>External</source>
+        <translation>Externes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/cladding_panel.py"/>
@@ -3062,6 +3087,11 @@
         <translation>Masse du dépôt (g).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Max from vertical</source>
+        <translation>Écart max à la verticale</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Max iterations</source>
         <translation>Itérations max</translation>
@@ -3875,6 +3905,16 @@
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Robotic AM, preferences: {}</source>
         <translation>Robotic AM, préférences : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/build_direction.py"/>
+        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part so far. 180 deg: it stands still.</source>
+        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce en conséquence. 180 deg : il reste immobile.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Robots: axes beside them that carry the part, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot&apos;s base frame; more than one with ; between.</source>
+        <translation>Robots : axes à côté d&apos;eux qui portent la pièce, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5422,6 +5462,11 @@
         <translation>Mots : {}.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>World up</source>
+        <translation>Verticale du monde</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/context_menu.py"/>
         <source>Write program…</source>
         <translation>Écrire le programme…</translation>
@@ -6792,7 +6837,7 @@
         <translation>donnez d&apos;abord la valeur basse, ou laissez les deux vides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>give three numbers such as [0, 0, 1]</source>
         <translation>donnez trois nombres comme [0, 0, 1]</translation>
     </message>
@@ -7620,6 +7665,11 @@
         <location filename="../../freecad_am/core/process/bead_table.py"/>
         <source>its beads were laid at wire feeds from {0} to {1} m/min; the model is of one: keep the rows of one</source>
         <translation>ses cordons ont été posés à des dévidages de {0} à {1} m/min ; le modèle vaut pour un seul : gardez les lignes de l&apos;un d&apos;eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/spin_map/source.py"/>
+        <source>its cell has external axes, along which the map is not drawn yet; the curves of Plot show all axes</source>
+        <translation>sa cellule a des axes externes, pour lesquels la carte n&apos;est pas encore tracée ; les courbes de Tracer montrent tous les axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/view_joint_path.py"/>
@@ -9727,6 +9777,11 @@
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/level.py"/>
+        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg; the positioner cannot turn the part so far: mount the part otherwise, or allow more</source>
+        <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg ; le positionneur ne peut pas tourner la pièce autant : montez la pièce autrement, ou permettez plus</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur_numbers.py"/>
         <source>the tool goes {0} mm beside a point that is not stopped at, too little for a blend radius, and the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
         <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
@@ -10427,6 +10482,11 @@
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <source>write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
+        <translation>écrivez par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/facts.py"/>
         <source>zigzag</source>
         <translation>zigzag</translation>
@@ -10487,6 +10547,11 @@
         <translation>{0} à la couche {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} axes carry the part; one or two turning axes can be planned</source>
+        <translation>{0} axes portent la pièce ; un ou deux axes rotatifs peuvent être planifiés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>{0} bead(s) alone in regions narrower than a bead of {1} mm stand out of them, by up to {2} mm at {3}</source>
         <translation>{0} cordon(s) seuls dans des régions plus étroites qu&apos;un cordon de {1} mm en dépassent, jusqu&apos;à {2} mm en {3}</translation>
@@ -10527,6 +10592,11 @@
         <translation>{0} ne peut pas être exécuté : {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <source>{0} cannot be carried; use {1} or {2}</source>
+        <translation>{0} ne peut pas être porté ; utilisez {1} ou {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} cannot be planned yet; use {1}, {2} or {3}</source>
         <translation>{0} ne peut pas encore être planifié ; utilisez {1}, {2} ou {3}</translation>
@@ -10555,6 +10625,11 @@
         <location filename="../../freecad_am/posts/nc_parts.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} carries the robot, which cannot be planned yet; only mechanisms that carry the part can</source>
+        <translation>{0} porte le robot, ce qui ne peut pas encore être planifié ; seuls les mécanismes qui portent la pièce peuvent l&apos;être</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -10637,6 +10712,11 @@
         <translation>{0} contient un 0 ; donnez les impulsions d&apos;un degré de chaque axe, négatives là où elles décroissent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} has an axis that slides and carries the part, which cannot be planned yet; use turning axes</source>
+        <translation>{0} a un axe linéaire et porte la pièce, ce qui ne peut pas encore être planifié ; utilisez des axes rotatifs</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/rows.py"/>
         <source>{0} has another dimension; give {1}</source>
         <translation>{0} a une autre dimension ; donnez {1}</translation>
@@ -10675,6 +10755,11 @@
         <location filename="../../freecad_am/gui/view_joint_path.py"/>
         <source>{0} has other axes than the joint path</source>
         <translation>{0} a d&apos;autres axes que la trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <source>{0} has {1} numbers, a pose has six; {2}</source>
+        <translation>{0} a {1} nombres, une pose en a six ; {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb.py"/>
@@ -10907,6 +10992,11 @@
         <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} is no robot and takes no external axes; leave them out</source>
+        <translation>{0} n&apos;est pas un robot et n&apos;admet pas d&apos;axes externes ; omettez-les</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/link_shape.py"/>
         <source>{0} is no scale; give 1 for mm, 1000 for m</source>
         <translation>{0} n&apos;est pas une échelle ; donnez 1 pour mm, 1000 pour m</translation>
@@ -10962,7 +11052,7 @@
         <translation>{0} n&apos;est pas une branche ; utilisez [front|back, up|down, flip|noflip] ou auto</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a direction; {1}</source>
         <translation>{0} n&apos;est pas une direction ; {1}</translation>
     </message>
@@ -11007,6 +11097,11 @@
         <translation>{0} n&apos;est pas un nombre{1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <source>{0} is not a pose; give six numbers x y z RX RY RZ</source>
+        <translation>{0} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} is not a pose; give six numbers x y z RX RY RZ{1}</source>
         <translation>{0} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ{1}</translation>
@@ -11015,6 +11110,11 @@
         <location filename="../../freecad_am/objects/rows.py"/>
         <source>{0} is not a pose; give x y z in mm and RX RY RZ in deg</source>
         <translation>{0} n&apos;est pas une pose ; donnez x y z en mm et RX RY RZ en deg</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <source>{0} is not a pose; {1}</source>
+        <translation>{0} n&apos;est pas une pose ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
@@ -11090,6 +11190,11 @@
         <location filename="../../freecad_am/objects/part_file.py"/>
         <source>{0} is not found among the objects with a shape ({1}); name one</source>
         <translation>{0} n&apos;est pas trouvé parmi les objets à forme ({1}) ; nommez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/external.py"/>
+        <source>{0} is not known; built in are {1}; or give the path of a machine file</source>
+        <translation>{0} n&apos;est pas connu ; sont intégrés {1} ; ou donnez le chemin d&apos;un fichier de machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -11380,6 +11485,11 @@
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
         <source>{0} must lie within +-180</source>
         <translation>{0} doit être compris entre -180 et 180</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/external.py"/>
+        <source>{0} names no external axes; {1}</source>
+        <translation>{0} ne désigne pas d&apos;axes externes ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
@@ -11730,6 +11840,11 @@
         <location filename="../../freecad_am/core/process/deposit_balance.py"/>
         <source>{0}: solids are built up on the hub, which is there before</source>
         <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/cell.py"/>
+        <source>{0}: what carries the part beside the robot needs the tool on the robot; use setup: {1}, or leave external out</source>
+        <translation>{0} : ce qui porte la pièce à côté du robot demande l&apos;outil sur le robot ; utilisez setup : {1}, ou omettez external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
