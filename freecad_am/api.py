@@ -61,7 +61,7 @@ from .objects.progress import told_to
 from .objects.revival import revive
 from .objects.settings import given
 from .objects.toolpath import Toolpath, own_process
-from .posts import written
+from .posts import catalogue, written
 
 __all__ = (
     "change", "export", "export_wires", "inspect", "issues", "make_all", "make_cam_path", "make_cell",
@@ -257,8 +257,8 @@ def make_all(
     kind: revolution, surface (a wall of the source's faces on the substrate), developable (source and further solids on
     the substrate, on its base_faces), solid (source and further solids, in plane layers unless `layers` says others) or
     curves (edges of the source, named in faces). The program is for the machine's controller, in the words of `post` where
-    it reads them; there is none when no post is known for it, or the joint path is infeasible. process: parameters of the
-    toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it.
+    it reads them; there is none when no post is known that writes joint motion of this set-up for it, or the joint path is
+    infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it.
     `am.make_all(doc, doc.Pot)`
 
     then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `layers`,
@@ -278,7 +278,8 @@ def make_all(
         made += [*features, toolpath, path]
         posts = written_by(machines.load(chosen.machine, user_machines.folders()))
         wanted = post or ProgramParameters().post
-        post = wanted if posts is None or wanted in posts else next(iter(posts), "")
+        post = wanted if posts is None or wanted in posts else next(
+            iter(catalogue.fitting(posts, ProgramParameters().motion, chosen.setup)), "")
         if path.Status == "up to date" and post:
             made.append(make_program(doc, path, name=name or proposed_name(source.Label), post=post))
         grouped(doc, f"Job {source.Label}", made)

@@ -340,8 +340,8 @@ def _tell_next(stages: list[Any]) -> None:
         text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
     else:
         text = tr(
-            "The joint path is ready; there is no post for this machine's controller yet. Simulate… plays it, Export Path… "
-            "writes its points as a table."
+            "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
+            "Path… writes its points as a table."
         )
     Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
     App.Console.PrintMessage(text + "\n")

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..core.issues import InputError
 from ..core.kinematics import machine
+from ..core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
 from ..core.parameters.program import ProgramParameters
 from ..core.planning.program import written_by
 from ..core.process import bead_table
@@ -42,13 +43,17 @@ def _branches() -> list[str]:
 
 
 def no_post(name: str) -> str:
-    """What to say of a machine whose controller no post writes for; '' for others, and for one that cannot be read."""
+    """What to say of a machine for which no post writes a job as it begins; '' for others, and for one that cannot be read."""
     try:
         told = machine.load(name, user_machines.folders())
     except InputError:
         return ""
-    if written_by(told) is None or written_by(told):
+    posts, setup = written_by(told), ROTARY_TABLE if told.is_table else PART_ON_ROBOT
+    if posts is None or catalogue.fitting(posts, ProgramParameters().motion, setup):
         return ""
+    if posts:
+        return tr("Programs for this machine's controller need the tool on the robot and cartesian motion. A new job is "
+                  "planned, checked and simulated, but no program is written with it.")
     if told.posts:
         return tr("Programs for this machine need what only its controller tells, its pulses per degree, in a machine file "
                   "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
@@ -68,4 +73,5 @@ def post_for(path: Any) -> str:
     wanted = preferences.post() or ProgramParameters().post
     if posts is None or wanted in posts:
         return ""
-    return posts[0] if posts else NO_POST
+    fit = catalogue.fitting(posts, ProgramParameters().motion, path.Cell.Setup)
+    return next(iter(fit), NO_POST)

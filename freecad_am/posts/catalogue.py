@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 from collections.abc import Iterable
 from typing import Any, Protocol
@@ -10,7 +11,7 @@ from typing import Any, Protocol
 from ..core.issues import InputError
 from ..core.program import Program, ReadMoves
 
-NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb")  # of the modules beside this one
+NAMES = ("fanuc", "staubli", "siemens", "linuxcnc", "ur", "yaskawa", "abb", "kuka")  # of the modules beside this one
 # whose linear moves with the part on the robot run straight as the part sees them: their beads need no points in between
 STRAIGHT_IN_PART = ("abb",)
 
@@ -43,6 +44,16 @@ def load(name: str) -> Post:
     post: Any = importlib.import_module(f".{name}", __package__)
     found: Post = post
     return found
+
+
+def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
+    """Those of the posts, by name, that can say this motion of this set-up."""
+    found = []
+    for name in posts:
+        with contextlib.suppress(InputError):
+            load(name).refuse_setup(motion, setup)
+            found.append(name)
+    return tuple(found)
 
 
 def main_file(files: Iterable[str]) -> str:

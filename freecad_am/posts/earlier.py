@@ -13,10 +13,10 @@ import re
 # of every main program: remarks that it begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
 # endings of main programs, and those of their parts
-PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".jbi": ".jbi", ".mod": ".mod"}
+PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".jbi": ".jbi", ".mod": ".mod", ".src": ".src"}
 APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
 # how a program of a kind says its own name: a copy under another name is somebody's
-_TITLES = {".ls": r"/PROG\s+{}\s", ".mod": r"MODULE\s+{}\s"}
+_TITLES = {".ls": r"/PROG\s+{}\s", ".mod": r"MODULE\s+{}\s", ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)"}
 _HEAD = 4096  # characters of a program that hold the remarks it begins with
 _LARGEST = 1 << 20  # characters of a main program that are looked through for its parts
 

@@ -544,8 +544,68 @@ ABB: dict[str, tuple[str, Change]] = {
     "another routine": (r"PROC (main|job\d+_p)", other("job_p")),
 }
 
+# KUKA
+_K_MOVE = r"^(?:PTP|LIN) [^\n]*\n"
+_K_OUT, _K_SEC, _K_IN, _K_CLEAN = (
+    rf"^{line}\r\n" for line in (r"\$OUT\[\d+\]=\w+", r"WAIT SEC \d+\.\d+", r"WAIT FOR [^\r]*", r"clean\(\)"))
+_K_AXIS = rf"(?<=A\d )({NUMBER})"
+_K_PLACE, _K_ANGLE = (rf"(?<=[{letters}] )({NUMBER})(?=[^\n]*\}})" for letters in ("XYZ", "ABC"))
+KUKA: dict[str, tuple[str, Change]] = {
+    "a point moved": (_K_AXIS, moved(0.05)),
+    "a position moved": (_K_PLACE, moved(0.05)),
+    "an angle of a position moved": (_K_ANGLE, moved(0.05)),
+    "a digit changed": (_K_AXIS, digit),
+    "a sign changed": (_K_AXIS, negated),
+    "a turn more": (_K_AXIS, moved(360.0)),
+    "two moves swapped": (rf"({_K_MOVE})({_K_MOVE})", SWAP),
+    "a blend added": (r"^(LIN [^\r}]*\})(?=\r)", r"\1 C_DIS"),
+    "a blend of joints added": (r"^(PTP [^\r]*)(?=\r)", r"\1 C_PTP"),
+    "a stop added": (r" C_DIS", ""),
+    "a blend changed": (r"CDIS=([.\d]+)", scaled(1.5)),
+    "a blend dropped": (r"^\$APO[^\n]*\n(?=\$VEL)", DROP),
+    "another blend": (r"C_DIS", "C_VEL"),
+    "a move's kind changed": (r"^(PTP|LIN)", other("PTP", "LIN", "SLIN", "PTP_REL")),
+    "an axis left out": (r",A6 [-.\d]+", DROP),
+    "an external axis": (r"(?<=\d)\}", ",E1 5.0}"),
+    "an output dropped": (_K_OUT, DROP),
+    "an output switched the other way": (r"^\$OUT\[1\]=(TRUE|FALSE)", other("TRUE", "FALSE")),
+    "another output": (r"^\$OUT\[(1)", one_more),
+    "an output doubled": (_K_OUT, TWICE),
+    "a move and an output swapped": (rf"({_K_OUT})((?:WAIT[^\n]*\n|\$[AV][^\n]*\n|BAS[^\n]*\n)*{_K_MOVE[1:]})", SWAP),
+    "an output and a wait swapped": (rf"({_K_OUT})({_K_SEC})", SWAP),
+    "a standstill dropped": (r"^WAIT SEC 0\r\n(?=\$OUT)", DROP),
+    "a move dropped": (_K_MOVE, DROP),
+    "a move doubled": (_K_MOVE, TWICE),
+    "an approach dropped": (rf"{_K_MOVE}(?=WAIT SEC 0\r\n\$OUT\[1\]=TRUE)", DROP),
+    "a retract dropped": (rf"(^\$OUT\[1\]=FALSE\r\n(?:BAS[^\n]*\n)?){_K_MOVE[1:]}", r"\1"),
+    "a speed changed": (r"\$VEL\.CP=([.\d]+)", scaled(1.02)),
+    "a speed dropped": (r"^\$VEL\.CP[^\n]*\n", DROP),
+    "the first move faster": (r"(?<=VEL_PTP,)(10)\b", other("100", "50")),
+    "a wait dropped": (_K_SEC, DROP),
+    "a wait changed": (r"WAIT SEC (\d+\.\d+)", moved(0.2)),
+    "an input dropped": (_K_IN, DROP),
+    "another input": (r"\$IN\[(\d+)", one_more),
+    "an input the other way": (r"(?<=\$IN\[3\]==)TRUE", "FALSE"),
+    "a call dropped": (_K_CLEAN, DROP),
+    "another call": (r"^clean\(", "clean2("),
+    "a call doubled": (_K_CLEAN, TWICE),
+    "a wait and a call swapped": (rf"({_K_IN})(WAIT SEC 0\r\n{_K_CLEAN[1:]})", SWAP),
+    "another base": (r"#BASE,(\d+)", one_more),
+    "another tool": (r"#TOOL,(\d+)", one_more),
+    "no base": (r"^BAS\(#BASE[^\n]*\n", DROP),
+    "a tool that is fixed": (r"(?<=IPO_MODE=)#BASE", "#TCP"),
+    "another orientation": (r"(?<=ORI_TYPE=)#VAR", "#CONSTANT"),
+    "nothing initial": (r"^BAS\(#INITMOV,0\)\r\n", DROP),
+    "another layer": (r"^; layer (\d+)", one_more),
+    "a part dropped": (r"^job\d+\(\)\r\n", DROP),
+    "a part doubled": (r"^job\d+\(\)\r\n", TWICE),
+    "parts in another order": (r"^(job\d+\(\)\r\n)(job\d+\(\)\r\n)", SWAP),
+    "another name": (r"^DEF job(\d*)", r"DEF job1\1"),
+}
+
 KINDS = {
     "fanuc": FANUC, "staubli": STAUBLI, "siemens": SIEMENS, "linuxcnc": LINUXCNC, "ur": UR, "abb": ABB, "yaskawa": YASKAWA,
+    "kuka": KUKA,
 }
 
 # the least change of a number, in steps of its last digit, that is always refused (docs/decisions/0005-read-back.md). What
@@ -565,6 +625,10 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
         "frame": (r" (?:x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\"(?=[^\n]*world)", 6),
         "speed": (r"tmax=\"((?!99999)[.\d]+)\"", 1), "share": (r"vel=\"(\d+\.\d+)\"", 50),
         "blend": (r"leave=\"((?!0\.000)[.\d]+)\"", 1), "wait": (r"delay\(([.\d]+)\)", 1),
+    },
+    "kuka": {
+        "joint": (_K_AXIS, 1), "position": (_K_PLACE, 2), "angle": (_K_ANGLE, 4), "speed": (r"CP=([.\d]+)", 1),
+        "blend": (r"CDIS=([.\d]+)", 2), "wait": (r"WAIT SEC (\d+\.\d+)", 1),
     },
     "abb": {
         "joint": (_AXIS_ABB, 1), "position": (_PLACE_ABB, 4), "orientation": (_TURN_ABB, 16), "time": (r"\\T:=([.\d]+)", 1),

@@ -80,6 +80,10 @@ SETUPS = {
         deposition_point=(1000.0, 0.0, -300.0, 0.0, 0.0, 0.0),
         nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
     ), FLAT, 50.0),
+    "kuka tool-on-robot": Setup(CellParameters(
+        machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform_diameter=100.0,
+        deposition_point=(1050.0, 0.0, 200.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0),
     "table": Setup(CellParameters(
         machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
     ), STEEP, 90.0),
@@ -100,6 +104,7 @@ WAYS = (
       for setup in ("part-on-robot", "tool-on-robot")),
     ("yaskawa", "joint", "time", "yaskawa part-on-robot"), ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
     ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"),
+    ("kuka", "cartesian", "time", "kuka tool-on-robot"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),

@@ -10,6 +10,8 @@ import FreeCAD
 import Part
 import yaml
 
+from freecad_am.posts import catalogue
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "resources" / "examples"
 # mm; about eight layers each, and a few of each of FAMILIES: most of a round are jobs of these
@@ -80,8 +82,9 @@ def bases(folder):
                     job[key]["file"] = str(Path(folder) / job[key]["file"])
             job["strategy"]["chord_error"] = "0.5 mm"
             job["cell"] = _cell(machine)
-            posts = machine["controller"].get("posts") or ["none"]
-            job["program"] = {"post": posts[0]}
+            posts = machine["controller"].get("posts", ())
+            fit = catalogue.fitting(posts, "joint", job["cell"].get("setup", "part-on-robot"))
+            job["program"] = {"post": next(iter(fit), "none")}
             found.append((f"{family} on {machine['id']}", job))
     return found
 

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is written for a KUKA controller: modules to the byte, splitting, speeds, what is refused; and what is read of
+modules by hand."""
+
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from freecad_am.core.issues import InputError
+from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Program, Wait, WaitBelow, WaitInput
+from freecad_am.posts import catalogue, kuka
+
+NOMINAL = tuple(math.radians(value) for value in (156.0, 156.0, 156.0, 330.0, 330.0, 615.0))
+NUMBER = r"-?\d+\.\d{%d}"
+INSTRUCTIONS = [
+    "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + "}",
+    "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + "}(?: C_DIS)?",
+    r"BAS\(#(?:INITMOV,0|BASE,\d+|TOOL,\d+|VEL_PTP,(?:[1-9]\d?|100))\)", r"\$IPO_MODE=#BASE", r"\$ORI_TYPE=#VAR",
+    r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
+    r"WAIT FOR \$IN\[\d+\]==TRUE", r"[A-Za-z]\w{0,19}\(\)", r"; [ -~]{1,80}",
+]  # fmt: skip
+
+
+def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
+    degrees = np.atleast_2d(np.asarray(degrees, float))
+    duration = np.broadcast_to(np.asarray(duration, float), len(degrees)).copy()
+    return Moves(kind, layer, bead, np.radians(degrees), duration, np.full(len(degrees), speed), **extra)
+
+
+def laid(points, layer=0, bead=0, speed=6.0, duration=0.25):
+    """A bead of so many points in linear moves, the tool turning all ways."""
+    k = np.arange(points)[:, None]
+    turns = Rotation.from_euler("ZYX", np.hstack([10.0 * k, 3.0 * k - 20.0, 179.0 + k]), degrees=True).as_matrix()
+    return moves("deposit", 0.1 * k + np.full(6, 0.1), duration, layer, bead, speed, interpolation="linear", rotation=turns,
+                 position=np.hstack([1.5 * k, 0.25 + 0.0 * k, 5.0 - 0.1 * k]))
+
+
+def program(*blocks, name="part", **options):
+    defaults = {
+        "endless": (False,) * 6, "max_speed": NOMINAL, "station": (900.0, 0.0, 310.5, 0.0, 0.0, math.pi / 2),
+        "carried": (0.0, 0.0, 150.0, 0.0, math.pi / 4, 0.0), "motion": "cartesian", "setup": "tool-on-robot",
+    }  # fmt: skip
+    return Program(name, "a machine", blocks, **{**defaults, **options})
+
+
+def beads(count, points, layers=1, **options):
+    """Beads of so many points each, each with two rapid moves before it."""
+    blocks = []
+    for layer in range(layers):
+        blocks.append(LayerStart(layer))
+        for bead in range(count):
+            blocks += [moves("rapid", [[1.0] * 6, [0.0] * 6], layer=layer, bead=bead), DepositOn()]
+            blocks += [laid(points, layer, bead), DepositOff()]
+    return program(*blocks, **options)
+
+
+def lines(files, name):
+    return files[name].decode("ascii").split("\r\n")[3:-2]
+
+
+def refusal(of, *, code, where=None):
+    with pytest.raises(InputError) as raised:
+        kuka.write(of)
+    assert raised.value.code == code and where in (None, raised.value.where)
+    return raised.value.message
+
+
+def assert_modules(files):
+    """Plain instructions only, a name as that of its file, no approximation before a stop, all that moves count on set."""
+    for file, content in files.items():
+        text = content.decode("ascii")
+        assert text.count("\n") == text.count("\r\n") and text.endswith("\r\nEND\r\n")
+        assert text.startswith(f"&ACCESS RVP\r\n&REL 1\r\nDEF {file.removesuffix('.src')}()\r\n")
+        told = lines(files, file)
+        assert not [line for line in told if not any(re.fullmatch(pattern, line) for pattern in INSTRUCTIONS)]
+        moving = [n for n, line in enumerate(told) if line.startswith(("PTP", "LIN"))]
+        for n in moving:
+            before = "\n".join(told[:n])
+            assert all(word in before for word in ("INITMOV", "#BASE,", "#TOOL,", "IPO_MODE", "ORI_TYPE"))
+            assert ("VEL_PTP" if told[n].startswith("PTP") else "$VEL.CP") in before
+            after = next(line for line in told[n + 1 :] if not line.startswith((";", "$VEL", "$APO", "BAS")))
+            assert not told[n].endswith("C_DIS") or (after.startswith("LIN") and "$APO.CDIS" in before)
+            assert after.startswith(("PTP", "LIN", "WAIT"))  # outputs and calls come where the robot stands
+
+
+JOB = program(
+    LayerStart(0),
+    moves("rapid", [[0.0, -90.0, 90.0, 0.0, 60.0, 170.0], [1.25, -89.5, 90.25, 0.1, 60.5, 175.0]], [10.0, 0.8]),
+    DepositOn(0.5), laid(3), DepositOff(0.25), Wait(12.5), WaitInput(3), Call("clean"), LayerStart(1),
+    moves("rapid", [[0.0, -90.0, 90.0, 0.0, 60.0, 177.4]], 1.0, layer=1), DepositOn(), laid(2, 1, speed=7.5), DepositOff(),
+    name="Job", remarks=('A remark ]]> with "marks": Größe',), deposit_output=3, user_frame=2,
+)  # fmt: skip
+GOLDENS = {"whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup")}
+
+
+@pytest.mark.parametrize("name", GOLDENS)
+def test_golden_modules_to_the_byte(root, name):
+    files = kuka.write(GOLDENS[name])
+    folder = root / "tests/golden/kuka" / name
+    assert files == {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert_modules(files)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_programs_come_back_to_their_digits(random_application, seed):
+    of = random_application(seed, "cartesian", "tool-on-robot", max_points=60)
+    of = dataclasses.replace(of, tool_frame=4, blocks=tuple(
+        # rapids that whole percents can say
+        dataclasses.replace(b, joints=np.cumsum(np.full(b.joints.shape, 0.1), axis=0) + 0.01 * n, duration=np.full(len(b), 0.3))
+        if isinstance(b, Moves) and b.kind == "rapid" else b for n, b in enumerate(of.blocks)))
+    of = dataclasses.replace(of, max_speed=(40.0,) * 6)
+    files = kuka.write(of)
+    assert_modules(files)
+    read, run = kuka.read(files), list(of.moves)
+    straight = np.concatenate([np.full(len(each), each.interpolation == "linear") for each in run])
+    np.testing.assert_array_equal(read.linear, straight)
+    joints = np.concatenate([each.joints for each in run])
+    np.testing.assert_allclose(read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12)
+    place, turn = (np.concatenate([getattr(each, name) for each in run])[straight] for name in ("position", "rotation"))
+    np.testing.assert_allclose(read.position[straight], place, rtol=0.0, atol=5.01e-4)
+    np.testing.assert_allclose(read.rotation[straight], turn, rtol=0.0, atol=4e-6)
+    np.testing.assert_allclose(read.speed[straight], np.concatenate([each.speed for each in run])[straight], atol=5.1e-4)
+    np.testing.assert_array_equal(read.deposit, straight)
+    assert set(read.user_frame) == {of.user_frame} and set(read.tool_frame) == {4} and read.share[0] == 0.1
+
+
+def test_parts_are_the_program_hold_whole_beads_and_their_sum_is_told():
+    whole, files = kuka.read(kuka.write(beads(3, 20, layers=2))), kuka.write(beads(3, 20, layers=2, max_points=50))
+    assert_modules(files)
+    # each file ends with a standstill of no time
+    whole, cut = (dataclasses.replace(read, events=tuple(e for e in read.events if (e.kind, e.value) != ("wait", (0.0,))))
+                  for read in (whole, kuka.read(files)))
+    for field in dataclasses.fields(whole):
+        np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
+    total = sum(len(content) for name, content in files.items() if name != "part.src")
+    assert lines(files, "part.src")[-4:] == [f"; 3 parts of {total} bytes in all", "part01()", "part02()", "part03()"]
+    assert all(lines(files, f"part0{n}.src").count("$OUT[1]=TRUE") == 2 for n in (1, 2, 3))
+    longer = kuka.write(beads(2, 25, max_points=20))
+    assert_modules(longer)
+    assert len(longer) == 3 and lines(longer, "part01.src").count("$OUT[1]=FALSE") == 1
+
+
+def test_a_dry_run_moves_the_same_and_switches_nothing():
+    files, dry = kuka.write(JOB), kuka.write(dataclasses.replace(JOB, dry_run=True))
+    assert b"$OUT" not in dry["Job.src"] and b"; dry run: no deposit" in dry["Job.src"]
+    moving = [[line for line in lines(f, "Job.src") if line.startswith(("PTP", "LIN", "$VEL"))] for f in (files, dry)]
+    assert moving[0] == moving[1] and len(moving[0]) > 8
+
+
+def test_speeds_and_corners():
+    told = lines(kuka.write(JOB), "Job.src")
+    # axis 6 turns by 5 deg in 0.8 s, of 615 deg/s; then axis 2 by 90.3 in 1 s, of 156
+    assert [line for line in told if "VEL_PTP" in line] == [f"BAS(#VEL_PTP,{share})" for share in (10, 1, 58)]
+    assert [line for line in told if "VEL.CP" in line] == ["$VEL.CP=0.006000", "$VEL.CP=0.007500"]
+    assert [line for line in told if "CDIS" in line] == ["$APO.CDIS=0.750", "$APO.CDIS=0.937"]  # half of 0.25 s
+    assert not [line for line in lines(kuka.write(dataclasses.replace(JOB, blend=0)), "Job.src") if "DIS" in line]
+    fast, slow = (program(moves("rapid", np.zeros(6)), moves("rapid", [0, 0, step, 0, 0, 0], 1.0)) for step in (160.0, 0.7))
+    assert "103 %" in refusal(fast, code="JOINT_SPEED", where="layer 0 bead 0")
+    assert "0.449 %" in refusal(slow, code="JOINT_SPEED")
+    for speed in (0.004, 1e6, np.nan):
+        refusal(program(moves("rapid", np.zeros(6)), laid(3, 2, 1, speed)), code="MOVE_SPEED", where="layer 2 bead 1")
+
+
+def test_frames_are_told_as_the_pendant_takes_them():
+    told = lines(kuka.write(JOB), "Job.src")
+    assert "BAS(#BASE,2)" in told and "BAS(#TOOL,1)" in told
+    values = {line.split()[1]: [float(value) for value in line.split()[3::2]] for line in told if line[6:9] == " X "}
+    np.testing.assert_allclose(values["BASE"], [900.0, 0.0, 310.5, 90.0, 0.0, 0.0])
+    np.testing.assert_allclose(values["TOOL"], [0.0, 0.0, 150.0, 0.0, 45.0, 0.0])
+
+
+@pytest.mark.parametrize(("name", "why", "proposal"), [
+    ("", "empty", "am"), ("my part", "letters", "my_part"), ("2nd", "start with a letter", "am_2nd"),
+    ("x" * 21, "20 characters", "x" * 16), ("con", "reserved", "am_con"), ("endFor", "reserved", "am_endFor"),
+])  # fmt: skip
+def test_names_the_controller_refuses(name, why, proposal):
+    message = refusal(dataclasses.replace(JOB, name=name), code="PROGRAM_NAME", where="name")
+    assert why in message and message.endswith(f"use {proposal!r}")
+    kuka.write(dataclasses.replace(JOB, name=proposal))
+
+
+def test_what_cannot_be_said_is_refused():
+    where = "process.between_layers.call"
+    refusal(dataclasses.replace(JOB, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
+    assert "#TCP" in refusal(dataclasses.replace(JOB, setup="part-on-robot"), code="REMOTE_TCP", where="cell.setup")
+    assert "whole percents" in refusal(dataclasses.replace(JOB, motion="joint"), code="JOINT_DEPOSIT", where="program.motion")
+    refusal(dataclasses.replace(JOB, endless=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits")
+    refusal(dataclasses.replace(JOB, tool_frame=17), code="UNSUPPORTED_FRAME", where="program.tool_frame")
+    refusal(dataclasses.replace(JOB, user_frame=33), code="UNSUPPORTED_FRAME", where="program.user_frame")
+    for speeds in ((), (1.0,) * 5 + (math.inf,)):
+        refusal(dataclasses.replace(JOB, max_speed=speeds), code="NO_JOINT_SPEED", where="cell.machine")
+    refusal(program(moves("rapid", np.ones(6)), WaitBelow(1, 0.5, 0, 0)), code="NO_ANALOGUE_INPUT")
+    refusal(program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), wire=np.ones(2))), code="NO_WIRE_OUTPUT")
+    refusal(program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), position=None)), code="NO_POSITIONS")
+    refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
+    for called in ("Part", "two words", "loop"):
+        refusal(program(moves("rapid", np.ones(6)), Call(called)), code="PROGRAM_NAME", where=where)
+    refusal(program(*beads(3, 20).blocks, Call("PART02"), max_points=25), code="PROGRAM_NAME", where=where)
+    assert catalogue.load("kuka") is kuka
+
+
+HAND = """&ACCESS RVP
+&REL 1
+DEF hand()
+; by hand
+BAS(#INITMOV,0)
+BAS(#BASE,3)
+BAS(#TOOL,5)
+$IPO_MODE=#BASE
+$ORI_TYPE=#VAR
+BAS(#VEL_PTP,25)
+PTP {A1 0.5,A2 -90.0,A3 90.0,A4 0.0,A5 -10.0,A6 200.25}
+WAIT SEC 0.5
+$OUT[7]=TRUE
+$VEL.CP=0.0305
+$APO.CDIS=0.5
+LIN {X 10.0,Y 0.25,Z 5.0,A 30.0,B 20.0,C 10.0} C_DIS
+LIN {X 20.5,Y 0.25,Z 5.0,A -170.0,B 0.0,C 179.5}
+WAIT FOR $IN[4]==TRUE
+$OUT[7]=FALSE
+gripper_open()
+END
+"""
+
+
+def by_hand(old="", new=""):
+    assert not old or old in HAND
+    return {"hand.src": HAND.replace(old, new).encode()}
+
+
+def test_a_module_by_hand():
+    read = kuka.read(by_hand())
+    np.testing.assert_allclose(np.degrees(read.joints[0]), [0.5, -90.0, 90.0, 0.0, -10.0, 200.25])
+    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [[10.0, 0.25, 5.0], [20.5, 0.25, 5.0]]
+    turned = Rotation.from_euler("ZYX", [[30.0, 20.0, 10.0], [-170.0, 0.0, 179.5]], degrees=True).as_matrix()
+    np.testing.assert_allclose(read.rotation[1:], turned, atol=1e-15)
+    assert read.deposit.tolist() == read.linear.tolist() == [False, True, True]
+    assert read.stops.tolist() == [True, False, True] and read.rounding[1] == 0.5
+    np.testing.assert_allclose(read.speed, [np.nan, 30.5, 30.5])
+    np.testing.assert_array_equal(read.share, [0.25, np.nan, np.nan])
+    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+        (1, "wait", 0.5), (1, "on", 7.0, "$OUT"), (3, "input", 4.0), (3, "off", 7.0, "$OUT"), (3, "call", "GRIPPER_OPEN")]
+    assert read.user_frame.tolist() == [3.0] * 3 and read.tool_frame.tolist() == [5.0] * 3
+
+
+@pytest.mark.parametrize(("old", "new", "why"), [
+    ("DEF hand()", "DEF other()", "file's name"), ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "counts on"),
+    ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "not understood"), ("BAS(#VEL_PTP,25)\n", "", "counts on"),
+    ("VEL_PTP,25", "VEL_PTP,125", "1 to 100"), ("$APO.CDIS=0.5\n", "", "counts on"), ("$VEL.CP=0.0305\n", "", "counts on"),
+    ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),
+    ("C 179.5}", "C 179.5} C_DIS", "approximated"), ("$OUT[7]=FALSE", "$OUT[8]=FALSE", "second output"),
+    ("gripper_open()", "hand()", "called by none"), ("gripper_open()", "GOTO x", "not understood"),
+    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "not understood"),
+])  # fmt: skip
+def test_what_is_not_understood_is_refused(old, new, why):
+    with pytest.raises(InputError) as raised:
+        kuka.read(by_hand(old, new))
+    assert raised.value.code == "UNREADABLE_PROGRAM" and why in raised.value.message
