@@ -43,7 +43,7 @@ def _branches() -> list[str]:
 
 
 def no_post(name: str) -> str:
-    """What to say of a machine for which no post writes a job as it begins; '' for others, and for one that cannot be read."""
+    """What to say of a machine that no post writes a new job for; '' for others, and for one that cannot be read."""
     try:
         told = machine.load(name, user_machines.folders())
     except InputError:

@@ -13,7 +13,9 @@ import re
 # of every main program: remarks that it begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
 # endings of main programs, and those of their parts
-PART_ENDINGS = {".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".jbi": ".jbi", ".mod": ".mod", ".src": ".src"}
+PART_ENDINGS = {
+    ".ls": ".ls", ".mpf": ".spf", ".ngc": ".ngc", ".script": ".script", ".jbi": ".jbi", ".mod": ".mod", ".src": ".src",
+}
 APPLICATION = ("{}.pjx", "{}.dtx", "start.pgx", "stop.pgx")  # files of a folder, an application or a part of one
 # how a program of a kind says its own name: a copy under another name is somebody's
 _TITLES = {".ls": r"/PROG\s+{}\s", ".mod": r"MODULE\s+{}\s", ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)"}

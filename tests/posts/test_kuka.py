@@ -110,7 +110,8 @@ def test_random_programs_come_back_to_their_digits(random_application, seed):
     of = random_application(seed, "cartesian", "tool-on-robot", max_points=60)
     of = dataclasses.replace(of, tool_frame=4, blocks=tuple(
         # rapids that whole percents can say
-        dataclasses.replace(b, joints=np.cumsum(np.full(b.joints.shape, 0.1), axis=0) + 0.01 * n, duration=np.full(len(b), 0.3))
+        dataclasses.replace(
+            b, joints=np.cumsum(np.full(b.joints.shape, 0.1), axis=0) + 0.01 * n, duration=np.full(len(b), 0.3))
         if isinstance(b, Moves) and b.kind == "rapid" else b for n, b in enumerate(of.blocks)))
     of = dataclasses.replace(of, max_speed=(40.0,) * 6)
     files = kuka.write(of)
@@ -187,7 +188,8 @@ def test_what_cannot_be_said_is_refused():
     where = "process.between_layers.call"
     refusal(dataclasses.replace(JOB, setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup")
     assert "#TCP" in refusal(dataclasses.replace(JOB, setup="part-on-robot"), code="REMOTE_TCP", where="cell.setup")
-    assert "whole percents" in refusal(dataclasses.replace(JOB, motion="joint"), code="JOINT_DEPOSIT", where="program.motion")
+    joint = dataclasses.replace(JOB, motion="joint")
+    assert "whole percents" in refusal(joint, code="JOINT_DEPOSIT", where="program.motion")
     refusal(dataclasses.replace(JOB, endless=(False,) * 5 + (True,)), code="ENDLESS_AXIS", where="cell.limits")
     refusal(dataclasses.replace(JOB, tool_frame=17), code="UNSUPPORTED_FRAME", where="program.tool_frame")
     refusal(dataclasses.replace(JOB, user_frame=33), code="UNSUPPORTED_FRAME", where="program.user_frame")

@@ -10,6 +10,8 @@ import FreeCAD
 import Part
 import yaml
 
+from freecad_am.core.kinematics import machine as machines
+from freecad_am.core.planning.program import written_by
 from freecad_am.posts import catalogue
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -82,7 +84,7 @@ def bases(folder):
                     job[key]["file"] = str(Path(folder) / job[key]["file"])
             job["strategy"]["chord_error"] = "0.5 mm"
             job["cell"] = _cell(machine)
-            posts = machine["controller"].get("posts", ())
+            posts = written_by(machines.load(machine["id"], ())) or ()
             fit = catalogue.fitting(posts, "joint", job["cell"].get("setup", "part-on-robot"))
             job["program"] = {"post": next(iter(fit), "none")}
             found.append((f"{family} on {machine['id']}", job))
