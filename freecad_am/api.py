@@ -258,8 +258,8 @@ def make_all(
     the substrate, on its base_faces), solid (source and further solids, in plane layers unless `layers` says others) or
     curves (edges of the source, named in faces). The program is for the machine's controller, in the words of `post` where
     it reads them; there is none when no post is known that writes joint motion of this set-up for it, or the joint path is
-    infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a branch that suit it.
-    `am.make_all(doc, doc.Pot)`
+    infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a
+    branch that suit it. `am.make_all(doc, doc.Pot)`
 
     then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `layers`,
     `faces`, `substrate`, `further` and `base_faces`; they come after the feature in what is returned.
