@@ -201,7 +201,12 @@ def test_same_program_same_bytes_and_parts_are_the_program(random_application):
         assert parts == abb.write(random_application(2, motion, setup, max_points=50)) and len(parts) > 3
         whole, cut = abb.read(abb.write(random_application(2, motion, setup, max_points=10**5))), abb.read(parts)
         for field in dataclasses.fields(whole):
-            np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
+            if field.name in ("rotation", "position"):  # products may differ in their last bit by where they stand in memory
+                np.testing.assert_equal(getattr(cut, field.name) is None, getattr(whole, field.name) is None)
+                if getattr(cut, field.name) is not None:
+                    np.testing.assert_allclose(getattr(cut, field.name), getattr(whole, field.name), rtol=0.0, atol=1e-11)
+            else:
+                np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
 
 
 def test_a_dry_run_moves_the_same_and_switches_nothing(random_application):

@@ -136,7 +136,10 @@ def test_parts_are_the_program_hold_whole_beads_and_their_sum_is_told():
     whole, cut = (dataclasses.replace(read, events=tuple(e for e in read.events if (e.kind, e.value) != ("wait", (0.0,))))
                   for read in (whole, kuka.read(files)))
     for field in dataclasses.fields(whole):
-        np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
+        if field.name == "rotation":  # sines may differ in their last bit by where they stand in memory
+            np.testing.assert_allclose(cut.rotation, whole.rotation, rtol=0.0, atol=1e-15)
+        else:
+            np.testing.assert_array_equal(getattr(cut, field.name), getattr(whole, field.name), field.name)
     total = sum(len(content) for name, content in files.items() if name != "part.src")
     assert lines(files, "part.src")[-4:] == [f"; 3 parts of {total} bytes in all", "part01()", "part02()", "part03()"]
     assert all(lines(files, f"part0{n}.src").count("$OUT[1]=TRUE") == 2 for n in (1, 2, 3))
