@@ -1382,6 +1382,11 @@
         <translation>Axe à l&apos;arrêt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load</source>
+        <translation>Les BASE_DATA et TOOL_DATA des numéros du programme sont ceux de la cellule, avec leur charge</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/form.py"/>
         <source>Back</source>
         <translation>Retour</translation>
@@ -2687,6 +2692,11 @@
         <translation>Vitesses articulaires en %</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>Joint speeds of the machine file are those the controller calls 100 %</source>
+        <translation>Les vitesses articulaires du fichier de machine sont celles que la commande appelle 100 %</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
         <source>Joint speeds while depositing</source>
         <translation>Vitesses articulaires pendant le dépôt</translation>
@@ -2700,6 +2710,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Joints</source>
         <translation>Articulations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>KRL tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
+        <translation>KRL donne la vitesse des mouvements articulaires en pourcentage des plus grandes vitesses des axes, et le fichier de machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -3787,6 +3802,11 @@
         <translation>Les programmes de cette machine demandent ce que seule sa commande indique, ses impulsions par degré, dans un fichier machine à vous. Tout est planifié, contrôlé et simulé sans elles ; Export Path… écrit les points dans un tableau.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/suggestions.py"/>
+        <source>Programs for this machine&apos;s controller need the tool on the robot and cartesian motion. A new job is planned, checked and simulated, but no program is written with it.</source>
+        <translation>Les programmes pour la commande de cette machine demandent l&apos;outil sur le robot et un mouvement cartésien. Un nouveau travail est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit avec lui.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/commands.py"/>
         <source>Program…</source>
         <translation>Programme…</translation>
@@ -4537,6 +4557,11 @@
         <translation>La sortie de dépôt commute le procédé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>The deposit output switches the process, and a stop of the program switches it off</source>
+        <translation>La sortie du dépôt commande le procédé, et un arrêt du programme la coupe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc.py"/>
         <source>The digital and analogue pins are connected to the process</source>
         <translation>Les broches numériques et analogiques sont reliées au procédé</translation>
@@ -4638,8 +4663,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
-        <source>The joint path is ready; there is no post for this machine&apos;s controller yet. Simulate… plays it, Export Path… writes its points as a table.</source>
-        <translation>La trajectoire articulaire est prête ; il n&apos;y a pas encore de post-processeur pour la commande de cette machine. Simuler… la joue, Exporter une trajectoire… écrit ses points en tableau.</translation>
+        <source>The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export Path… writes its points as a table.</source>
+        <translation>La trajectoire articulaire est prête ; aucun post-processeur n&apos;écrit encore de programme pour cette machine et cette configuration. Simuler… la joue, Exporter la trajectoire… écrit ses points dans un tableau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -4770,6 +4795,11 @@
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>The override is 100 %</source>
+        <translation>La vitesse générale est à 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/curves_panel.py"/>
@@ -5732,6 +5762,11 @@
         <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez I et J</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka_text.py"/>
+        <source>a rapid would need {0} % of the largest joint speed, and KRL is told whole percents of {1} to 100; use another rapid speed</source>
+        <translation>un rapide demanderait {0} % de la plus grande vitesse articulaire, et KRL prend des pourcentages entiers de {1} à 100 ; prenez une autre vitesse rapide</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/filling/strips.py"/>
         <source>a region round the hub is nowhere as wide as a bead ({0} mm); choose thin = single, a narrower bead or a margin</source>
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
@@ -5942,6 +5977,11 @@
         <translation>une accélération</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>an analogue output that KRL sets between approximated moves is set ahead of the motion</source>
+        <translation>une sortie analogique que KRL règle entre des mouvements lissés l&apos;est en avance sur le mouvement</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb.py"/>
         <source>an analogue output that RAPID sets between two moves is set ahead of the motion, and TriggSpeed was not tried</source>
         <translation>une sortie analogique que RAPID règle entre deux mouvements l&apos;est en avance sur le mouvement, et TriggSpeed n&apos;a pas été essayé</translation>
@@ -6130,6 +6170,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
         <source>axis 3 is shown {}</source>
         <translation>l&apos;axe 3 est montré {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>axis {0} has no limits, but axis values of KRL count every turn up to a limit; use limits that have one for axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs d&apos;axes de KRL comptent chaque tour jusqu&apos;à une limite ; prenez des limites qui en ont une pour l&apos;axe {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb.py"/>
@@ -7522,6 +7567,11 @@
         <translation>ce n&apos;est pas un module à une seule routine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>it is not a module with one routine of the file&apos;s name</source>
+        <translation>ce n&apos;est pas un module avec une seule routine du nom du fichier</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli_files.py"/>
         <source>it is not a project in millimetres</source>
         <translation>ce n&apos;est pas un projet en millimètres</translation>
@@ -7835,6 +7885,11 @@
         <location filename="../../freecad_am/core/planning/straight.py"/>
         <source>joint motion leaves the bead between two points however many are added: near a singularity</source>
         <translation>le mouvement articulaire quitte le cordon entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;une singularité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>joint moves of KRL run at whole percents of the axes&apos; speeds, so the speed along a bead would not be the one asked for; use `motion: cartesian`</source>
+        <translation>les mouvements articulaires de KRL vont à des pourcentages entiers des vitesses des axes, et la vitesse le long d&apos;un cordon ne serait pas celle demandée ; prenez `motion: cartesian`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -9097,6 +9152,11 @@
         <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>the controller has numbers up to {0}, not {1}; use one of these</source>
+        <translation>la commande a des numéros jusqu&apos;à {0}, pas {1} ; prenez l&apos;un de ceux-ci</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
         <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
         <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
@@ -9467,6 +9527,16 @@
         <translation>le maillage a des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>the module does not set all that the move counts on</source>
+        <translation>le module ne règle pas tout ce sur quoi compte le mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>the move before it is to be approximated, and it stops there</source>
+        <translation>le mouvement qui précède doit être lissé, et s&apos;arrête là</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the move is not told in the axes of the first one</source>
         <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
@@ -9557,6 +9627,11 @@
         <translation>le post-processeur fanuc ne peut pas écrire {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>the post kuka cannot write {0}</source>
+        <translation>le post-processeur kuka ne peut pas écrire {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli.py"/>
         <source>the post staubli cannot write {0} ({1} motion)</source>
         <translation>le post-processeur staubli ne peut pas écrire {0} (mouvement {1})</translation>
@@ -9600,6 +9675,11 @@
         <location filename="../../freecad_am/objects/program.py"/>
         <source>the program has no name; give one</source>
         <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>the program has no positions; plan it anew</source>
+        <translation>le programme n&apos;a pas de positions ; planifiez-le de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb.py"/>
@@ -10407,6 +10487,11 @@
         <translation>ce que lit la commande de la machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>whether WAIT FOR looks at $ANIN until it changes was not found documented</source>
+        <translation>que WAIT FOR regarde $ANIN jusqu&apos;à ce qu&apos;il change n&apos;a été trouvé documenté nulle part</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>whole</source>
         <translation>entière</translation>
@@ -10440,6 +10525,11 @@
         <location filename="../../freecad_am/brep/sheet.py"/>
         <source>with edges of {0} mm, by layer height and smallest radius, the mesh of the wall has more than {1} triangles, about {2}; use a larger layer height, round sharp bends more, or deposit the wall in parts</source>
         <translation>avec des arêtes de {0} mm, d&apos;après la hauteur de couche et le plus petit rayon, le maillage de la paroi a plus de {1} triangles, environ {2} ; prenez une plus grande hauteur de couche, arrondissez davantage les coudes serrés, ou déposez la paroi par parties</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>with the part on the robot linear moves of KRL have a fixed tool ($IPO_MODE #TCP), and whether points are then the nozzle seen from the part or the part seen from the nozzle was not confirmed; use `setup: tool-on-robot`</source>
+        <translation>avec la pièce sur le robot, les mouvements linéaires de KRL ont un outil fixe ($IPO_MODE #TCP), et que les points soient alors la buse vue de la pièce ou la pièce vue de la buse n&apos;a pas été confirmé ; prenez `setup: tool-on-robot`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>
@@ -10495,6 +10585,11 @@
         <location filename="../../freecad_am/core/layers/curved.py"/>
         <source>{0} % of it hang together with nothing that stands on the platform or the substrate; deposit these by themselves, or set strategy.direction</source>
         <translation>{0} % de la pièce ne tiennent à rien de ce qui repose sur le plateau ou le substrat ; déposez-les à part, ou donnez strategy.direction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>{0} % of the joint speeds is none of 1 to 100</source>
+        <translation>{0} % des vitesses articulaires n&apos;est pas de 1 à 100</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -11315,6 +11410,16 @@
         <location filename="../../freecad_am/posts/abb_read.py"/>
         <source>{0} is reached before the move before it ends</source>
         <translation>{0} est atteint avant la fin du mouvement qui précède</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>{0} is read ahead of the motion: no wait stands before it</source>
+        <translation>{0} est lu en avance sur le mouvement : aucune attente ne le précède</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>{0} is run already, or called while depositing</source>
+        <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/stacking.py"/>
