@@ -15,6 +15,7 @@ from .selection import selected
 from .texts import marked, tr, translated
 
 SHOWN = 3  # rows
+PADDING = 14  # px about the word of a button
 NAMES = {BY_FEATURE: marked("one after the other"), BY_HEIGHT: marked("lowest layer first")}
 
 
@@ -46,6 +47,8 @@ class FeatureOrder(Input):
             button.setObjectName(name)
             button.setToolTip(tip)
             button.setAutoDefault(False)
+            # as narrow as its word: four as wide as a style likes them make the panel wider than it is
+            button.setMinimumWidth(button.fontMetrics().horizontalAdvance(text) + PADDING)
             button.clicked.connect(lambda *_, act=act: act())
             row.addWidget(button)
         column.addLayout(row)
