@@ -12,7 +12,6 @@ from collections.abc import Iterator, Sequence
 
 from ..core.issues import InputError
 from ..core.program import (
-    DEPOSIT,
     LINEAR_MOVE,
     Block,
     Call,
@@ -29,8 +28,16 @@ from . import abb_text as text
 from .abb_read import read
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed, size, withdrawn
-from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .parts import Piece, Run, grouped, packed, size, unbroken, withdrawn
+from .refusals import (
+    CALL,
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_wire,
+    refuse_without_positions,
+)
 
 __all__ = ["read", "write"]
 
@@ -61,7 +68,6 @@ NAMING = Naming(
     str, "[A-Za-z]", "a letter", longest=14, spare=4, prefix="am_", reserved=_RESERVED, what="a module's name"
 )
 _NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
-_CALL = "process.between_layers.call"
 
 
 def write(program: Program) -> dict[str, bytes]:
@@ -79,13 +85,13 @@ def write(program: Program) -> dict[str, bytes]:
     words = numbers.Words(program, text.SPEED, text.ZONE)
     groups = list(grouped(program, words, lambda block: _instructions(program, block)))
     if size([piece for group in groups for piece in group])[0] <= program.max_points:
-        (pieces,) = packed(groups, program.max_points, _NO_END, _refuse_bead)
-        _refuse_calls_of_own(program, {name})
+        (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
+        refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.mod": _module(program, words, name, text.MAIN, remarks, pieces)}
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, _refuse_bead))
+    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
-    _refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)})
+    refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)}, program_name)
     files = {}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = text.remark(f"part {number} of {len(parts)}")
@@ -112,41 +118,13 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "abb", AXES)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
-    if any(program.endless):
-        axis = program.endless.index(True) + 1
-        raise InputError(
-            "ENDLESS_AXIS", "cell.limits",
-            f"axis {axis} has no limits, but joint values of RAPID count every turn up to a limit; use limits that have one"
-            f" for axis {axis}",
-        )
-    straight = [run for run in program.moves if run.interpolation == LINEAR_MOVE]
-    if program.motion == "cartesian" and (
-        program.station is None or any(run.position is None or run.rotation is None for run in straight)
-    ):
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+    refuse_endless(program)
+    refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):
-            program_name(block.program, _CALL)
+            program_name(block.program, CALL)
 
 
-def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
-    own = {name.upper() for name in names}
-    for block in program.blocks:
-        if isinstance(block, Call) and block.program.upper() in own:
-            raise InputError(
-                "PROGRAM_NAME", _CALL,
-                f"{block.program!r} is a program of this very job; call another one, or rename the job",
-            )
-
-
-def _refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    moves = next(piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT)
-    points = size(group)[0]
-    raise InputError(
-        "BEAD_TOO_LONG", "program.max_points",
-        f"{numbers.place(moves)} has {points} points with its approach, and loading another part within a bead would stop"
-        f" the robot while it deposits; use at least {points + 1}",
-    )
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

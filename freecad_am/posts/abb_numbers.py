@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import DEPOSIT, LINEAR_MOVE, Moves, Program, Six
+from .parts import place
+from .refusals import speeds_within
 
 Array = NDArray[np.float64]
 
@@ -88,7 +90,7 @@ class Words:
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`v\\T:=time,zone`, or `v\\V:=speed,zone`, of each move. Raises InputError MOVE_SPEED or MOVE_TIME."""
         straight = moves.interpolation == LINEAR_MOVE
-        letter, values = ("V", [f"{v:.3f}" for v in _speeds(moves).tolist()]) if straight else (
+        letter, values = ("V", [f"{v:.3f}" for v in speeds_within(moves, *SPEEDS).tolist()]) if straight else (
             "T", [f"{t:.5f}" for t in _times(moves).tolist()])
         rounded = self._rounded(moves)
         corners = [STOP if stops else rounded for stops in moves.stops.tolist()]
@@ -103,15 +105,6 @@ class Words:
         return self.zones.setdefault(size, f"{self._zone}{len(self.zones) + 1}")
 
 
-def _speeds(moves: Moves) -> Array:
-    fits = (moves.speed >= SPEEDS[0]) & (moves.speed <= SPEEDS[1])
-    if not fits.all():
-        raise InputError(
-            "MOVE_SPEED", place(moves),
-            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use a speed between {SPEEDS[0]} and {SPEEDS[1]:.0f} mm/s",
-        )
-    return moves.speed
-
 
 def _times(moves: Moves) -> Array:
     seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
@@ -122,8 +115,3 @@ def _times(moves: Moves) -> Array:
             " or a lower speed",
         )
     return np.maximum(seconds, SHORTEST if moves.kind == DEPOSIT else SHORTEST_RAPID)
-
-
-def place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"

@@ -35,7 +35,7 @@ from .fanuc_read import read
 from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, continued, grouped, packed
-from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .refusals import CALL, refuse_calls_of_own, refuse_cooling, refuse_incomplete, refuse_wire
 
 __all__ = ["read", "write"]
 
@@ -81,14 +81,14 @@ def write(program: Program) -> dict[str, bytes]:
     groups = list(grouped(program, _words(program), lambda block: _instructions(program, block)))
     parts = packed(groups, program.max_points, MOST_LINES - len(head) - len(remarks), continued(text.remark))
     if len(parts) == 1:
-        _refuse_calls_of_own(program, {name})
+        refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
     names = NAMING.parts(name, len(parts))
     files = {f"{name}.LS": text.listing(name, "Robotic AM", head + remarks + [text.call(part) for part in names], "")}
     for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
         comment = f"part {number} of {len(parts)}"
         files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
-    _refuse_calls_of_own(program, {*names, name})
+    refuse_calls_of_own(program, {*names, name}, program_name)
     return files
 
 
@@ -116,7 +116,7 @@ def _refuse(program: Program) -> None:
     refuse_cooling(program, LAST_ANALOGUE)
     for block in program.blocks:
         if isinstance(block, Call):
-            program_name(block.program, "process.between_layers.call")
+            program_name(block.program, CALL)
         if isinstance(block, WaitBelow) and block.below != round(block.below):
             raise InputError(
                 "ANALOGUE_INPUT", "process.cooling",
@@ -141,14 +141,6 @@ def _refuse_endless_steps(program: Program) -> None:
             " per move: add points, or limit the axis",
         )
 
-
-def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
-    for block in program.blocks:
-        if isinstance(block, Call) and block.program.upper() in names:
-            raise InputError(
-                "PROGRAM_NAME", "process.between_layers.call",
-                f"{block.program!r} is a program of this very job; call another one, or rename the job",
-            )
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import RAPID, Moves
+from .parts import place
+from .refusals import speeds_within
 
 Array = NDArray[np.float64]
 
@@ -24,14 +26,7 @@ _TURN_TOLERANCE = 0.00055
 
 def speed_words(moves: Moves) -> list[str]:
     """The path speed of each move, to 0.1 mm/s. Raises InputError MOVE_SPEED."""
-    speeds = moves.speed
-    fits = (speeds >= SPEEDS[0]) & (speeds <= SPEEDS[1])
-    if not fits.all():
-        raise InputError(
-            "MOVE_SPEED", _place(moves),
-            f"{speeds[~fits][0]:.4g} mm/s cannot be written; use a speed between {SPEEDS[0]} and {SPEEDS[1]:.0f} mm/s",
-        )
-    return [f"{speed:.1f}mm/sec" for speed in speeds.tolist()]
+    return [f"{speed:.1f}mm/sec" for speed in speeds_within(moves, *SPEEDS).tolist()]
 
 
 def time_words(moves: Moves) -> list[str]:
@@ -40,7 +35,7 @@ def time_words(moves: Moves) -> list[str]:
     seconds = np.where(np.isfinite(moves.duration), np.maximum(moves.duration, 0.0), 0.0)
     if seconds.max() > LONGEST_SEC:
         raise InputError(
-            "MOVE_TIME", _place(moves),
+            "MOVE_TIME", place(moves),
             f"a move of {seconds.max():.0f} s is longer than {LONGEST_SEC:.0f} s; raise the speed or add points",
         )
     long = np.rint(seconds * 1000.0) > LONGEST_MSEC
@@ -48,7 +43,7 @@ def time_words(moves: Moves) -> list[str]:
     ends = np.rint(np.cumsum(np.where(long, 0.001, seconds)) * 1000.0).astype(np.int64)
     if ends[-1] < n and moves.kind != RAPID:
         raise InputError(
-            "MOVE_TIME", _place(moves),
+            "MOVE_TIME", place(moves),
             f"{n} moves take {seconds.sum():.4g} s in all and cannot be shorter than 1 ms each; use a larger chord"
             " error or a lower speed",
         )
@@ -93,10 +88,10 @@ def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
     turn, where both readings agree. What U and D mean of an arm bent over backwards (B) was not confirmed.
     """
     if moves.configuration is None:
-        raise InputError("NO_POSITIONS", _place(moves), "the program has no arm configurations; use `motion: joint`")
+        raise InputError("NO_POSITIONS", place(moves), "the program has no arm configurations; use `motion: joint`")
     if any(shoulder != "front" for shoulder, _, _ in moves.configuration):
         raise InputError(
-            "ARM_BACKWARDS", _place(moves),
+            "ARM_BACKWARDS", place(moves),
             "Cartesian positions are written only of an arm reaching forwards; use `branch: [front, ...]` or"
             " `motion: joint`",
         )
@@ -107,7 +102,7 @@ def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
     if untold.any():
         point, axis = np.argwhere(untold)[0]
         raise InputError(
-            "TURN_NUMBER", _place(moves),
+            "TURN_NUMBER", place(moves),
             f"axis {axis + 1} stands at {degrees[point, axis]:.1f} deg and its turn cannot be told reliably in a"
             " Cartesian position; use `motion: joint`",
         )
@@ -115,7 +110,3 @@ def configurations(moves: Moves, endless: tuple[bool, ...]) -> list[str]:
     elbows = ["D" if elbow == "down" else "U" for _, elbow, _ in moves.configuration]
     last = (turns[:, 5] + 0.0).tolist()
     return [f"{wrist} {elbow} T, 0, 0, {turn:.0f}" for wrist, elbow, turn in zip(wrists, elbows, last, strict=True)]
-
-
-def _place(moves: Moves) -> str:
-    return f"layer {moves.layer} bead {moves.bead}"

@@ -13,7 +13,6 @@ import numpy as np
 
 from ..core.issues import InputError
 from ..core.program import (
-    LINEAR_MOVE,
     Block,
     Call,
     DepositOff,
@@ -27,8 +26,17 @@ from . import kuka_text as text
 from .kuka_read import read
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed
-from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .parts import Piece, Run, grouped, packed, whole
+from .refusals import (
+    CALL,
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_wire,
+    refuse_without_positions,
+    refuse_without_speeds,
+)
 
 __all__ = ["read", "write"]
 
@@ -56,7 +64,6 @@ _RESERVED = frozenset(
 # 24 characters from memory: fewer are taken
 NAMING = Naming(str, "[A-Za-z]", "a letter", longest=20, spare=4, prefix="am_", reserved=_RESERVED)
 _NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
-_CALL = "process.between_layers.call"
 
 
 def write(program: Program) -> dict[str, bytes]:
@@ -73,12 +80,12 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     remarks = [line for words in ("Robotic AM", *program.remarks, *_own_remarks(program)) for line in text.remark(words)]
     groups = list(grouped(program, text.Lines(program), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, _whole)
+    parts = packed(groups, program.max_points, _NO_END, whole)
     if len(parts) == 1:
-        _refuse_calls_of_own(program, {name})
+        refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.src": text.module(name, [*remarks, *_body(program, parts[0])])}
     names = NAMING.parts(name, len(parts))
-    _refuse_calls_of_own(program, {name, *names})
+    refuse_calls_of_own(program, {name, *names}, program_name)
     files = {}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         head = text.remark(f"part {number} of {len(parts)}")
@@ -121,40 +128,14 @@ def _refuse(program: Program) -> None:
                 "UNSUPPORTED_FRAME", f"program.{what}",
                 f"the controller has numbers up to {last}, not {number}; use one of these",
             )
-    if any(program.endless):
-        axis = program.endless.index(True) + 1
-        raise InputError(
-            "ENDLESS_AXIS", "cell.limits",
-            f"axis {axis} has no limits, but axis values of KRL count every turn up to a limit; use limits that have one for"
-            f" axis {axis}",
-        )
-    if len(program.max_speed) != AXES or not np.isfinite(program.max_speed).all():
-        raise InputError(
-            "NO_JOINT_SPEED", "cell.machine",
-            "KRL tells the speed of joint moves in percent of the axes' largest speeds, and the machine file does not give"
-            " them; add max_speed to its joints",
-        )
-    straight = [run for run in program.moves if run.interpolation == LINEAR_MOVE]
-    if any(run.position is None or run.rotation is None for run in straight):
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; plan it anew")
+    refuse_endless(program)
+    refuse_without_speeds(program, AXES)
+    refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):
-            program_name(block.program, _CALL)
+            program_name(block.program, CALL)
 
 
-def _refuse_calls_of_own(program: Program, names: set[str]) -> None:
-    own = {name.upper() for name in names}
-    for block in program.blocks:
-        if isinstance(block, Call) and block.program.upper() in own:
-            raise InputError(
-                "PROGRAM_NAME", _CALL,
-                f"{block.program!r} is a program of this very job; call another one, or rename the job",
-            )
-
-
-def _whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """A bead too long for a file gets one of its own: between two files it would stop."""
-    yield group
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from ..core.issues import InputError
 from ..core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
 from .names import plain
+from .parts import place
+from .refusals import speeds_within
 
 Array = NDArray[np.float64]
 
@@ -92,7 +94,7 @@ class Lines:
             assert moves.position is not None and moves.rotation is not None
             size = self._rounding(moves)
             corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
-            speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in _speeds(moves).tolist()]
+            speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
             rows = frames(moves.position, moves.rotation).tolist()
             told = [f"$APO.CDIS={size:.3f}|{speed}|{_LIN % tuple(row)}{corner}" if corner else f"{speed}|{_LIN % tuple(row)}"
                     for speed, row, corner in zip(speeds, rows, corners, strict=True)]
@@ -139,18 +141,3 @@ def spoken(words: Sequence[str], said: dict[str, str]) -> list[str]:
                 lines.append(setting)
         lines.append(move)
     return lines
-
-
-def _speeds(moves: Moves) -> Array:
-    fits = (moves.speed >= SPEEDS[0]) & (moves.speed <= SPEEDS[1])
-    if not fits.all():
-        raise InputError(
-            "MOVE_SPEED", place(moves),
-            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use a speed between {SPEEDS[0]} and {SPEEDS[1]:.0f} mm/s",
-        )
-    return moves.speed
-
-
-def place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"

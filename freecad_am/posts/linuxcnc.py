@@ -35,8 +35,8 @@ from . import nc_parts as common
 from .linuxcnc_read import read
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed
-from .refusals import refuse_cooling
+from .parts import Piece, Run, grouped, lines_of, packed, whole
+from .refusals import CALL, refuse_calls_of_own, refuse_cooling
 
 __all__ = ["read", "write"]
 
@@ -84,11 +84,11 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     remarks = [_remark(line) for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
     groups = list(grouped(program, numbers.Feeds(program, SLOWEST), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, common.whole)
+    parts = packed(groups, program.max_points, _NO_END, whole)
     if len(parts) == 1:
         return {f"{name}.ngc": _file([*remarks, *_modes(program), *_lines(program, parts[0]), "M2"])}
     names = NAMING.parts(name, len(parts))
-    common.refuse_calls_of_own(program, {name, *names}, program_name)
+    refuse_calls_of_own(program, {name, *names}, program_name)
     files = {f"{name}.ngc": _file([*remarks, *_modes(program), *(f"o<{part}> call" for part in names), "M2"])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         inside = [_remark(f"part {number} of {len(parts)}"), *_modes(program), *_lines(program, pieces)]
@@ -123,7 +123,7 @@ def _refuse(program: Program) -> None:
                 "DEPOSIT_INPUT", "process.between_layers.input",
                 f"digital inputs are 1 to {LAST_PIN} (motion.digital-in-00 is number 1), not {block.number}",
             )
-    common.refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
+    refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     if program.motion == "cartesian":
         _refuse_cartesian(program)
 
@@ -210,7 +210,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
         return [sample, f"{loop} while [#5399 GE {numbers.level(block.below)}]", *_dwell(0.1), sample, f"{loop} endwhile"]
     if isinstance(block, Call):
-        return [f"o<{program_name(block.program, common.CALL)}> call", *_modes(program)]
+        return [f"o<{program_name(block.program, CALL)}> call", *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
 
 
@@ -231,7 +231,7 @@ def _dwell(seconds: float) -> list[str]:
 
 
 def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
-    return common.lines_of(pieces, lambda run: _motion(program, run))
+    return lines_of(pieces, lambda run: _motion(program, run))
 
 
 def _motion(program: Program, run: Run) -> list[str]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import LINEAR, LINEAR_MOVE, RAPID, Moves, Program, slide_feeds
+from .parts import place
 
 Array = NDArray[np.float64]
 
@@ -154,8 +155,3 @@ def _tip_feeds(moves: Moves) -> Array:
             f"{moves.speed[wrong][0]:.4g} mm/s cannot be written; use {SLOWEST / 60.0:.2g} to {FASTEST / 60.0:.0f} mm/s",
         )
     return feeds
-
-
-def place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"

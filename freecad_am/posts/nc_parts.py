@@ -5,15 +5,11 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
 
 from ..core.issues import InputError
-from ..core.program import DEPOSIT, LINEAR, ROTARY, Call, Program
+from ..core.program import DEPOSIT, LINEAR, ROTARY, Program
 from .names import plain
-from .parts import Piece, Run
 from .refusals import refuse_incomplete
-
-CALL = "process.between_layers.call"
 
 
 def wrapped(text: str) -> list[str]:
@@ -62,14 +58,6 @@ def refuse_wire_output(program: Program, last: int) -> None:
         )
 
 
-def refuse_calls_of_own(program: Program, names: set[str], program_name: Callable[[str, str], str]) -> None:
-    """Raises InputError PROGRAM_NAME where a program called between layers has the name of a part of this one."""
-    for block in program.blocks:
-        if isinstance(block, Call) and program_name(block.program, CALL) in names:
-            raise InputError(
-                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
-            )
-
 
 def refuse_setup(post: str, motion: str, setup: str) -> None:
     """Raises InputError UNSUPPORTED_SETUP for what is no machine with rotary axes; both motions of these can be said."""
@@ -79,17 +67,7 @@ def refuse_setup(post: str, motion: str, setup: str) -> None:
         )
 
 
-def whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """A bead longer than a part is one by itself: these controllers read files of any length, and going on in another one
-    within a bead would stop the machine while it deposits."""
-    yield group
-
 
 def dwell(address: str, seconds: float) -> list[str]:
     """Standing still for a time, to 0.001 s; nothing for no time."""
     return [f"G4 {address}{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
-
-
-def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
-    """The lines of a part; `motion` writes those of a run."""
-    return [line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)]

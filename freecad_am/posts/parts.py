@@ -7,7 +7,8 @@ import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ..core.program import RAPID, RETRACT, Block, DepositOff, DepositOn, LayerStart, Moves, Program
+from ..core.issues import InputError
+from ..core.program import DEPOSIT, RAPID, RETRACT, Block, DepositOff, DepositOn, LayerStart, Moves, Program
 
 
 @dataclass(frozen=True)
@@ -121,3 +122,30 @@ def continued(remark: Callable[[str], list[str]]) -> Callable[[list[Piece], int,
         yield chunk
 
     return cut
+
+
+def whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+    """A bead longer than a file is one by itself, where files may have any length: going on in another one within a bead
+    would stop the machine while it deposits."""
+    yield group
+
+
+def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
+    """Raises InputError BEAD_TOO_LONG for a bead longer than a file, where files have to be loaded one after the other."""
+    moves = next(piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT)
+    points = size(group)[0]
+    raise InputError(
+        "BEAD_TOO_LONG", "program.max_points",
+        f"{place(moves)} has {points} points with its approach, and loading another part within a bead would stop the robot"
+        f" while it deposits; use at least {points + 1}",
+    )
+
+
+def lines_of(pieces: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
+    """The lines of a part; `motion` writes those of a run."""
+    return [line for piece in pieces for line in (motion(piece) if isinstance(piece, Run) else piece)]
+
+
+def place(moves: Moves) -> str:
+    """Where a run of moves is, for messages."""
+    return f"layer {moves.layer} bead {moves.bead}"

@@ -3,10 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.issues import InputError
-from ..core.program import Program, WaitBelow
+from ..core.program import LINEAR_MOVE, Call, Moves, Program, WaitBelow
+from .parts import place
+
+Array = NDArray[np.float64]
+
+CALL = "process.between_layers.call"
 
 
 def refuse_wire(program: Program, no_wire: str) -> None:
@@ -45,3 +53,54 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
         raise InputError("UNSUPPORTED_AXES", "program.post", f"the post {post} writes {axes} axes; use another post")
     if not all(np.isfinite(run.joints).all() for run in moves):
         raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
+
+
+def refuse_endless(program: Program) -> None:
+    """Raises InputError ENDLESS_AXIS where an axis has no limits, for controllers that count every turn of all axes."""
+    if any(program.endless):
+        axis = program.endless.index(True) + 1
+        raise InputError(
+            "ENDLESS_AXIS", "cell.limits",
+            f"axis {axis} has no limits, but joint values of this controller count every turn up to a limit; use limits that"
+            f" have one for axis {axis}",
+        )
+
+
+def refuse_without_speeds(program: Program, axes: int) -> None:
+    """Raises InputError NO_JOINT_SPEED where the machine file does not tell what percents of joint speeds are of."""
+    if len(program.max_speed) != axes or not np.isfinite(program.max_speed).all():
+        raise InputError(
+            "NO_JOINT_SPEED", "cell.machine",
+            "this controller is told the speed of joint moves in percent of the axes' largest speeds, and the machine file"
+            " does not give them; add max_speed to its joints",
+        )
+
+
+def refuse_without_positions(program: Program, straight: bool = False) -> None:
+    """Raises InputError NO_POSITIONS where Cartesian motion has moves, or straight ones, without a pose."""
+    if program.motion != "cartesian":
+        return
+    runs = [run for run in program.moves if run.interpolation == LINEAR_MOVE or not straight]
+    if program.station is None or any(run.position is None or run.rotation is None for run in runs):
+        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+
+
+def refuse_calls_of_own(program: Program, names: set[str], program_name: Callable[[str, str], str]) -> None:
+    """Raises InputError PROGRAM_NAME where a program called between layers has the name of a part of this one."""
+    own = {name.upper() for name in names}  # controllers and disks that know no case would take one for the other
+    for block in program.blocks:
+        if isinstance(block, Call) and program_name(block.program, CALL).upper() in own:
+            raise InputError(
+                "PROGRAM_NAME", CALL, f"{block.program!r} is a program of this very job; call another one, or rename the job"
+            )
+
+
+def speeds_within(moves: Moves, least: float, most: float) -> Array:
+    """(n,) mm/s of the moves. Raises InputError MOVE_SPEED for one that is not between the two."""
+    fits = (moves.speed >= least) & (moves.speed <= most)
+    if not fits.all():
+        raise InputError(
+            "MOVE_SPEED", place(moves),
+            f"{moves.speed[~fits][0]:.4g} mm/s cannot be written; use a speed between {least} and {most:.0f} mm/s",
+        )
+    return moves.speed

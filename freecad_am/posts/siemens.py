@@ -33,8 +33,8 @@ from . import nc_numbers as numbers
 from . import nc_parts as common
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed
-from .refusals import refuse_cooling
+from .parts import Piece, Run, grouped, lines_of, packed, place, whole
+from .refusals import CALL, refuse_calls_of_own, refuse_cooling
 from .siemens_read import read
 
 __all__ = ["read", "write"]
@@ -82,11 +82,11 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     remarks = [f"; {line}" for words in (*program.remarks, *_own_remarks(program)) for line in common.wrapped(words)]
     groups = list(grouped(program, numbers.Feeds(program), lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, common.whole)
+    parts = packed(groups, program.max_points, _NO_END, whole)
     if len(parts) == 1:
         return {f"{name}.MPF": _file([*remarks, *_HEAD, *_modes(program), *_lines(program, parts[0]), "M30"])}
     names = NAMING.parts(name, len(parts))
-    common.refuse_calls_of_own(program, {name, *names}, program_name)
+    refuse_calls_of_own(program, {name, *names}, program_name)
     files = {f"{name}.MPF": _file([*remarks, *_HEAD, *names, "M30"])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
         lines = [f"; part {number} of {len(parts)}", *_HEAD, *_modes(program), *_lines(program, pieces), "M17"]
@@ -122,7 +122,7 @@ def _refuse(program: Program) -> None:
                 "DEPOSIT_INPUT", "process.between_layers.input",
                 f"the controller's program reads inputs 1 to {LAST_INPUT}, not {block.number}; use one of these",
             )
-    common.refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
+    refuse_calls_of_own(program, {program_name(program.name, "name")}, program_name)
     _refuse_endless_steps(program)
 
 
@@ -135,7 +135,7 @@ def _refuse_endless_steps(program: Program) -> None:
         move, axis = np.argwhere(steps > LARGEST_TURN)[0]
         places = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
         raise InputError(
-            "ENDLESS_STEP", numbers.place(program.moves[places[move + 1]]),
+            "ENDLESS_STEP", place(program.moves[places[move + 1]]),
             f"axis {program.axis_names[axes[axis]]} turns {steps[move, axis]:.1f} deg in one move; an axis without end goes"
             " less than 180 deg per move: add points, or limit the axis",
         )
@@ -194,7 +194,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, WaitBelow):
         return [f"WHILE $A_INA[{block.number}]>={numbers.level(block.below)}", *_dwell(0.1), "ENDWHILE"]
     if isinstance(block, Call):
-        return [program_name(block.program, common.CALL), *_HEAD, *_modes(program)]
+        return [program_name(block.program, CALL), *_HEAD, *_modes(program)]
     raise TypeError(f"no instruction for {block!r}")
 
 
@@ -214,7 +214,7 @@ def _dwell(seconds: float) -> list[str]:
 
 
 def _lines(program: Program, pieces: Sequence[Piece]) -> list[str]:
-    return common.lines_of(pieces, lambda run: _motion(program, run))
+    return lines_of(pieces, lambda run: _motion(program, run))
 
 
 def _motion(program: Program, run: Run) -> list[str]:

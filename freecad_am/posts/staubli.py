@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import (
-    DEPOSIT,
     JOINT_MOVE,
     Block,
     Call,
@@ -32,8 +31,15 @@ from . import staubli_numbers as numbers
 from . import staubli_text as text
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed, size, withdrawn
-from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .parts import Piece, Run, grouped, packed, size, unbroken, withdrawn
+from .refusals import (
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_wire,
+    refuse_without_positions,
+    refuse_without_speeds,
+)
 from .staubli_read import read
 
 __all__ = ["read", "write"]
@@ -84,10 +90,10 @@ def write(program: Program) -> dict[str, bytes]:
     remarks = [line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)]
     groups = list(grouped(program, numbers.Descriptors(program), lambda block: _instructions(program, block)))
     if size([piece for group in groups for piece in group])[0] <= program.max_points:
-        (pieces,) = packed(groups, program.max_points, _NO_END, _refuse_bead)
+        (pieces,) = packed(groups, program.max_points, _NO_END, unbroken)
         return _application(program, name, name, remarks, pieces)
     # one place is kept for the withdrawal from the last bead: what follows is loaded away from it
-    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, _refuse_bead))
+    parts = withdrawn(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(parts))
     load = [line for part in names for line in _LOAD.format(alias=PART, part=part).split("\n")]
     files = _files(program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"})
@@ -116,23 +122,9 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "staubli", AXES)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
-    if any(program.endless):
-        axis = program.endless.index(True) + 1
-        raise InputError(
-            "ENDLESS_AXIS", "cell.limits",
-            f"axis {axis} has no limits, but joint values of VAL 3 count every turn up to a limit; use limits that"
-            f" have one for axis {axis}",
-        )
-    if len(program.max_speed) != AXES or not np.isfinite(program.max_speed).all():
-        raise InputError(
-            "NO_JOINT_SPEED", "cell.machine",
-            "VAL 3 tells the speed of joint moves in percent of the axes' largest speeds, and the machine file does not"
-            " give them; add max_speed to its joints",
-        )
-    if program.motion == "cartesian" and (
-        program.station is None or any(run.position is None or run.rotation is None for run in program.moves)
-    ):
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+    refuse_endless(program)
+    refuse_without_speeds(program, AXES)
+    refuse_without_positions(program)
     for block in program.blocks:
         if isinstance(block, Call) and re.fullmatch(rf"{program.name}\d*", program_name(block.program, _CALL), re.I):
             raise InputError(
@@ -142,15 +134,6 @@ def _refuse(program: Program) -> None:
 
 _CALL = "process.between_layers.call"
 
-
-def _refuse_bead(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    moves = next(piece.moves for piece in group if isinstance(piece, Run) and piece.moves.kind == DEPOSIT)
-    points = size(group)[0]
-    raise InputError(
-        "BEAD_TOO_LONG", "program.max_points",
-        f"{numbers.place(moves)} has {points} points with its approach, and loading another part within a bead would stop"
-        f" the robot while it deposits; use at least {points + 1}",
-    )
 
 
 def _own_remarks(program: Program) -> Iterator[str]:

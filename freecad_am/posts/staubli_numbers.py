@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import DEPOSIT, FIRST_SHARE, LINEAR_MOVE, Moves, Program
+from .parts import place
 
 Array = NDArray[np.float64]
 
@@ -105,8 +106,3 @@ def _speeds(moves: Moves) -> Array:
 
 def _descriptor(percent: str, speed: str, blend: str) -> str:
     return f'accel="100" vel="{percent}" decel="100" tmax="{speed}" rmax="{UNLIMITED}" {blend}'
-
-
-def place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"

@@ -32,8 +32,16 @@ from . import nc_parts as common
 from . import ur_numbers as numbers
 from .names import Naming
 from .on_controller import on_controller
-from .parts import Piece, Run, grouped, packed
-from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .parts import Piece, Run, grouped, lines_of, packed, whole
+from .refusals import (
+    CALL,
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_wire,
+    refuse_without_positions,
+)
 from .ur_read import read
 
 __all__ = ["read", "write"]
@@ -81,9 +89,9 @@ def write(program: Program) -> dict[str, bytes]:
     _refuse(program)
     words = numbers.Words(program)
     groups = list(grouped(program, words, lambda block: _instructions(program, block)))
-    parts = packed(groups, program.max_points, _NO_END, common.whole)
+    parts = packed(groups, program.max_points, _NO_END, whole)
     names = NAMING.parts(name, len(parts)) if len(parts) > 1 else []
-    common.refuse_calls_of_own(program, {name, *names}, program_name)
+    refuse_calls_of_own(program, {name, *names}, program_name)
     remarks = [f"# {line}" for text in (*program.remarks, *_own_remarks(program, names)) for line in common.wrapped(text)]
     lines = [*remarks, *_frames(program, words.tool_point)]
     if not names:
@@ -118,17 +126,8 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "ur", AXES)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
-    if any(program.endless):
-        axis = program.endless.index(True) + 1
-        raise InputError(
-            "ENDLESS_AXIS", "cell.limits",
-            f"axis {axis} has no limits, but joint values of URScript count every turn; use limits that have one for axis"
-            f" {axis}",
-        )
-    if program.motion == "cartesian" and (
-        program.station is None or any(run.position is None or run.rotation is None for run in program.moves)
-    ):
-        raise InputError("NO_POSITIONS", "program.motion", "the program has no positions; use `motion: joint`")
+    refuse_endless(program)
+    refuse_without_positions(program)
     if program.setup == "part-on-robot" and any(run.flange is None for run in program.moves):
         raise InputError("NO_POSITIONS", "program", "the program does not tell where the flange is, which blends count on")
     if not program.dry_run and program.deposit_output > LAST_PIN:
@@ -190,7 +189,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         level = f"while get_standard_analog_in({block.number - 1}) >= {block.below:.6f}:"
         return [level, f"{_INDENT}sleep(0.100)", "end"]
     if isinstance(block, Call):
-        return [f"{program_name(block.program, common.CALL)}()"]
+        return [f"{program_name(block.program, CALL)}()"]
     raise TypeError(f"no instruction for {block!r}")
 
 
@@ -208,7 +207,7 @@ def _sleep(seconds: float) -> list[str]:
 
 
 def _lines(pieces: Sequence[Piece]) -> list[str]:
-    return common.lines_of(pieces, _motion)
+    return lines_of(pieces, _motion)
 
 
 def _motion(run: Run) -> list[str]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from ..core.program import LINEAR_MOVE, RAPID, Moves, Program
+from .parts import place
 
 Array = NDArray[np.float64]
 
@@ -126,8 +127,3 @@ def rotation_vectors(rotation: Array) -> Array:
     turn = 2.0 * np.arctan2(sine, np.ascontiguousarray(q[:, 0]))
     vectors: Array = q[:, 1:] * np.where(sine > 1e-12, turn / np.maximum(sine, 1e-300), 2.0)[:, None]
     return vectors
-
-
-def place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"

@@ -30,11 +30,18 @@ from ..core.program import (
     Wait,
     WaitInput,
 )
-from . import nc_parts as common
 from .names import Naming, plain
 from .on_controller import on_controller
-from .parts import Piece, Run, continued, grouped, packed
-from .refusals import refuse_cooling, refuse_incomplete, refuse_wire
+from .parts import Piece, Run, continued, grouped, packed, place
+from .refusals import (
+    CALL,
+    refuse_calls_of_own,
+    refuse_cooling,
+    refuse_endless,
+    refuse_incomplete,
+    refuse_wire,
+    refuse_without_speeds,
+)
 from .yaskawa_read import read
 
 __all__ = ["read", "write"]
@@ -86,10 +93,10 @@ def write(program: Program) -> dict[str, bytes]:
     room = MOST_LINES - len(remarks) - len(meaning) - 2  # NOP and END
     parts = packed(groups, min(program.max_points, room), room, continued(_remark))
     if len(parts) == 1:
-        common.refuse_calls_of_own(program, {name}, program_name)
+        refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.JBI": _job(program, name, [*remarks, *meaning], parts[0])}
     names = NAMING.parts(name, len(parts))
-    common.refuse_calls_of_own(program, {name, *names}, program_name)
+    refuse_calls_of_own(program, {name, *names}, program_name)
     told = [*remarks, *_remark(f"{sum(len(run) for run in program.moves)} moves in {len(names)} parts")]
     files = {f"{name}.JBI": _job(program, name, [*told, *(f"CALL JOB:{part}" for part in names)], [])}
     for number, (part, pieces) in enumerate(zip(names, parts, strict=True), 1):
@@ -120,22 +127,12 @@ def _refuse(program: Program) -> None:
     refuse_incomplete(program, "yaskawa", len(AXES))
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
-    if any(program.endless):
-        axis = AXES[program.endless.index(True)]
-        raise InputError(
-            "ENDLESS_AXIS", "cell.limits",
-            f"axis {axis} has no limits, but pulses count every turn; use limits that have one for axis {axis}",
-        )
+    refuse_endless(program)
     if len(program.pulses_per_degree) != len(AXES):
         raise InputError("NO_PULSES", "cell.machine", "the machine file has no controller.pulses_per_degree; add them")
     if program.motion == "cartesian" and program.speed_unit not in UNITS:
         raise InputError("NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it")
-    if len(program.max_speed) != len(AXES) or not np.isfinite(program.max_speed).all():
-        raise InputError(
-            "NO_JOINT_SPEED", "cell.machine",
-            "INFORM tells the speed of joint moves in percent of the axes' largest speeds, and the machine file does not"
-            " give them; add max_speed to its joints",
-        )
+    refuse_without_speeds(program, len(AXES))
     if not program.dry_run and program.deposit_output > OUTPUTS:
         raise InputError(
             "DEPOSIT_OUTPUT", "program.deposit_output",
@@ -207,7 +204,7 @@ def _percent(program: Program, moves: Moves, steps: Array, first: bool) -> Array
         wrong[0] = False
     if wrong.any():
         raise InputError(
-            "JOINT_SPEED", _place(moves),
+            "JOINT_SPEED", place(moves),
             f"a move would need {percent[wrong][0]:.4g} % of the largest joint speed, which is told in steps of"
             f" {STEP_PERCENT} %; use another speed, so that it is {LEAST_PERCENT} to 100 %",
         )
@@ -223,16 +220,12 @@ def _path_speeds(program: Program, moves: Moves) -> list[str]:
     fits = (moves.speed >= least) & (moves.speed <= FASTEST)
     if not fits.all():
         raise InputError(
-            "MOVE_SPEED", _place(moves),
+            "MOVE_SPEED", place(moves),
             f"{moves.speed[~fits][0]:.4g} mm/s cannot be written in {program.speed_unit}; use {least:.3g} to"
             f" {FASTEST:.0f} mm/s",
         )
     return [f"V={speed:.{decimals}f}" for speed in (moves.speed / unit).tolist()]
 
-
-def _place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
-    return f"layer {moves.layer} bead {moves.bead}"
 
 
 def _instructions(program: Program, block: Block) -> list[str]:
@@ -248,7 +241,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, WaitInput):
         return [f"WAIT IN#({block.number})=ON"]
     if isinstance(block, Call):
-        return [f"CALL JOB:{program_name(block.program, common.CALL)}"]
+        return [f"CALL JOB:{program_name(block.program, CALL)}"]
     raise TypeError(f"no instruction for {block!r}")
 
 

@@ -2567,11 +2567,6 @@
         <translation>Moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
-        <source>INFORM tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
-        <translation>INFORM dit la vitesse des mouvements articulaires en pour cent des plus grandes vitesses des axes, et le fichier machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Image (*.png)</source>
         <translation>Image (*.png)</translation>
@@ -2710,11 +2705,6 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Joints</source>
         <translation>Articulations</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
-        <source>KRL tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
-        <translation>KRL donne la vitesse des mouvements articulaires en pourcentage des plus grandes vitesses des axes, et le fichier de machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/job_panel.py"/>
@@ -5222,11 +5212,6 @@
         <translation>VAL 3 règle les sorties pendant que les mouvements précédents sont encore dans la file</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
-        <source>VAL 3 tells the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
-        <translation>VAL 3 dit la vitesse des mouvements articulaires en pour cent des plus grandes vitesses des axes, et le fichier machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa.py"/>
         <source>VJ is a share of the largest speeds of the machine file, those of the axis that takes longest</source>
         <translation>VJ est une part des plus grandes vitesses du fichier machine, celle de l&apos;axe qui met le plus de temps</translation>
@@ -6172,29 +6157,9 @@
         <translation>l&apos;axe 3 est montré {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
-        <source>axis {0} has no limits, but axis values of KRL count every turn up to a limit; use limits that have one for axis {1}</source>
-        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs d&apos;axes de KRL comptent chaque tour jusqu&apos;à une limite ; prenez des limites qui en ont une pour l&apos;axe {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
-        <source>axis {0} has no limits, but joint values of RAPID count every turn up to a limit; use limits that have one for axis {1}</source>
-        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de RAPID comptent chaque tour jusqu&apos;à une limite ; prenez des limites qui en ont une pour l&apos;axe {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur.py"/>
-        <source>axis {0} has no limits, but joint values of URScript count every turn; use limits that have one for axis {1}</source>
-        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires d&apos;URScript comptent chaque tour ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli.py"/>
-        <source>axis {0} has no limits, but joint values of VAL 3 count every turn up to a limit; use limits that have one for axis {1}</source>
-        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de VAL 3 comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa.py"/>
-        <source>axis {0} has no limits, but pulses count every turn; use limits that have one for axis {1}</source>
-        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les impulsions comptent chaque tour ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>axis {0} has no limits, but joint values of this controller count every turn up to a limit; use limits that have one for axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de ce contrôleur comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -9677,12 +9642,7 @@
         <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka.py"/>
-        <source>the program has no positions; plan it anew</source>
-        <translation>le programme n&apos;a pas de positions ; planifiez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
         <source>the program has no positions; use `motion: joint`</source>
         <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
     </message>
@@ -10190,6 +10150,11 @@
         <location filename="../../freecad_am/core/kinematics/opw_recognition.py"/>
         <source>this cannot be planned for: {0}</source>
         <translation>on ne peut pas planifier pour cela : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>this controller is told the speed of joint moves in percent of the axes&apos; largest speeds, and the machine file does not give them; add max_speed to its joints</source>
+        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine ne les donne pas ; ajoutez max_speed à ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
@@ -10857,7 +10822,7 @@
         <translation>{0} a {1} nombres, une pose en a six ; {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/parts.py"/>
         <source>{0} has {1} points with its approach, and loading another part within a bead would stop the robot while it deposits; use at least {2}</source>
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
@@ -10912,7 +10877,7 @@
         <translation>{0} est un module ou une routine de ce programme et n&apos;est pas chargé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb.py"/>
+        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0} is a program of this very job; call another one, or rename the job</source>
         <translation>{0} est un programme de ce travail même ; appelez-en un autre, ou renommez le travail</translation>
     </message>
@@ -11552,7 +11517,7 @@
         <translation>{0} mm/s ne s&apos;écrit pas en {1} ; utilisez {2} à {3} mm/s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb_numbers.py"/>
+        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>{0} mm/s cannot be written; use a speed between {1} and {2} mm/s</source>
         <translation>{0} mm/s ne peuvent pas être écrits ; utilisez une vitesse entre {1} et {2} mm/s</translation>
     </message>
