@@ -31,10 +31,6 @@ class BuildDirectionParameters:
     max_tilt: float = f.parameter(
         math.pi / 2, f.ANGLE, "Largest angle between the tool axis and the vertical of the part.", low=0.0, high=math.pi
     )
-    max_from_vertical: float = f.parameter(
-        math.pi, f.ANGLE, "Robots with a positioner: largest angle between the tool axis and the vertical of the cell while "
-        "depositing; the positioner turns the part so far. 180 deg: it stands still.", low=0.0, high=math.pi, advanced=True,
-    )
     max_turn: float | str = f.parameter(
         "auto", f.TURN_RATE, "Largest turn of build direction and tool axis along a bead, on walls on an existing part "
         "and on hubs; where they would turn faster, at corners, they are spread, and how far they depart is told.",
@@ -47,6 +43,10 @@ class BuildDirectionParameters:
     clearance: str = f.parameter(
         "nozzle", f.CHOICE, "nozzle: tilt no more than needed to keep the nozzle clear of deposit and platform.",
         choices=("none", "nozzle"),
+    )
+    max_from_vertical: float = f.parameter(
+        math.pi, f.ANGLE, "Robots with a positioner: largest angle between the tool axis and the vertical of the cell while "
+        "depositing; the positioner turns the part so far. 180 deg: it stands still.", low=0.0, high=math.pi, advanced=True,
     )
 
     def __post_init__(self) -> None:

@@ -62,6 +62,7 @@ class CellParameters:
     branch: str | tuple[str, str, str] = f.parameter(
         ("front", "up", "flip"), f.TEXT, "Robots: shoulder, elbow and wrist, or auto to search all eight."
     )
+    nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
     external: str = f.parameter(
         NO_AXES, f.TEXT, "Robots: axes beside them that carry the part, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 "
         "carries part. x y z mm, RX RY RZ deg of the base in the world, which is the robot's base frame; more than one with "
@@ -70,7 +71,6 @@ class CellParameters:
     world_up: str = f.parameter(
         "0 0 1", f.TEXT, "Against gravity, as x y z in the world.", advanced=True,
     )
-    nozzle: NozzleParameters = f.group(NozzleParameters, "The nozzle.")
 
     def upward(self) -> tuple[float, float, float]:
         """`world_up` as three numbers, not of unit length. InputError BAD_VALUE for what is no direction."""
