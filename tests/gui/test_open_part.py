@@ -14,7 +14,6 @@ from freecad_am import api
 from freecad_am.brep import apart, kernel_process
 from freecad_am.brep.read import read_shape
 from freecad_am.core.issues import InputError
-from freecad_am.gui import open_part
 from freecad_am.objects.progress import Cancelled
 from tests.brep.test_read import in_unit
 from tests.robust import damage
@@ -101,6 +100,8 @@ def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(person
 
 
 def test_a_table_of_points_is_opened_and_laid_as_beads(person, chosen, tmp_path):
+    from freecad_am.gui import open_part  # not above: the other process imports this file, and its memory is measured
+
     (tmp_path / "beads.csv").write_text("x,y,z\n0,0,0\n40,0,0\n40,30,0\n", encoding="utf-8")
     chosen(tmp_path / "beads.csv")
     assert ".csv" in open_part.ENDINGS  # of the files that the dialog shows
