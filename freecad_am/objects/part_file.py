@@ -15,6 +15,9 @@ from ..core.issues import InputError
 from . import document_file, hooks
 from .shapes import global_shape, outer_placement
 
+# what the origin of an assembly or a body is made of: since FreeCAD 1.0 with shapes
+ORIGIN = ("App::Line", "App::Plane", "App::Point")
+
 
 def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
     """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, and a label for it.
@@ -49,7 +52,8 @@ def _shape_of_file(path: str, object_name: str) -> tuple[Any, str]:
 
 def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str]:
     """The shape of the object asked for, or of the only one; of a document of meshes alone, or by its name, a mesh."""
-    shapes = [obj for obj in document.Objects if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()]
+    placed = [obj for obj in document.Objects if obj.TypeId not in ORIGIN]
+    shapes = [obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()]
     meshes = [obj for obj in document.Objects if getattr(getattr(obj, "Mesh", None), "CountFacets", 0)]
     known = [*shapes, *meshes]
     if object_name:

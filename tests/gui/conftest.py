@@ -280,7 +280,8 @@ def coarse(monkeypatch):
     """Features get layers of 5 mm, walls of 10 mm that nothing is kept clear of, where nothing else is said: a new job is
     planned in a fifth of the time."""
     make, low = api.make_feature_of, {"layer_height": 5.0, "chord_error": 0.1}
-    of_kind = {"revolution": low, "surface": {**low, "layer_height": 10.0, "clearance": "none"}, "developable": low}
+    of_kind = {"revolution": low, "surface": {**low, "layer_height": 10.0, "clearance": "none"}, "developable": low,
+               "solid": low}
 
     def made(doc, kind, *others, values=None, **named):
         return make(doc, kind, *others, values={**of_kind.get(kind, {}), **(values or {})}, **named)

@@ -3,7 +3,6 @@
 
 import math
 import os
-from functools import partial
 
 import FreeCAD as App
 import Mesh
@@ -275,8 +274,12 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
 @pytest.mark.parametrize("machine", ["kuka-kr6-r900-2", "motoman-ma2010", "staubli-tx60"])
 def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine, no_remedies):
     """At the deposition point and in the branch of the default robot each of these is out of reach or past a limit."""
-    few = {"layer_height": 5.0, "chord_error": 0.1}
-    monkeypatch.setattr(api, "make_feature_of", partial(api.make_feature_of, values=few))
+    make = api.make_feature_of
+
+    def coarse(*given, values, **named):
+        return make(*given, values={"layer_height": 5.0, "chord_error": 0.1, **values}, **named)
+
+    monkeypatch.setattr(api, "make_feature_of", coarse)
     part = doc.addObject("Part::Sphere", "Dome")
     part.Radius, part.Angle1 = 30, 0
     doc.recompute()
