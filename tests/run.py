@@ -52,6 +52,7 @@ HEADLESS_OF_VERSION = (
     *(f"tests/{name}" for name in ("objects", "brep", "kdl", "posts", "interop", "test_package.py")),
     *(f"tests/batch/test_{name}.py" for name in ("plan_command", "export_command", "interruption")),
     *(f"--ignore=tests/objects/test_{name}.py" for name in ("memory", "one_thread", "rotor_rapids")),
+    *(f"--ignore=tests/posts/test_{name}.py" for name in ("contract", "mutations")),
 )
 WINDOW_OF_VERSION = (
     *(f"tests/gui/test_{name}.py" for name in ("fields", "long_work", "picking", "reopen", "robust_events", "samples")),

@@ -158,7 +158,8 @@ DEEP = "".join(holder(k + 1, placed("component", k)) for k in range(1, 2000))
     (model(mesh(1) + NESTED, placed("item", 30)), "UNSUPPORTED_FILE", "objects"),
     (model(mesh(1) + DEEP, placed("item", 2000)), "UNSUPPORTED_FILE", "nested"),
 ])
-def test_refused_with_what_is_wrong(tmp_path, text, code, told):
+def test_refused_with_what_is_wrong(tmp_path, monkeypatch, text, code, told):
+    monkeypatch.setattr(three_mf, "MOST_PLACED", 10_000)  # to place ten times as many comes near the limit of time
     with pytest.raises(InputError) as refused:
         read_mesh(written(tmp_path, text))
     assert (refused.value.code, refused.value.where) == (code, "part.3mf")
