@@ -34,8 +34,8 @@ MOST = 6  # that a controller has
 @dataclass(frozen=True, eq=False)
 class ExternalAxes:
     """The axes beside a robot, k in all. robot: the machine without them. to_robot: the chain from the platform's face to
-    the robot's base_link. up: (3,) against gravity, in the world. first, second: (3,) unit axes of the positioner in the
-    world at zero, the second None of a single one. at_zero: (3, 3) turns directions on the face into the world, at zero."""
+    the robot's base_link. up: (3,) against gravity, in the world. turning: the unit axes (3,) of the positioner in the
+    world with all axes at zero, from the floor on. at_zero: (3, 3) turns directions on the face into the world, at zero."""
 
     robot: Machine
     to_robot: Chain
