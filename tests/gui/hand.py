@@ -69,7 +69,8 @@ class Hand:
                 break
         assert any(part.hasFocus() for part in parts), f"{name} does not get the keys"
         self.do("key", "ctrl+a")
-        self.do("type", "--delay", "20", text)
+        # letters that the keyboard has not are on it for as long as the rest is typed, and a busy window looks late
+        self.do("type", "--delay", "20" if text.isascii() else "250", text)
         self.do("key", "Tab")
 
     def undo(self):
