@@ -98,7 +98,7 @@ class Scene:
         """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
         if np.isfinite(joints).all():
             self._place(placing(self.run.cell, joints))
-        self.machine.paint(bad)
+        self.machine.paint(bad[: len(self.machine.bad)])  # links of axes beside a robot are not drawn
         done = int(self.rows_before[row if running else row + 1])
         if done != self.deposit.end:
             self.deposit.show(0, done)
