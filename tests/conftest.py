@@ -39,9 +39,12 @@ def pytest_collection_modifyitems(config, items):
 def used():
     """s of the processor of this process, of those that it has started, and of theirs that ended."""
     ticks = 0
-    for file in Path("/proc/self/task").glob("*/children"):
-        for process in file.read_text(encoding="ascii").split():
-            with contextlib.suppress(OSError):  # it has just ended
+    for thread in os.listdir("/proc/self/task"):
+        started = ""
+        with contextlib.suppress(OSError):  # the thread has just ended
+            started = Path(f"/proc/self/task/{thread}/children").read_text(encoding="ascii")
+        for process in started.split():
+            with contextlib.suppress(OSError, ValueError):  # it has just ended
                 stat = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
                 ticks += sum(map(int, stat.rpartition(")")[2].split()[11:15]))
     return sum(os.times()[:4]) + ticks / os.sysconf("SC_CLK_TCK")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import run, run_parts
+from tests import conftest, run, run_parts
 
 ENDED = "{} failed, {} passed in 9.00s\n"
 CRASHED = "Fatal Python error: Segmentation fault\n"
@@ -303,3 +303,24 @@ def test_what_runs_in_another_version_exists():
         file, _, name = word.removeprefix("--ignore=").partition("::")
         assert (run.ROOT / file).exists(), word
         assert not name or f"def {name}(" in (run.ROOT / file).read_text(encoding="utf-8"), word
+
+
+def test_the_time_of_a_test_is_told_while_threads_end():
+    ended = threading.Event()
+
+    def come_and_go():
+        while not ended.is_set():
+            thread = threading.Thread(target=int)
+            thread.start()
+            thread.join()
+
+    busy = [threading.Thread(target=come_and_go) for _ in range(3)]
+    for thread in busy:
+        thread.start()
+    try:
+        times = [conftest.used() for _ in range(400)]
+    finally:
+        ended.set()
+        for thread in busy:
+            thread.join()
+    assert times == sorted(times) and times[-1] > 0
