@@ -2,6 +2,7 @@
 """A small part and job in a folder of their own, and the launcher to run them."""
 
 import atexit
+import contextlib
 import json
 import os
 import select
@@ -31,7 +32,36 @@ process:
 program:
   post: fanuc
 """
-PATIENCE = 300  # s for a command, on a machine that may be busy
+PATIENCE = 300  # s for a command in which it computes, or does not even want to
+
+
+def used_by(process: int) -> tuple[float, bool]:
+    """s of the processor that a process and those it started have used, with those that ended, and whether one of them
+    computes, or waits for the processor or for a disk."""
+    ticks, wants = 0, False
+    waiting = [str(process)]
+    while waiting:
+        place = Path("/proc", waiting.pop())
+        with contextlib.suppress(OSError):  # it has just ended
+            told = (place / "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+            ticks += sum(map(int, told[11:15]))
+            wants = wants or told[0] in "RD"
+            for thread in (place / "task").iterdir():
+                waiting += (thread / "children").read_text(encoding="ascii").split()
+    return ticks / os.sysconf("SC_CLK_TCK"), wants
+
+
+def ended(process: subprocess.Popen, patience: float = PATIENCE) -> int:
+    """The exit status of a process. TimeoutError where it does not end: after `patience` s in which it did not even wait for
+    the processor, or of computing."""
+    idle = 0
+    while True:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return process.wait(timeout=1.0)
+        used, wants = used_by(process.pid)
+        idle += not wants
+        if max(idle, used) > patience:
+            raise TimeoutError(f"{process.args} did not end in {patience} s")
 
 
 @dataclass
@@ -54,7 +84,8 @@ class Commands:
     def run(
         self, folder: Path, words: list[str], most_seconds: int = 0, most_bytes: int = 0, patience: int = PATIENCE
     ) -> Ended:
-        """Limits of 0 are none. TimeoutError where the command does not end."""
+        """Limits of 0 are none. TimeoutError where the command does not end: after `patience` s in which it did not even
+        wait for the processor, or computed where there is no limit to that. A machine that is busy is none of its."""
         if self.process is None:
             self._start()
         with tempfile.TemporaryDirectory() as place:
@@ -63,24 +94,31 @@ class Commands:
             asked = json.dumps([str(folder), environment, str(out), str(err), words, most_seconds, most_bytes])
             self.process.stdin.write(f"{asked}\n".encode())
             self.process.stdin.flush()
-            if not select.select([self.answer], [], [], patience)[0]:
-                os.killpg(self.process.pid, signal.SIGKILL)
-                self.process.wait()
-                self.process = None
-                raise TimeoutError(f"{' '.join(words)} took more than {patience} s")
+            idle, began = 0, used_by(self.process.pid)[0]
+            while not select.select([self.answer], [], [], 1.0)[0]:
+                used, wants = used_by(self.process.pid)
+                idle += not wants
+                if idle > patience or (used - began > patience and not most_seconds):
+                    self._kill()
+                    raise TimeoutError(f"{' '.join(words)} did not end in {patience} s")
             status, seconds, memory = self.answer.readline().split()
             told = (stream.read_text(encoding="utf-8") for stream in (out, err))
             return Ended(int(status), *told, float(seconds), float(memory))
 
-    def _start(self) -> None:
+    def _start(self, script: Path = Path(__file__).with_name("command_server.py")) -> None:
         ours, theirs = os.pipe()
-        script = Path(__file__).with_name("command_server.py")
         self.process = subprocess.Popen(
             [sys.executable, str(script), str(theirs)], stdin=subprocess.PIPE, pass_fds=[theirs], start_new_session=True,
             env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
         )
         os.close(theirs)
         self.answer = os.fdopen(ours, "rb", buffering=0)
+
+    def _kill(self) -> None:
+        assert self.process is not None
+        os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+        self.process = None
 
     def end(self) -> None:
         """Let it end, and wait for it: what it took counts as taken by the tests."""

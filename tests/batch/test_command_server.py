@@ -5,6 +5,18 @@ import json
 
 import pytest
 
+from tests.batch.conftest import Commands
+
+SERVER = """
+import json, os, sys, time
+for name in json.loads(sys.stdin.readline())[2:4]:
+    open(name, "w").close()
+while time.process_time() < {computes}:
+    pass
+time.sleep({sleeps})
+os.write(int(sys.argv[1]), b"0 0.0 0.0\\n")
+"""
+
 
 def told(workshop):
     """What was written, by name, without times: those of the report, and when a document was saved."""
@@ -34,3 +46,22 @@ def test_a_copy_does_what_the_launcher_does(workshop, words, status):
     assert (launched.status, launched.out, launched.err) == (copied.status, copied.out, copied.err)
     assert launched.status == status and told(workshop) == written
     assert bool(written) == (words[0] == "plan" and status != 2)
+
+
+@pytest.mark.parametrize(("computes", "sleeps", "most_seconds", "ends"), [
+    (2.5, 0, 60, True), (0, 60, 60, False), (60, 0, 0, False),
+])  # fmt: skip
+def test_what_waits_for_a_busy_processor_does_not_hang(tmp_path, computes, sleeps, most_seconds, ends):
+    """Patience is s that a command sleeps, or computes without a limit; the clock alone says nothing."""
+    script = tmp_path / "server.py"
+    script.write_text(SERVER.format(computes=computes, sleeps=sleeps))
+    commands = Commands()
+    commands._start(script)
+    began = commands.process
+    if ends:
+        assert commands.run(tmp_path, [], most_seconds, patience=1).status == 0
+    else:
+        with pytest.raises(TimeoutError):
+            commands.run(tmp_path, [], most_seconds, patience=1)
+        assert began.poll() is not None
+    commands.end()

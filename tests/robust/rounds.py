@@ -16,7 +16,7 @@ import numpy as np
 from tests.batch.conftest import COMMANDS
 
 SECONDS, MEMORY = 60.0, 2000.0  # s of the processor, MB, of a job that was not told to be large
-PATIENCE_SECONDS, PATIENCE_BYTES, PATIENCE = 65, 6 << 30, 1800  # where they are stopped in any case; s on the clock
+PATIENCE_SECONDS, PATIENCE_BYTES, PATIENCE = 65, 6 << 30, 300  # where they are stopped in any case; the last one s of sleep
 LARGE = re.compile(r"\[(LARGE|TOO_MANY|TOO_FINE)\]")
 LOOKED_AT = 60  # deposit points of a job
 

@@ -21,9 +21,10 @@ import pytest
 from freecad_am import api
 from freecad_am.batch import console, outputs, staging
 from freecad_am.core.issues import InputError
+from tests.batch.conftest import ended, used_by
 
 KINDS = ("plan", "plan", "export", "batch")
-PATIENCE = 900  # s for a command, on a machine that may be busy
+TICK = 0.01  # s, in which the system counts what of the processor was used
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 OLD = {"cup.FCStd": b"old", "program/CUP.LS": b"old", "program/CUP01.LS": b"old", "report.html": b"old"}
 NEW = {"cup.FCStd": b"new", "program/CUP.LS": b"new", "report.html": b"new", "waypoints.csv": b"new"}
@@ -168,9 +169,10 @@ class Bench:
         self.shop, self.random, self.speed = workshop, random.Random(seed), 4.0
         self.took, self.finished = {}, 0
         for kind in dict.fromkeys(KINDS):
-            began = time.monotonic()
-            assert self.start(kind).wait(timeout=PATIENCE) == 0
-            self.took[kind] = time.monotonic() - began
+            process = self.start(kind)
+            _, status, used = os.wait4(process.pid, 0)
+            assert status == 0
+            self.took[kind] = used.ru_utime + used.ru_stime
 
     def start(self, kind):
         """A command of a speed that none before had."""
@@ -211,13 +213,16 @@ class Bench:
             FreeCAD.closeDocument(document.Name)
 
     def kill(self, kind):
-        """Start a command and kill it at some moment: the moment, as a share of what it takes, and the signal."""
+        """Start a command and kill it at some moment: the moment, as a share of what it takes of the processor, so that it is
+        the same on a busy machine, and the signal."""
         process, number = self.start(kind), self.random.choice(SIGNALS)
-        share = self.random.uniform(0.1, 1.1)
-        time.sleep(share * self.took[kind])
+        share = self.random.uniform(0.1, 1.02)
+        while process.poll() is None and used_by(process.pid)[0] < share * self.took[kind]:
+            time.sleep(TICK)
+        time.sleep(self.random.uniform(0.0, TICK))
         with contextlib.suppress(ProcessLookupError):
             (os.killpg if number == signal.SIGKILL or kind == "batch" else os.kill)(process.pid, number)
-        process.wait(timeout=PATIENCE)
+        ended(process)
         return f"{share:.3f} {signal.Signals(number).name}"
 
     def folders(self):
@@ -279,7 +284,7 @@ def assert_survives(workshop, seed, kills, whole_every):
             bench.assert_one_set()
             if number % whole_every == whole_every - 1:
                 for other in dict.fromkeys(KINDS):
-                    assert bench.start(other).wait(timeout=PATIENCE) == 0, other
+                    assert ended(bench.start(other)) == 0, other
                 bench.assert_one_set()
                 bench.assert_no_litter()
         except AssertionError as error:

@@ -41,12 +41,26 @@ def triangles_of(file):
 
 
 def off(path, points, build):
-    """By how much, mm, the farthest deposit point is farther off the part than its job allows; 0 where nobody can tell."""
+    """By how much, mm, the farthest deposit point is farther off the part than its job allows; 0 where nobody can tell. Of
+    several features each point is of the one that allows it most."""
     job = yaml.safe_load(path.read_bytes())
-    file = path.parent / job["part"]["file"]
-    if file.suffix not in (".step", ".brep", ".igs") or not len(points):
+    if not len(points):
         return 0.0
-    strategy, process = job.get("strategy") or {}, job.get("process") or {}
+    found = [_excess(path.parent, _merged(job, feature), points, build) for feature in job.get("features") or [{}]]
+    return float(np.min(found, axis=0).max())
+
+
+def _merged(job, feature):
+    """The sections that tell what a feature is: its own keys over those of the job."""
+    return {name: {**(job.get(name) or {}), **(feature.get(name) or {})} for name in ("part", "strategy", "process")}
+
+
+def _excess(folder, job, points, build):
+    """By how much, mm, each point (n,) is farther off than a feature allows."""
+    strategy, process = job["strategy"], job["process"]
+    file = folder / job["part"]["file"]
+    if file.suffix not in (".step", ".brep", ".igs"):
+        return np.zeros(len(points))
     around = triangles_of(str(file.resolve()))
     away = np.min([triangles.distance(place, around) for place in cuts(points, build, strategy)], axis=0)
     chord = length(strategy.get("chord_error", 0.01))
@@ -54,10 +68,10 @@ def off(path, points, build):
         inside = [triangles.inside(place, around) for place in cuts(points, build, strategy)]
         away = np.where(np.any(inside, axis=0), 0.0, away)
         widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))
-        return away.max() - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)
+        return away - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)
     if strategy.get("wall") == "middle":  # halfway between two walls of the part
-        return away.max() - 10.0
-    return away.max() - (chord + DEFLECTION + 0.02)
+        return away - 10.0
+    return away - (chord + DEFLECTION + 0.02)
 
 
 def cuts(points, build, strategy):
