@@ -32,6 +32,7 @@ process:
 program:
   post: fanuc
 """
+SERVER = Path(__file__).with_name("command_server.py")
 PATIENCE = 300  # s for a command in which it computes, or does not even want to
 
 
@@ -105,7 +106,7 @@ class Commands:
             told = (stream.read_text(encoding="utf-8") for stream in (out, err))
             return Ended(int(status), *told, float(seconds), float(memory))
 
-    def _start(self, script: Path = Path(__file__).with_name("command_server.py")) -> None:
+    def _start(self, script: Path = SERVER) -> None:
         ours, theirs = os.pipe()
         self.process = subprocess.Popen(
             [sys.executable, str(script), str(theirs)], stdin=subprocess.PIPE, pass_fds=[theirs], start_new_session=True,

@@ -213,8 +213,8 @@ class Bench:
             FreeCAD.closeDocument(document.Name)
 
     def kill(self, kind):
-        """Start a command and kill it at some moment: the moment, as a share of what it takes of the processor, so that it is
-        the same on a busy machine, and the signal."""
+        """Start a command and kill it at some moment: the moment, as a share of what it takes of the processor, which a busy
+        machine leaves as it is, and the signal."""
         process, number = self.start(kind), self.random.choice(SIGNALS)
         share = self.random.uniform(0.1, 1.02)
         while process.poll() is None and used_by(process.pid)[0] < share * self.took[kind]:
