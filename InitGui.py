@@ -3,10 +3,12 @@
 
 import FreeCADGui as Gui
 
-from freecad_am.gui import texts
+from freecad_am.gui import former_names
+from freecad_am.gui.texts import translation
 from freecad_am.objects import hooks
 
-texts.install()
+former_names.install()
+translation.install()
 
 
 class RoboticAMWorkbench(Gui.Workbench):
@@ -16,14 +18,14 @@ class RoboticAMWorkbench(Gui.Workbench):
 
     def __init__(self):
         from freecad_am.gui import icons
-        from freecad_am.gui.texts import tr
+        from freecad_am.gui.texts.translation import tr
 
         self.__class__.ToolTip = tr("Layers, joint paths and checked programs for robots that deposit material")
         self.__class__.Icon = icons.path("workbench")
 
     def Initialize(self):
         """Called when the workbench is opened for the first time."""
-        from freecad_am.gui import commands, whats_this
+        from freecad_am.gui.tools import commands, whats_this
 
         names = commands.register()
         whats_this.install()
@@ -33,14 +35,14 @@ class RoboticAMWorkbench(Gui.Workbench):
     def Activated(self):
         """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed, and its toolbar
         all tools."""
-        from freecad_am.gui import menus, toolbar
+        from freecad_am.gui.tools import menus, toolbar
 
         menus.show_tooltips(self.MenuText)
         toolbar.keep_whole(self.MenuText)
 
     def ContextMenu(self, recipient):
         """Called for a right click in the tree or the 3D view."""
-        from freecad_am.gui import menus
+        from freecad_am.gui.tools import menus
 
         names = menus.for_selection()
         if names:
@@ -54,12 +56,12 @@ class RoboticAMWorkbench(Gui.Workbench):
 def robotic_am_preferences():
     """Add the page of preferences, which are there before the workbench is opened."""
     from freecad_am.gui import icons
-    from freecad_am.gui.preferences_hook import RoboticAMPreferences
+    from freecad_am.gui.preferences.hook import RoboticAMPreferences
 
     Gui.addIconPath(icons.FOLDER)
     Gui.addPreferencePage(RoboticAMPreferences, "Robotic AM")
 
 
-hooks.register("freecad_am.gui.views")
+hooks.register("freecad_am.gui.views.attach")
 robotic_am_preferences()
 Gui.addWorkbench(RoboticAMWorkbench())

@@ -38,7 +38,7 @@ def cancelled(job) -> dict[str, float]:
     from PySide import QtCore, QtGui
 
     from freecad_am import api
-    from freecad_am.gui import busy
+    from freecad_am.gui.background import busy
     from freecad_am.objects.progress import Cancelled
 
     pressed: list[float] = []
@@ -115,16 +115,19 @@ def of_panels() -> list[dict[str, object]]:
     import FreeCAD as App
 
     from freecad_am import api
-    from freecad_am.gui import cell_panel, joint_path_panel, program_panel, stage_panel
+    from freecad_am.gui.panels.cell import CellPanel
+    from freecad_am.gui.panels.joint_path import JointPathPanel
+    from freecad_am.gui.panels.program import ProgramPanel
+    from freecad_am.gui.panels.stage import show
     from tests.gui.long_jobs import joints, sphere
 
     job = joints(Path(os.environ["FRAMES_OF"]))
     settle(1.0)
     found = [
         {"job": "cell", "preview": previewed(
-            lambda: stage_panel.show(cell_panel.CellPanel(job.inputs["cell"])), "nozzle upright")},
+            lambda: show(CellPanel(job.inputs["cell"])), "nozzle upright")},
         {"job": "joint path", "preview": previewed(
-            lambda: stage_panel.show(joint_path_panel.JointPathPanel()), "rapid moves too")},
+            lambda: show(JointPathPanel()), "rapid moves too")},
     ]
     App.closeDocument(job.document.Name)
     document = App.newDocument("Program")
@@ -133,7 +136,7 @@ def of_panels() -> list[dict[str, object]]:
     api.make_joint_path(document, toolpath, cell)
     settle(1.0)
     found.append({"job": "program", "preview": previewed(
-        lambda: stage_panel.show(program_panel.ProgramPanel()), "Begins with")})
+        lambda: show(ProgramPanel()), "Begins with")})
     App.closeDocument(document.Name)
     return found
 
@@ -142,7 +145,7 @@ def all_of_them() -> list[dict[str, object]]:
     """Of every job."""
     import FreeCAD as App
 
-    from freecad_am.gui import stage_panel
+    from freecad_am.gui import registry
     from tests.gui.long_jobs import JOBS, PREVIEWED
 
     found = []
@@ -151,7 +154,7 @@ def all_of_them() -> list[dict[str, object]]:
         settle(1.0)
         one: dict[str, object] = {"job": make.__name__, **(cancelled(job) if make in JOBS else {})}
         if make in PREVIEWED:
-            one["preview"] = previewed(lambda feature=job.inputs["feature"]: stage_panel.edit(feature), "irst layer")
+            one["preview"] = previewed(lambda feature=job.inputs["feature"]: registry.edit(feature), "irst layer")
         found.append(one)
         App.closeDocument(job.document.Name)
     return found + of_panels()

@@ -41,7 +41,7 @@ def frames(saved: str) -> list[dict[str, object]]:
     from pivy import coin
 
     from freecad_am import api
-    from freecad_am.gui.lines import Lines
+    from freecad_am.gui.nodes.lines import Lines
     from freecad_am.gui.path import dock
     from freecad_am.gui.path.colouring import coloured
 

@@ -4,6 +4,7 @@
 import ast
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
@@ -69,6 +70,7 @@ FOREIGN = {
 }
 # single files that may use more
 ALONE = {"core/geometry/region": {"shapely"}}
+MOST_FILES = 17  # in a folder of the window
 
 
 def modules():
@@ -81,10 +83,22 @@ def home(path):
     return "/".join(parts[:2]) if parts[0] == "core" else parts[0]
 
 
-def imported(path):
+def statements(tree, typing=True):
+    """All nodes of a syntax tree, those in functions too; without `typing` none that only type checkers see."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING") and not typing:
+            for other in node.orelse:
+                yield other
+                yield from statements(other, typing)
+        else:
+            yield node
+            yield from statements(node, typing)
+
+
+def imported(path, typing=True):
     """(module, names) of every import statement of a file, ours as dotted paths below the package."""
     package = ["freecad_am", *path.relative_to(PACKAGE).parts[:-1]]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in statements(ast.parse(path.read_text(encoding="utf-8")), typing):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name, ()
@@ -124,6 +138,49 @@ def broken(path):
 def test_imports_run_one_way():
     assert len(modules()) > 300
     assert [told for path in modules() for told in broken(path)] == []
+
+
+def graph():
+    """Every module of ours with those of ours that it imports, at its top or within a function."""
+    files = {".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts): path for path in modules()}
+    found = {}
+    for file, path in files.items():
+        named = {f"{module}.{name}" for module, names in imported(path, typing=False) for name in ("", *names)}
+        found[file] = files.keys() & {name.rstrip(".") for name in named}
+    return found
+
+
+def on_circles(found):
+    """The modules of a graph that are left over when those that import none of what is left over are taken away, and then
+    those that none of these imports: modules on circles, or between two circles."""
+    while True:
+        left = {name: used & found.keys() for name, used in found.items()}
+        needed = set().union(*left.values())
+        kept = {name: used for name, used in left.items() if used and name in needed}
+        if kept.keys() == found.keys():
+            return kept
+        found = kept
+
+
+def test_no_imports_run_in_a_circle():
+    """Not by imports within functions either: these are for what takes long to import and is not always needed."""
+    found = graph()
+    assert len(found) > 600 and sum(map(len, found.values())) > 3000
+    assert on_circles(found) == {}
+
+
+def test_circles_are_found():
+    tree = ast.parse("if TYPE_CHECKING:\n    import a\nelse:\n    import b\ndef f():\n    from . import c")
+    seen = [node for node in statements(tree, typing=False) if isinstance(node, (ast.Import, ast.ImportFrom))]
+    assert [node.names[0].name for node in seen] == ["b", "c"]
+    assert on_circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == {"b": {"c"}, "c": {"b"}}
+    assert on_circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {}
+
+
+def test_no_folder_of_the_window_is_crowded():
+    """A file is found by the list of the folder it is in."""
+    folders = Counter(path.parent.relative_to(PACKAGE).as_posix() for path in modules() if path.name != "__init__.py")
+    assert {folder: many for folder, many in folders.items() if folder.startswith("gui") and many > MOST_FILES} == {}
 
 
 def test_files_that_use_more_need_it():

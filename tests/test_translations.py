@@ -18,8 +18,8 @@ from freecad_am.core.issues import AmError, Issue
 from freecad_am.core.kinematics import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.gui.field_names import as_in_panels
-from freecad_am.gui.phrases import Phrases, Template
+from freecad_am.gui.texts.field_names import as_in_panels
+from freecad_am.gui.texts.phrases import Phrases, Template
 from freecad_am.objects import progress
 
 ROOT = Path(__file__).resolve().parent.parent

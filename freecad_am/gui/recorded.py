@@ -11,8 +11,8 @@ import FreeCADGui as Gui
 
 from .. import api
 from ..objects.staleness import FAILED, INFEASIBLE
-from .busy import busy
-from .texts import tr, translated
+from .background.busy import busy
+from .texts.translation import tr, translated
 
 IMPORT = "import freecad_am.api as am"
 

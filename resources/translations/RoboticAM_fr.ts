@@ -699,12 +699,12 @@
         <translation>Montrer les directions de dépôt par de courtes lignes.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_cell.py"/>
+        <location filename="../../freecad_am/gui/views/cell.py"/>
         <source>Show the machine at rest, the nozzle upright on the highest point.</source>
         <translation>Montrer la machine au repos, la buse droite sur le point le plus haut.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>Show the rapid moves as thin dashed lines.</source>
         <translation>Montrer les mouvements rapides par de fins tirets.</translation>
     </message>
@@ -884,12 +884,12 @@
         <translation>Temps de tout le travail avec avances, retards et attentes entre les couches (s).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_hub.py"/>
+        <location filename="../../freecad_am/gui/views/hub.py"/>
         <source>Tint the cylinders and cones that solids stand on.</source>
         <translation>Teinter les cylindres et cônes sur lesquels reposent les solides.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_feature.py"/>
+        <location filename="../../freecad_am/gui/views/feature.py"/>
         <source>Tint the faces of a wall on a substrate.</source>
         <translation>Teinter les faces d&apos;une paroi sur un substrat.</translation>
     </message>
@@ -954,7 +954,7 @@
         <translation>Ce qui ne va pas, et que faire.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>What the colours of the beads tell.</source>
         <translation>Ce que disent les couleurs des cordons.</translation>
     </message>
@@ -1077,7 +1077,7 @@
 <context>
     <name>RoboticAM</name>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source> or </source>
         <translation> ou </translation>
     </message>
@@ -1112,7 +1112,7 @@
         <translation>0, ou 1 si l&apos;articulation glisse le long de z : une machine à axes rotatifs en a trois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>1 solid on {1} ({2})</source>
         <translation>1 solide sur {1} ({2})</translation>
     </message>
@@ -1177,12 +1177,12 @@
         <translation>Une copie d&apos;une autre machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>A further folder of machine files, such as one that is shared; your own are in {} as well</source>
         <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>A further part that the nozzle is kept clear of.</source>
         <translation>Une pièce supplémentaire que la buse évite.</translation>
     </message>
@@ -1197,7 +1197,7 @@
         <translation>Une machine de la liste, ou le chemin d&apos;un fichier machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>A part of revolution needs exact faces; {} is a mesh.</source>
         <translation>Une pièce de révolution demande des faces exactes ; {} est un maillage.</translation>
     </message>
@@ -1232,7 +1232,7 @@
         <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/feature.py"/>
         <source>About {} turns along {:.4g} mm of wall</source>
         <translation>Environ {} tours le long de {:.4g} mm de paroi</translation>
     </message>
@@ -1242,17 +1242,17 @@
         <translation>Accélération</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Add</source>
         <translation>Ajouter</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Adds a cell: machine, set-up, platform and nozzle</source>
         <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Adds the features selected, else the next one of the document</source>
         <translation>Ajoute les éléments sélectionnés, sinon le suivant du document</translation>
     </message>
@@ -1272,7 +1272,7 @@
         <translation>Tous les cordons ensemble</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>All deposit points can be carried out.</source>
         <translation>Tous les points de dépôt sont réalisables.</translation>
     </message>
@@ -1292,7 +1292,7 @@
         <translation>Tous les points conviennent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/whats_this.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>All tools</source>
         <translation>Tous les outils</translation>
     </message>
@@ -1302,7 +1302,7 @@
         <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>Allowed: {}.</source>
         <translation>Permis : {}.</translation>
     </message>
@@ -1337,7 +1337,7 @@
         <translation>Angle ajouté à celui de l&apos;articulation, deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Another task panel is open; close it first.</source>
         <translation>Un autre panneau de tâche est ouvert ; fermez-le d&apos;abord.</translation>
     </message>
@@ -1457,7 +1457,7 @@
         <translation>Avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>Begins with {}. Lines: {}, files: {}</source>
         <translation>Commence par {}. Lignes : {}, fichiers : {}</translation>
     </message>
@@ -1507,7 +1507,7 @@
         <translation>Directions de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>By default: {}.</source>
         <translation>Par défaut : {}.</translation>
     </message>
@@ -1527,17 +1527,17 @@
         <translation>trajectoire CAM</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>CAM path in this document</source>
         <translation>Trajectoire CAM ici</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>CSV table of waypoints</source>
         <translation>Tableau CSV de points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Calibration table</source>
         <translation>Tableau d&apos;étalonnage</translation>
     </message>
@@ -1547,22 +1547,22 @@
         <translation>Appel</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/busy.py"/>
+        <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>Cancel</source>
         <translation>Annuler</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Cancelled: nothing was made.</source>
         <translation>Annulé : rien n&apos;a été fait.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Cancelled: the document is as it was.</source>
         <translation>Annulé : le document est tel qu&apos;il était.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Cannot be carried out:</source>
         <translation>Irréalisable :</translation>
     </message>
@@ -1577,17 +1577,17 @@
         <translation>les positions cartésiennes ne sont écrites que pour un bras tendu vers l&apos;avant ; utilisez `branch: [front, ...]` ou `motion: joint`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Cell</source>
         <translation>Cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Cell, feature, toolpath, joint path and program are made with their defaults; double-click one in the tree to change it.</source>
         <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont faits avec leurs valeurs par défaut ; double-cliquez sur l&apos;un d&apos;eux dans l&apos;arbre pour le modifier.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cell…</source>
         <translation>Cellule…</translation>
     </message>
@@ -1612,12 +1612,12 @@
         <translation>Poses de contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Choose a table…</source>
         <translation>Choisir un tableau…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Choose the file</source>
         <translation>Choisir le fichier</translation>
     </message>
@@ -1652,12 +1652,12 @@
         <translation>Défaut de circularité à {0} mm, moindres carrés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Cladding</source>
         <translation>Rechargement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cladding…</source>
         <translation>Rechargement…</translation>
     </message>
@@ -1672,22 +1672,22 @@
         <translation>Dégagement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>Clears it</source>
         <translation>Efface le choix</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Click edges of one object.</source>
         <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such.</source>
         <translation>Cliquez sur ce qui est à déposer, dans l&apos;arbre ou la vue 3D ; puis avec Ctrl sur ce sur quoi cela croît, s&apos;il y a lieu.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Close</source>
         <translation>Fermer</translation>
     </message>
@@ -1707,12 +1707,12 @@
         <translation>Forme explicite (mm) : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Closes this window</source>
         <translation>Ferme cette fenêtre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Colour of machines</source>
         <translation>Couleur des machines</translation>
     </message>
@@ -1722,7 +1722,7 @@
         <translation>Couleurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Colours of paths</source>
         <translation>Couleurs des trajectoires</translation>
     </message>
@@ -1737,12 +1737,12 @@
         <translation>Comparer avec</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Compare with measured points…</source>
         <translation>Comparer à des points mesurés…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Compares measured points with what was planned</source>
         <translation>Compare des points mesurés à ce qui était prévu</translation>
     </message>
@@ -1752,7 +1752,7 @@
         <translation>Compression</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Compute again</source>
         <translation>Recalculer</translation>
     </message>
@@ -1797,32 +1797,32 @@
         <translation>Courbe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Curves</source>
         <translation>Courbes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Curves as beads</source>
         <translation>Courbes en cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Curves…</source>
         <translation>Courbes…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Cut into layers…</source>
         <translation>Découper en couches…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cuts a feature into layers and beads</source>
         <translation>Découpe un élément en couches et en cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>DXF file of polylines</source>
         <translation>Polylignes en DXF</translation>
     </message>
@@ -1867,7 +1867,7 @@
         <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Deposit</source>
         <translation>Déposer</translation>
     </message>
@@ -1922,12 +1922,12 @@
         <translation>Point de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Deposits the chosen feature earlier</source>
         <translation>Dépose plus tôt l&apos;élément choisi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Deposits the chosen feature later</source>
         <translation>Dépose plus tard l&apos;élément choisi</translation>
     </message>
@@ -2012,7 +2012,7 @@
         <translation>Document (*.pdf)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Down</source>
         <translation>Descendre</translation>
     </message>
@@ -2032,7 +2032,7 @@
         <translation>Dessin en cours…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Driven by the expression {}</source>
         <translation>Mené par l&apos;expression {}</translation>
     </message>
@@ -2062,12 +2062,12 @@
         <translation>Edge{0} en {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Edit parameters…</source>
         <translation>Modifier les paramètres…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Edit…</source>
         <translation>Modifier…</translation>
     </message>
@@ -2077,7 +2077,7 @@
         <translation>Fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/busy.py"/>
+        <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>Ends the computation; the document stays as it was before</source>
         <translation>Arrête le calcul ; le document reste tel qu&apos;il était avant</translation>
     </message>
@@ -2097,32 +2097,32 @@
         <translation>Chaque cordon est porté par ce qui est dessous</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Export Path…</source>
         <translation>Exporter la trajectoire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Export files…</source>
         <translation>Exporter les fichiers…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Export path</source>
         <translation>Exporter la trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Export path…</source>
         <translation>Exporter la trajectoire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Export program</source>
         <translation>Exporter le programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Export…</source>
         <translation>Exporter…</translation>
     </message>
@@ -2132,12 +2132,12 @@
         <translation>Externes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Faces of the same object that the curves lie on, whose normals are the directions; none: the table&apos;s own, or the direction below.</source>
         <translation>Faces du même objet sur lesquelles reposent les courbes, dont les normales sont les directions ; aucune : celles du tableau, ou la direction ci-dessous.</translation>
     </message>
@@ -2157,17 +2157,17 @@
         <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Faces that lean out over nothing by more than this angle are red in the 3D view</source>
         <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/feature.py"/>
         <source>Feature</source>
         <translation>Élément</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Feature…</source>
         <translation>Élément…</translation>
     </message>
@@ -2197,12 +2197,12 @@
         <translation>Cotes d&apos;un bras à poignet sphérique (OPW)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/inspection/inputs.py"/>
         <source>File</source>
         <translation>Fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Files written to {}: {}</source>
         <translation>Fichiers écrits dans {} : {}</translation>
     </message>
@@ -2242,7 +2242,7 @@
         <translation>Premier cordon de cette couche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>First close the task panel that is open.</source>
         <translation>Fermez d&apos;abord le panneau de tâche ouvert.</translation>
     </message>
@@ -2252,42 +2252,42 @@
         <translation>Première couche à déposer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>First layer: {}</source>
         <translation>Première couche : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First make a cell: Cell….</source>
         <translation>Faites d&apos;abord une cellule : Cellule….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First make a feature: Feature…, Wall on Part…, Solid… and Solids on Hub… do so.</source>
         <translation>Faites d&apos;abord un élément : Élément…, Paroi sur pièce…, Solide… et Solides sur moyeu… le font.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First make a joint path: Joint Path…, or all stages at once: New Job….</source>
         <translation>Faites d&apos;abord une trajectoire articulaire : Trajectoire articulaire…, ou toutes les étapes à la fois : Nouveau travail….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First make a toolpath: Toolpath….</source>
         <translation>Faites d&apos;abord une trajectoire d&apos;outil : Trajectoire d&apos;outil….</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First open a part with faces, such as a STEP file; a mesh has none.</source>
         <translation>Ouvrez d&apos;abord une pièce à faces, comme un fichier STEP ; un maillage n&apos;en a pas.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>First open a part, or import one into this document.</source>
         <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>First open a part, or make a document.</source>
         <translation>Ouvrez d&apos;abord une pièce, ou créez un document.</translation>
     </message>
@@ -2302,7 +2302,7 @@
         <translation>Ajustement des largeurs de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Fixtures</source>
         <translation>Montages</translation>
     </message>
@@ -2312,7 +2312,7 @@
         <translation>Bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Folders</source>
         <translation>Dossiers</translation>
     </message>
@@ -2332,7 +2332,7 @@
         <translation>Repères et conventions</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Free Rotation Map…</source>
         <translation>Carte de la rotation libre…</translation>
     </message>
@@ -2392,7 +2392,7 @@
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Further part</source>
         <translation>Pièce supplémentaire</translation>
     </message>
@@ -2422,7 +2422,7 @@
         <translation>Gaz</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>General</source>
         <translation>Général</translation>
     </message>
@@ -2432,17 +2432,17 @@
         <translation>Polynômes donnés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Go to {}</source>
         <translation>Aller à {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Grows on</source>
         <translation>Croît sur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Guide</source>
         <translation>Guide</translation>
     </message>
@@ -2457,7 +2457,7 @@
         <translation>Demi-angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>Height</source>
         <translation>Hauteur</translation>
     </message>
@@ -2477,12 +2477,12 @@
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, auxquelles la circularité est dite ; aucune : un sixième, la moitié et cinq sixièmes de ce qui a été mesuré.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/whats_this.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>Help on Robotic AM</source>
         <translation>Aide de Robotic AM</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_cell.py"/>
+        <location filename="../../freecad_am/gui/views/cell.py"/>
         <source>Hide machine</source>
         <translation>Cacher la machine</translation>
     </message>
@@ -2547,7 +2547,7 @@
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>How the part is cut into layers; proposed from the selection</source>
         <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
     </message>
@@ -2562,7 +2562,7 @@
         <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
     </message>
@@ -2572,7 +2572,7 @@
         <translation>Image (*.png)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>In a job file: {}; in macros: {}.</source>
         <translation>Dans un fichier de travail : {} ; dans les macros : {}.</translation>
     </message>
@@ -2587,7 +2587,7 @@
         <translation>Entrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Inputs</source>
         <translation>Entrées</translation>
     </message>
@@ -2602,12 +2602,12 @@
         <translation>Contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Inspect…</source>
         <translation>Contrôler…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>It may follow an expression: {}.</source>
         <translation>Peut suivre une expression : {}.</translation>
     </message>
@@ -2647,7 +2647,7 @@
         <translation>Amenez la machine à au moins trois poses où chaque axe a bougé, et saisissez ce que montre le pupitre : les articulations, et la place du repère outil dans le repère de base. Le simulateur du constructeur convient aussi ; des chiffres calculés à partir de cette géométrie ne prouvent rien. Un tableau peut être collé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Joint Path…</source>
         <translation>Trajectoire articulaire…</translation>
     </message>
@@ -2667,7 +2667,7 @@
         <translation>Jerks articulaires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Joint path</source>
         <translation>Trajectoire articulaire</translation>
     </message>
@@ -2707,7 +2707,7 @@
         <translation>Articulations</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Kind</source>
         <translation>Type</translation>
     </message>
@@ -2752,7 +2752,7 @@
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Largest joint speed: {:.0f} % of what {} can do, in layer {}</source>
         <translation>Vitesse articulaire la plus grande : {:.0f} % de ce que peut {}, couche {}</translation>
     </message>
@@ -2822,7 +2822,7 @@
         <translation>Couches, trajectoires articulaires et programmes vérifiés pour les robots qui déposent de la matière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/feature.py"/>
         <source>Layers: {}, along {:.4g} mm of wall</source>
         <translation>Couches : {}, le long de {:.4g} mm de paroi</translation>
     </message>
@@ -2857,7 +2857,7 @@
         <translation>Condition minimale</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Least condition: {0:.3f}, in layer {2}</source>
         <translation>Condition la plus faible : {0:.3f}, couche {2}</translation>
     </message>
@@ -2867,7 +2867,7 @@
         <translation>Plus petit écart.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Least joint margin: {:.1f} %, of {} in layer {}</source>
         <translation>Marge articulaire la plus faible : {:.1f} %, de {}, couche {}</translation>
     </message>
@@ -2887,7 +2887,7 @@
         <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque, et les îlots viennent dans le même ordre à chaque couche, afin que chacun refroidisse pendant le dépôt des autres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Left as it was entered; for {} it would be {}.</source>
         <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
     </message>
@@ -2927,7 +2927,7 @@
         <translation>Les longueurs sont en mm, les angles en degrés. Les robots doivent avoir six axes rotatifs, les machines-outils trois axes de translation et deux de rotation ; on regarde si la vôtre en est une lorsque vous continuez.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/quantity.py"/>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>Let it follow an expression, such as {}Spreadsheet.height / 2</source>
         <translation>Le faire suivre une expression, comme {}Spreadsheet.height / 2</translation>
     </message>
@@ -2992,12 +2992,12 @@
         <translation>Aspect</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Looking at the shape.</source>
         <translation>Examen de la forme.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Looks</source>
         <translation>Aspect</translation>
     </message>
@@ -3022,12 +3022,12 @@
         <translation>M428 et M429 commutent la cinématique, et l’origine pièce est celle des remarques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>Machine</source>
         <translation>Machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Machine files</source>
         <translation>Fichiers machine</translation>
     </message>
@@ -3042,7 +3042,7 @@
         <translation>Fait à partir d&apos;un état antérieur ; recalculez le document.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Make</source>
         <translation>Faire</translation>
     </message>
@@ -3062,17 +3062,17 @@
         <translation>Constructeur et modèle de la machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses</source>
         <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Makes all stages for the selected shape, from cell to program</source>
         <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Map of the free rotation…</source>
         <translation>Carte de la rotation libre…</translation>
     </message>
@@ -3212,7 +3212,7 @@
         <translation>Machines à CN</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Name</source>
         <translation>Nom</translation>
     </message>
@@ -3227,7 +3227,7 @@
         <translation>Nom dans les travaux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>Name of the program and of its files; the controller may refuse some</source>
         <translation>Nom du programme et de ses fichiers ; la commande peut en refuser</translation>
     </message>
@@ -3242,22 +3242,22 @@
         <translation>Près d&apos;une singularité : condition {value:.3f}, permis {than:.3f}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>New Job…</source>
         <translation>Nouveau travail…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>New Machine…</source>
         <translation>Nouvelle machine…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>New job</source>
         <translation>Nouveau travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>New jobs and cells</source>
         <translation>Nouveaux travaux et cellules</translation>
     </message>
@@ -3287,7 +3287,7 @@
         <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preview_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>No preview: see the field marked.</source>
         <translation>Pas d&apos;aperçu : voyez le champ marqué.</translation>
     </message>
@@ -3302,12 +3302,12 @@
         <translation>Rien n’est déposé à côté de la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>Nothing is selected: click in the tree or the 3D view first.</source>
         <translation>Rien n&apos;est sélectionné : cliquez d&apos;abord dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Nothing stands against it so far.</source>
         <translation>Rien ne s&apos;y oppose jusqu&apos;ici.</translation>
     </message>
@@ -3372,12 +3372,12 @@
         <translation>Objectif</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Of paths, from the least to the greatest</source>
         <translation>Des trajectoires, de la plus petite à la plus grande valeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Of speeds in fields and read-outs; what is typed may have any</source>
         <translation>Des vitesses dans les champs et affichages ; ce qui est saisi peut en avoir une autre</translation>
     </message>
@@ -3387,7 +3387,7 @@
         <translation>Des angles en série : chaque axe par rapport au corps qui le précède. Axes de rotation en deg, deg/s, deg/s² et deg/s³, de translation en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe qui tourne sans fin, les vitesses, accélérations et jerks là où ils ne sont pas connus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Of walls alone: solids on a hub grow along the normals of its surface</source>
         <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
     </message>
@@ -3457,22 +3457,22 @@
         <translation>Une pose est celle des zéros en série, où la commande montre {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Open Part…</source>
         <translation>Ouvrir une pièce…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/open_part.py"/>
+        <location filename="../../freecad_am/gui/tools/open_part.py"/>
         <source>Open part</source>
         <translation>Ouvrir une pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Opens a part or mesh from a file, which may be damaged: it is read in a process of its own</source>
         <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/whats_this.py"/>
+        <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>Opens the pages of the tools</source>
         <translation>Ouvre les pages des outils</translation>
     </message>
@@ -3492,12 +3492,12 @@
         <translation>Hors d&apos;atteinte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Overhang &gt; {}°</source>
         <translation>Surplomb &gt; {}°</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Overhang &gt; {}°: {:.4g} cm² ({:.0f} %)</source>
         <translation>Surplomb &gt; {}° : {:.4g} cm² ({:.0f} %)</translation>
     </message>
@@ -3532,17 +3532,17 @@
         <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Part of revolution</source>
         <translation>Pièce de révolution</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/open_part.py"/>
+        <location filename="../../freecad_am/gui/tools/open_part.py"/>
         <source>Parts, meshes and tables of points ({})</source>
         <translation>Pièces, maillages et tableaux de points ({})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Path</source>
         <translation>Trajectoire</translation>
     </message>
@@ -3562,7 +3562,7 @@
         <translation>La charge est réglée, les limites de sécurité permettent les vitesses, et le curseur de vitesse est à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>Pick</source>
         <translation>Choisir</translation>
     </message>
@@ -3572,7 +3572,7 @@
         <translation>Planifier constant, point par point et couche par couche sur cette branche, pour regarder</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Plan joint path…</source>
         <translation>Planifier la trajectoire articulaire…</translation>
     </message>
@@ -3607,7 +3607,7 @@
         <translation>Planification</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plans the joint values of a toolpath in a cell</source>
         <translation>Planifie les valeurs articulaires d&apos;une trajectoire d&apos;outil dans une cellule</translation>
     </message>
@@ -3627,7 +3627,7 @@
         <translation>Jouer ou suspendre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plays a joint path or program with its machine</source>
         <translation>Joue une trajectoire articulaire ou un programme avec sa machine</translation>
     </message>
@@ -3637,7 +3637,7 @@
         <translation>Graphiques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plots joints against limits, distances between layers and deposit rates</source>
         <translation>Trace les articulations par rapport à leurs limites, les distances entre couches et les débits de dépôt</translation>
     </message>
@@ -3647,7 +3647,7 @@
         <translation>Les graphiques demandent matplotlib, qui n&apos;est pas installé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plots…</source>
         <translation>Graphiques…</translation>
     </message>
@@ -3667,12 +3667,12 @@
         <translation>Points et maillages</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Points are left out as long as the path stays within this distance</source>
         <translation>Des points sont laissés de côté tant que la trajectoire reste à cette distance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Points are left out as long as the tool axis stays within this angle</source>
         <translation>Des points sont laissés de côté tant que l&apos;axe de l&apos;outil reste dans cet angle</translation>
     </message>
@@ -3707,7 +3707,7 @@
         <translation>Poses avant la première ligne et après la dernière, si le tableau en a</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Post</source>
         <translation>Post-processeur</translation>
     </message>
@@ -3737,27 +3737,27 @@
         <translation>Largeurs et vitesses prévues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preflight_list.py"/>
+        <location filename="../../freecad_am/gui/program/preflight_list.py"/>
         <source>Preflight: {} kept, {} broken, {} not checked</source>
         <translation>Contrôle avant départ : {} tenues, {} non tenues, {} non vérifiées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Preview of all points; OK looks at the rapid moves too.</source>
         <translation>Aperçu de tous les points ; OK examine aussi les rapides.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Preview of one bead in {}; OK looks at those between and at the rapid moves too.</source>
         <translation>Aperçu d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.</source>
         <translation>Aperçu d&apos;un point sur {} d&apos;un cordon sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Preview of one point in {}; OK looks at those between and at the rapid moves too.</source>
         <translation>Aperçu d&apos;un point sur {} ; OK examine aussi ceux entre eux et les rapides.</translation>
     </message>
@@ -3772,37 +3772,37 @@
         <translation>Procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Process of new toolpaths</source>
         <translation>Procédé des nouvelles trajectoires d&apos;outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>Program</source>
         <translation>Programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Programs</source>
         <translation>Programmes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/suggestions.py"/>
+        <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
         <source>Programs for this machine need what only its controller tells, its pulses per degree, in a machine file of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.</source>
         <translation>Les programmes de cette machine demandent ce que seule sa commande indique, ses impulsions par degré, dans un fichier machine à vous. Tout est planifié, contrôlé et simulé sans elles ; Export Path… écrit les points dans un tableau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/suggestions.py"/>
+        <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
         <source>Programs for this machine&apos;s controller need the tool on the robot and cartesian motion. A new job is planned, checked and simulated, but no program is written with it.</source>
         <translation>Les programmes pour la commande de cette machine demandent l&apos;outil sur le robot et un mouvement cartésien. Un nouveau travail est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit avec lui.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Program…</source>
         <translation>Programme…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Proposed for {}; enter what yours really has.</source>
         <translation>Proposé pour {} ; saisissez ce qu&apos;il en est du vôtre.</translation>
     </message>
@@ -3837,7 +3837,7 @@
         <translation>RZ comme dans Chalvin 2020, ou la vraie rotation autour de l&apos;axe de l&apos;outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>RZ of the paper</source>
         <translation>RZ de l&apos;article</translation>
     </message>
@@ -3867,7 +3867,7 @@
         <translation>Mouvements rapides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Rapid moves too</source>
         <translation>Rapides aussi</translation>
     </message>
@@ -3877,7 +3877,7 @@
         <translation>Vitesse rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Read the text…</source>
         <translation>Lire le texte…</translation>
     </message>
@@ -3887,12 +3887,12 @@
         <translation>Remarques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Remove</source>
         <translation>Retirer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Renew</source>
         <translation>Renouveler</translation>
     </message>
@@ -3902,17 +3902,17 @@
         <translation>Résultat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Robot trajectory in this document</source>
         <translation>Trajectoire Robot ici</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/busy.py"/>
+        <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>Robotic AM</source>
         <translation>Robotic AM</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Robotic AM, preferences: {}</source>
         <translation>Robotic AM, préférences : {}</translation>
     </message>
@@ -3972,7 +3972,7 @@
         <translation>SINUMERIK : arrondi (G642), limitation du jerk (SOFT) et anticipation (FFWON).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>STEP file of wires</source>
         <translation>Fils en STEP</translation>
     </message>
@@ -4017,22 +4017,22 @@
         <translation>Section de la dernière couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>Select also, with Ctrl, the faces to deposit on {}.</source>
         <translation>Sélectionnez aussi, avec Ctrl, les faces à déposer sur {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>Select also, with Ctrl, the hub: a cylinder or cone.</source>
         <translation>Sélectionnez aussi, avec Ctrl, le moyeu : un cylindre ou un cône.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>Select also, with Ctrl, the part that it grows on.</source>
         <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>Select the shape to deposit, or its faces, and press Use selection.</source>
         <translation>Sélectionnez la forme à déposer, ou ses faces, et cliquez sur Prendre.</translation>
     </message>
@@ -4047,7 +4047,7 @@
         <translation>Installation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Several features: one after the other, or of all layers the lowest first</source>
         <translation>Plusieurs éléments : l&apos;un après l&apos;autre, ou de toutes les couches la plus basse d&apos;abord</translation>
     </message>
@@ -4102,22 +4102,22 @@
         <translation>Montrer tout ; un double-clic aussi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_cell.py"/>
+        <location filename="../../freecad_am/gui/views/cell.py"/>
         <source>Show machine</source>
         <translation>Montrer la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Show path layer by layer</source>
         <translation>Montrer la trajectoire couche par couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Show the machine</source>
         <translation>Montrer la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Show this job alone</source>
         <translation>Montrer ce travail seul</translation>
     </message>
@@ -4127,7 +4127,7 @@
         <translation>Montré sur la carte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Shows a toolpath or joint path layer by layer and point by point</source>
         <translation>Montre une trajectoire d&apos;outil ou articulaire couche par couche et point par point</translation>
     </message>
@@ -4137,12 +4137,12 @@
         <translation>Montre à zéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>Shows the machine at rest while the panel is open, the nozzle upright on the highest point of the path</source>
         <translation>Montre la machine au repos tant que le panneau est ouvert, la buse droite sur le point le plus haut de la trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Shows the path against the rotation about the tool; the curve can be drawn by hand</source>
         <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
     </message>
@@ -4162,7 +4162,7 @@
         <translation>Les signaux portent les noms do1, di1 et ainsi de suite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Simulate…</source>
         <translation>Simuler…</translation>
     </message>
@@ -4207,32 +4207,32 @@
         <translation>Couches pleines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Solids</source>
         <translation>Solides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Solids in plane layers</source>
         <translation>Solides en couches planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Solids on Hub…</source>
         <translation>Solides sur moyeu…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Solids on a hub</source>
         <translation>Solides sur un moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Solids on hub</source>
         <translation>Solides sur moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Solids without support</source>
         <translation>Solides sans support</translation>
     </message>
@@ -4242,7 +4242,7 @@
         <translation>Solid{0} ({1} à {2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Solid…</source>
         <translation>Solide…</translation>
     </message>
@@ -4357,7 +4357,7 @@
         <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Stands on</source>
         <translation>Repose sur</translation>
     </message>
@@ -4382,17 +4382,17 @@
         <translation>Départs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Starts on</source>
         <translation>Commence sur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>Status: {}</source>
         <translation>État : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Status: {}.</source>
         <translation>État : {}.</translation>
     </message>
@@ -4427,52 +4427,52 @@
         <translation>TRAORI et l’origine pièce sont ceux du fichier machine et des remarques</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Tables</source>
         <translation>Tableaux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Takes the beads that were measured from a file of comma separated values</source>
         <translation>Prend les cordons qui ont été mesurés dans un fichier de valeurs séparées par des virgules</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Takes the chosen feature out of this toolpath</source>
         <translation>Retire l&apos;élément choisi de ce parcours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected edges, wires, sketches or tables to be laid as beads</source>
         <translation>Prend les arêtes, fils, esquisses ou tableaux sélectionnés pour les déposer en cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected faces as a wall to be deposited on the other object that is selected</source>
         <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected faces to be covered with layers of beads</source>
         <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected shape of revolution to be deposited</source>
         <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected solids to be deposited in plane layers</source>
         <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected solids to be deposited on the cylinder or cone that is selected last</source>
         <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>Takes what is selected now. {}</source>
         <translation>Prend ce qui est sélectionné maintenant. {}</translation>
     </message>
@@ -4532,7 +4532,7 @@
         <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid.</source>
         <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
     </message>
@@ -4562,7 +4562,7 @@
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport à celui planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>The document is closed; open it again to export.</source>
         <translation>Le document est fermé ; ouvrez-le de nouveau pour exporter.</translation>
     </message>
@@ -4572,27 +4572,27 @@
         <translation>Le document est fermé ; ouvrez-le de nouveau pour enregistrer ses chiffres.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>The document or object of this panel is gone; cancel and open the panel again.</source>
         <translation>Le document ou l&apos;objet de ce panneau a disparu ; annulez et ouvrez le panneau de nouveau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the solid.</source>
         <translation>Les arêtes, le fil ou l&apos;esquisse auxquels les couches le long d&apos;un guide sont normales ; aucun : la ligne médiane du solide.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>The edges, wire, sketch or table of points to lay as beads.</source>
         <translation>Les arêtes, le fil, l&apos;esquisse ou le tableau de points à déposer en cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>The faces on which the first of geodesic and offset layers lies; none: where they stand.</source>
         <translation>Les faces sur lesquelles repose la première des couches géodésiques ou décalées ; aucune : là où elles sont posées.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>The faces to cover; of an object that is no solid all of them, where none is picked.</source>
         <translation>Les faces à recouvrir ; d&apos;un objet qui n&apos;est pas un solide, toutes, si aucune n&apos;est choisie.</translation>
     </message>
@@ -4612,7 +4612,7 @@
         <translation>La correction d’avance est de 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>The file to write; its ending follows the kind</source>
         <translation>Le fichier à écrire ; son extension suit le type</translation>
     </message>
@@ -4627,7 +4627,7 @@
         <translation>La première couche montrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>The first lines of the program as it would be written</source>
         <translation>Les premières lignes du programme tel qu&apos;il serait écrit</translation>
     </message>
@@ -4647,12 +4647,12 @@
         <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.</source>
         <translation>Le travail est prêt. Simuler… le joue ; double-cliquez sur le programme pour le lire, sur la cellule pour régler votre machine.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export Path… writes its points as a table.</source>
         <translation>La trajectoire articulaire est prête ; aucun post-processeur n&apos;écrit encore de programme pour cette machine et cette configuration. Simuler… la joue, Exporter la trajectoire… écrit ses points dans un tableau.</translation>
     </message>
@@ -4747,7 +4747,7 @@
         <translation>La machine est gardée dans le dossier de vos propres machines ; cellules et travaux la connaissent par son nom.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>The machine that deposits; the program is written for its controller</source>
         <translation>La machine qui dépose ; le programme est écrit pour sa commande</translation>
     </message>
@@ -4792,12 +4792,12 @@
         <translation>La vitesse générale est à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>The part that they are laid on; none is needed on a platform.</source>
         <translation>La pièce sur laquelle ils sont déposés ; inutile sur un plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>The part that they stand on; none is needed on a platform.</source>
         <translation>La pièce sur laquelle ils reposent ; aucune n&apos;est nécessaire sur un plateau.</translation>
     </message>
@@ -4807,7 +4807,7 @@
         <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preview_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>The preview is being computed.</source>
         <translation>L&apos;aperçu est en cours de calcul.</translation>
     </message>
@@ -4842,7 +4842,7 @@
         <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>The solids or closed meshes to deposit, one after the other; a click on one again leaves it out.</source>
         <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
     </message>
@@ -4897,7 +4897,7 @@
         <translation>La trajectoire d&apos;outil à exécuter.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>The toolpath, joint path or program to export</source>
         <translation>La trajectoire d&apos;outil, la trajectoire articulaire ou le programme à exporter</translation>
     </message>
@@ -4917,17 +4917,17 @@
         <translation>Tout le travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>The whole of {} is taken. For faces alone, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>The whole of {} is taken; Pick takes faces alone, click by click.</source>
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>The whole of {} is taken; Use selection takes faces alone.</source>
         <translation>{} est pris en entier ; Prendre la sélection prend des faces seules.</translation>
     </message>
@@ -4942,7 +4942,7 @@
         <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>Then click in the tree or the 3D view. {}</source>
         <translation>Cliquez ensuite dans l&apos;arbre ou la vue 3D. {}</translation>
     </message>
@@ -4962,7 +4962,7 @@
         <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>There is no other feature in this document; make it first.</source>
         <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
     </message>
@@ -4972,7 +4972,7 @@
         <translation>Il n&apos;y a pas encore de trajectoire à regarder : faites une trajectoire d&apos;outil ou articulaire.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/suggestions.py"/>
+        <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
         <source>There is no post for this machine&apos;s controller yet: all is planned, checked and simulated, but no program is written. Export Path… writes its points as a table.</source>
         <translation>Il n&apos;y a pas encore de post-processeur pour la commande de cette machine : tout est planifié, vérifié et simulé, mais aucun programme n&apos;est écrit. Exporter une trajectoire… écrit ses points en tableau.</translation>
     </message>
@@ -4987,7 +4987,7 @@
         <translation>Il n&apos;y a encore rien à tracer : faites une trajectoire d&apos;outil ou articulaire.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and macros never depend on them.</source>
         <translation>Ce sont des propositions de la fenêtre pour ce qui est fait désormais, et son aspect. Les documents, travaux et macros existants n&apos;en dépendent jamais.</translation>
     </message>
@@ -5012,7 +5012,7 @@
         <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>This text is of an earlier plan; do not run it.</source>
         <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
     </message>
@@ -5047,7 +5047,7 @@
         <translation>Temps de tout le travail avec avances, retards et attentes entre les couches (s).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>Time: {}, {}</source>
         <translation>Durée : {}, {}</translation>
     </message>
@@ -5072,7 +5072,7 @@
         <translation>Au prochain endroit où une limite, une singularité ou une vitesse est à regarder</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Tolerance</source>
         <translation>Tolérance</translation>
     </message>
@@ -5102,12 +5102,12 @@
         <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/toolpath_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Toolpath</source>
         <translation>Trajectoire d&apos;outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Toolpath…</source>
         <translation>Trajectoire d&apos;outil…</translation>
     </message>
@@ -5127,7 +5127,7 @@
         <translation>Écrêtage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Turn</source>
         <translation>Rotation</translation>
     </message>
@@ -5167,7 +5167,7 @@
         <translation>Unité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Unit of speeds</source>
         <translation>Unité des vitesses</translation>
     </message>
@@ -5177,7 +5177,7 @@
         <translation>Unité des coordonnées mesurées ; auto : celle que nomme le fichier, sinon mm.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>Up</source>
         <translation>Monter</translation>
     </message>
@@ -5187,7 +5187,7 @@
         <translation>Ordonnée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>Use selection</source>
         <translation>Prendre</translation>
     </message>
@@ -5257,22 +5257,22 @@
         <translation>Attentes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Wall</source>
         <translation>Paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Wall on Part…</source>
         <translation>Paroi sur pièce…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Wall on a part</source>
         <translation>Paroi sur une pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Wall on part</source>
         <translation>Paroi sur pièce</translation>
     </message>
@@ -5297,7 +5297,7 @@
         <translation>Ce qui est déposé se trouve sur la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>What is deposited: click it in the tree or the 3D view</source>
         <translation>Ce qui est déposé : cliquez dessus dans l&apos;arbre ou la vue 3D</translation>
     </message>
@@ -5307,17 +5307,17 @@
         <translation>Ce qui est dessiné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>What is made of the path</source>
         <translation>Ce qui est fait de la trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preflight_list.py"/>
+        <location filename="../../freecad_am/gui/program/preflight_list.py"/>
         <source>What is promised of this program, how it was checked and where it is worst; a click goes there</source>
         <translation>Ce qui est promis de ce programme, comment cela a été vérifié et où c’est le pire ; un clic y mène</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>What it grows on: click it with Ctrl in the tree or the 3D view</source>
         <translation>Ce sur quoi cela croît : cliquez dessus avec Ctrl dans l&apos;arbre ou la vue 3D</translation>
     </message>
@@ -5352,7 +5352,7 @@
         <translation>Là où commencent les cordons fermés.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>Where programs are written first; empty for the folder of last time, or beside the document</source>
         <translation>Là où les programmes sont d&apos;abord écrits ; vide pour le dossier de la dernière fois, ou à côté du document</translation>
     </message>
@@ -5412,7 +5412,7 @@
         <translation>Plus large jour qui peut rester ouvert entre les cordons, en part de la distance des cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>Width</source>
         <translation>Largeur</translation>
     </message>
@@ -5467,12 +5467,12 @@
         <translation>Dans la tolérance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>Without a post no file is written.</source>
         <translation>Sans post-processeur, aucun fichier n&apos;est écrit.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>Words: {}.</source>
         <translation>Mots : {}.</translation>
     </message>
@@ -5482,27 +5482,27 @@
         <translation>Verticale du monde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Write program…</source>
         <translation>Écrire le programme…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Write the moves between beads as well, on a layer of their own; toolpaths have none</source>
         <translation>Écrire aussi les mouvements entre les cordons, sur un calque à eux ; les trajectoires d&apos;outil n&apos;en ont pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it</source>
         <translation>Écrit une trajectoire en fils STEP ou DXF ou en tableau, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_window.py"/>
+        <location filename="../../freecad_am/gui/program/window.py"/>
         <source>Writes all files of the program into a folder</source>
         <translation>Écrit tous les fichiers du programme dans un dossier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Writes the controller&apos;s program of a joint path</source>
         <translation>Écrit le programme de la commande pour une trajectoire articulaire</translation>
     </message>
@@ -5732,7 +5732,7 @@
         <translation>le nom d&apos;un programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>a quantity in {}</source>
         <translation>une grandeur en {}</translation>
     </message>
@@ -5942,12 +5942,12 @@
         <translation>tous les triangles du maillage s&apos;annulent ; exportez-le à nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>along the axis</source>
         <translation>le long de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>along the wall</source>
         <translation>le long de la paroi</translation>
     </message>
@@ -6007,7 +6007,7 @@
         <translation>les entrées analogiques sont des nombres entiers, et non {0} ; changez below, gain ou zero pour qu&apos;il en soit un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/joint_path_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>and {} more</source>
         <translation>et {} autres</translation>
     </message>
@@ -6042,7 +6042,7 @@
         <translation>les arcs sont dans le plan de Y et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>around the axis</source>
         <translation>autour de l&apos;axe</translation>
     </message>
@@ -6062,7 +6062,7 @@
         <translation>selon les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>as you chose</source>
         <translation>comme vous l&apos;avez choisi</translation>
     </message>
@@ -6202,7 +6202,7 @@
         <translation>l&apos;axe {0} irait à {1} {2}/s, il peut {3} ; {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>back</source>
         <translation>arrière</translation>
     </message>
@@ -6232,7 +6232,7 @@
         <translation>cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>bead width</source>
         <translation>largeur de cordon</translation>
     </message>
@@ -6317,7 +6317,7 @@
         <translation>des blocs qui disent un temps sont comprimés en un seul, qui prendrait le temps du dernier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>blue to yellow</source>
         <translation>bleu à jaune</translation>
     </message>
@@ -6397,32 +6397,32 @@
         <translation>choisissez un fichier URDF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>click an object</source>
         <translation>cliquez sur un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>click edges</source>
         <translation>cliquez sur des arêtes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>click faces or an object</source>
         <translation>cliquez sur des faces ou un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>click it</source>
         <translation>cliquez dessus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>click it with Ctrl</source>
         <translation>cliquez avec Ctrl</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>click objects</source>
         <translation>cliquez sur des objets</translation>
     </message>
@@ -6437,7 +6437,7 @@
         <translation>fermé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>closed, {:.1f} mm</source>
         <translation>fermée, {:.1f} mm</translation>
     </message>
@@ -6482,7 +6482,7 @@
         <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>cone, R {:.4g} mm, half angle {:.4g}°</source>
         <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
     </message>
@@ -6502,7 +6502,7 @@
         <translation>RZ constant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>constant distance</source>
         <translation>distance constante</translation>
     </message>
@@ -6557,7 +6557,7 @@
         <translation>découpe des couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>cylinder, R {:.4g} mm</source>
         <translation>cylindre, R {:.4g} mm</translation>
     </message>
@@ -6637,7 +6637,7 @@
         <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>down</source>
         <translation>bas</translation>
     </message>
@@ -6652,7 +6652,7 @@
         <translation>dérive</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>dry run, nothing is deposited</source>
         <translation>marche à vide, rien n&apos;est déposé</translation>
     </message>
@@ -6752,12 +6752,12 @@
         <translation>première couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>first layer: {} contours, {:.1f} mm</source>
         <translation>première couche : {} contours, {:.1f} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>five-axis machine</source>
         <translation>machine à cinq axes</translation>
     </message>
@@ -6767,7 +6767,7 @@
         <translation>fixe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>flip</source>
         <translation>retourné</translation>
     </message>
@@ -6792,7 +6792,7 @@
         <translation>de {0} à {1} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>front</source>
         <translation>avant</translation>
     </message>
@@ -6827,7 +6827,7 @@
         <translation>fronts se divisent chacun en {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/quantity.py"/>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>give a quantity in {0}</source>
         <translation>donnez une grandeur en {0}</translation>
     </message>
@@ -6862,7 +6862,7 @@
         <translation>passage de point en point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>grey</source>
         <translation>gris</translation>
     </message>
@@ -7417,7 +7417,7 @@
         <translation>c&apos;est vide ; donnez un nombre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/quantity.py"/>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>it is empty; give a quantity in {0}</source>
         <translation>c&apos;est vide ; donnez une grandeur en {0}</translation>
     </message>
@@ -7687,7 +7687,7 @@
         <translation>sa cellule a des axes externes, pour lesquels la carte n&apos;est pas encore tracée ; les courbes de Tracer montrent tous les axes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>its cell is gone</source>
         <translation>sa cellule a disparu</translation>
     </message>
@@ -7782,7 +7782,7 @@
         <translation>sa durée, sa vitesse ou son lissage n&apos;est pas de ceux qui sont tenus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>its toolpath is gone; choose another, or delete the joint path too</source>
         <translation>sa trajectoire d&apos;outil a disparu ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
     </message>
@@ -7827,17 +7827,17 @@
         <translation>positions articulaires et cartésiennes sont mêlées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>joint limits (Fournier)</source>
         <translation>limites articulaires (Fournier)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>joint limits (Klein)</source>
         <translation>limites articulaires (Klein)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>joint limits (Liégeois)</source>
         <translation>limites articulaires (Liégeois)</translation>
     </message>
@@ -7897,7 +7897,7 @@
         <translation>couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>layer by layer</source>
         <translation>couche par couche</translation>
     </message>
@@ -8042,7 +8042,7 @@
         <translation>lignes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>lines of the surface</source>
         <translation>lignes de la surface</translation>
     </message>
@@ -8087,7 +8087,7 @@
         <translation>la plus basse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>lowest layer first</source>
         <translation>couche la plus basse d&apos;abord</translation>
     </message>
@@ -8122,7 +8122,7 @@
         <translation>masse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/program_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
         <source>mass: {:.1f} g</source>
         <translation>masse : {:.1f} g</translation>
     </message>
@@ -8257,7 +8257,7 @@
         <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>no flip</source>
         <translation>non retourné</translation>
     </message>
@@ -8337,7 +8337,7 @@
         <translation>pas de source</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>none</source>
         <translation>aucun</translation>
     </message>
@@ -8367,7 +8367,7 @@
         <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>normal to a guide curve</source>
         <translation>normales à une courbe guide</translation>
     </message>
@@ -8497,7 +8497,7 @@
         <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>of the shape</source>
         <translation>de la forme</translation>
     </message>
@@ -8542,7 +8542,7 @@
         <translation>sur {0} de {1} cordons, {2} mm en tout, la torche commence à tourner avant les angles, jusqu&apos;à {3} deg de ce qui est demandé, pour ne pas tourner plus vite que {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/feature_order.py"/>
+        <location filename="../../freecad_am/gui/widgets/feature_order.py"/>
         <source>one after the other</source>
         <translation>l&apos;un après l&apos;autre</translation>
     </message>
@@ -8572,7 +8572,7 @@
         <translation>ouvert</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>open, {:.1f} mm</source>
         <translation>ouverte, {:.1f} mm</translation>
     </message>
@@ -8607,7 +8607,7 @@
         <translation>selon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>parallel to where it stands</source>
         <translation>parallèles à son appui</translation>
     </message>
@@ -8617,7 +8617,7 @@
         <translation>pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>part on robot</source>
         <translation>pièce sur robot</translation>
     </message>
@@ -8637,7 +8637,7 @@
         <translation>trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/picking/pick_field.py"/>
         <source>pick</source>
         <translation>choisir</translation>
     </message>
@@ -8647,7 +8647,7 @@
         <translation>position</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>plane of symmetry</source>
         <translation>plan de symétrie</translation>
     </message>
@@ -8657,7 +8657,7 @@
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>point by point</source>
         <translation>point par point</translation>
     </message>
@@ -8852,7 +8852,7 @@
         <translation>section du fil fois son dévidage, comparée à largeur x hauteur de couche x vitesse d’avance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>select</source>
         <translation>sélectionner</translation>
     </message>
@@ -8932,7 +8932,7 @@
         <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>some of what is selected is no solid</source>
         <translation>une partie de la sélection n&apos;est pas un solide</translation>
     </message>
@@ -9087,7 +9087,7 @@
         <translation>la base de {0} est à {1} mm au-dessous du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the base touches {what}</source>
         <translation>la base touche {what}</translation>
     </message>
@@ -9147,7 +9147,7 @@
         <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the deposit</source>
         <translation>le dépôt</translation>
     </message>
@@ -9357,7 +9357,7 @@
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the link of {axis} touches {what}</source>
         <translation>le corps de {axis} touche {what}</translation>
     </message>
@@ -9512,7 +9512,7 @@
         <translation>le mouvement {0} n&apos;est pas compris, ou sa position n&apos;existe pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the nozzle</source>
         <translation>la buse</translation>
     </message>
@@ -9552,7 +9552,7 @@
         <translation>les plans normaux à sa ligne moyenne ne la coupent pas chacun en une courbe ; de telles couches ne sont pas pour cette paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/touching.py"/>
+        <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the platform</source>
         <translation>le plateau</translation>
     </message>
@@ -10047,7 +10047,7 @@
         <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>there is no folder {}</source>
         <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
@@ -10197,7 +10197,7 @@
         <translation>trois triangles ou plus partagent une arête : {0} arêtes, la première en {1} ; réparez le maillage (Mesh, Analyser)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>through the part, without support</source>
         <translation>à travers la pièce, sans support</translation>
     </message>
@@ -10232,12 +10232,12 @@
         <translation>les longueurs d&apos;outil ne sont pas connues ; faites-les omettre par le trancheur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>tool on robot</source>
         <translation>outil sur robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>tool on the robot, part on a positioner</source>
         <translation>outil sur le robot, pièce sur un positionneur</translation>
     </message>
@@ -10327,7 +10327,7 @@
         <translation>hors d&apos;atteinte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>up</source>
         <translation>haut</translation>
     </message>
@@ -10367,12 +10367,12 @@
         <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>v in mm/min; R² {:.4f}, RMSE {:.3f} mm</source>
         <translation>v en mm/min ; R² {:.4f}, RMSE {:.3f} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>violet to orange</source>
         <translation>violet à orange</translation>
     </message>
@@ -10447,7 +10447,7 @@
         <translation>ce qui se passe entre les mouvements est dans un autre ordre que planifié</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences_page.py"/>
+        <location filename="../../freecad_am/gui/preferences/page.py"/>
         <source>what the machine&apos;s controller reads</source>
         <translation>ce que lit la commande de la machine</translation>
     </message>
@@ -10532,7 +10532,7 @@
         <translation>écrivez STEP ou DXF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/quantity.py"/>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>write decimals with &apos;{0}&apos;, as in 1{1}5 {2}, and do not group digits</source>
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
@@ -10812,7 +10812,7 @@
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/view_joint_path.py"/>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
         <source>{0} has other axes than the joint path</source>
         <translation>{0} a d&apos;autres axes que la trajectoire articulaire</translation>
     </message>
@@ -10962,7 +10962,7 @@
         <translation>il y manque {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>{0} is missing in this document. Make it first: button {0} in the toolbar.</source>
         <translation>{0} manque dans ce document. Faites-le d&apos;abord : bouton {0} de la barre d&apos;outils.</translation>
     </message>
@@ -11142,7 +11142,7 @@
         <translation>{0} n&apos;est pas un nombre ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>{0} is not a number; give one such as 0.1</source>
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
     </message>
@@ -11347,7 +11347,7 @@
         <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/quantity.py"/>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>{0} is not understood; {1}</source>
         <translation>{0} n&apos;est pas compris ; {1}</translation>
     </message>
@@ -11702,7 +11702,7 @@
         <translation>{0} solide(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
@@ -11957,7 +11957,7 @@
         <translation>{0} ; mesurez au moins deux vitesses et deux rayons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_links.py"/>
+        <location filename="../../freecad_am/gui/nodes/machine_links.py"/>
         <source>{0}; the link has its plain solid for now</source>
         <translation>{0} ; le corps garde pour l&apos;instant son solide simple</translation>
     </message>
@@ -12007,7 +12007,7 @@
         <translation>large de {:.4g} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>{:g} mm wide: {} where straight, {} where r is {:g} mm</source>
         <translation>largeur {:g} mm : {} en ligne droite, {} là où r est {:g} mm</translation>
     </message>
@@ -12077,7 +12077,7 @@
         <translation>{} (deg)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fields.py"/>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>{} (empty: none)</source>
         <translation>{} (vide : aucun)</translation>
     </message>
@@ -12092,32 +12092,32 @@
         <translation>{} ({})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/pick.py"/>
         <source>{} are missing: click them in the tree or the 3D view.</source>
         <translation>{} manquent : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} at rest, its turning axes at 0</source>
         <translation>{} au repos, ses axes rotatifs à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min</source>
         <translation>{} cordons, {:g} à {:g} mm/min, r {:g} à {:g} mm, fil {:g} m/min</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking.py"/>
+        <location filename="../../freecad_am/gui/picking/picking.py"/>
         <source>{} belongs to a job; select the part itself.</source>
         <translation>{} appartient à un travail ; sélectionnez la pièce elle-même.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>{} cannot be carried out: {}</source>
         <translation>{} ne peut pas être exécuté : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{} cannot be taken for this.</source>
         <translation>{} ne convient pas ici.</translation>
     </message>
@@ -12132,17 +12132,17 @@
         <translation>{} compte dans l&apos;autre sens (signe)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/curves_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>{} curves, {:.4g} mm in all</source>
         <translation>{} courbes, {:.4g} mm en tout</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} does not reach the part with the nozzle upright: all its axes are drawn at 0</source>
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cladding_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{} faces in {} sheets, {:.4g} cm² in each of {} layers</source>
         <translation>{} faces en {} nappes, {:.4g} cm² dans chacune des {} couches</translation>
     </message>
@@ -12157,32 +12157,32 @@
         <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/needs.py"/>
+        <location filename="../../freecad_am/gui/tools/needs.py"/>
         <source>{} has no result: {}</source>
         <translation>{} n&apos;a pas de résultat : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking.py"/>
+        <location filename="../../freecad_am/gui/picking/picking.py"/>
         <source>{} has no shape; select a body, solid, face, link or sketch.</source>
         <translation>{} n&apos;a pas de forme ; sélectionnez un corps, un solide, une face, un lien ou une esquisse.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>{} is a mesh, which has no exact faces; select a part such as of a STEP file.</source>
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/hub_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>{} is another object; faces of a hub are of one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;un moyeu sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/wall_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>{} is another object; faces of a wall are of one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;une paroi sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/busy.py"/>
+        <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>{} is being computed</source>
         <translation>{} est en cours de calcul</translation>
     </message>
@@ -12192,12 +12192,12 @@
         <translation>{} est caché, ou n&apos;a pas de résultat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/pick_field.py"/>
+        <location filename="../../freecad_am/gui/panels/pick.py"/>
         <source>{} is missing: click it in the tree or the 3D view.</source>
         <translation>{} manque : cliquez dessus dans l&apos;arbre ou la vue 3D.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inputs.py"/>
+        <location filename="../../freecad_am/gui/picking/inputs.py"/>
         <source>{} is missing: select it and press its Use selection.</source>
         <translation>{} manque : sélectionnez-le et cliquez sur Prendre.</translation>
     </message>
@@ -12217,7 +12217,7 @@
         <translation>{} n&apos;est pas inférieur à {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preview_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/preview.py"/>
         <source>{} is out of date; this is of what it was.</source>
         <translation>{} n&apos;est pas à jour ; ceci est de ce qu&apos;il était.</translation>
     </message>
@@ -12227,7 +12227,7 @@
         <translation>{} est écrit.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>{} is {}. Double-click a stage in the tree to change it.</source>
         <translation>{} est {}. Double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
     </message>
@@ -12237,27 +12237,27 @@
         <translation>{} est {} : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking.py"/>
+        <location filename="../../freecad_am/gui/picking/picking.py"/>
         <source>{} links to nothing: what it showed is gone or was not loaded.</source>
         <translation>{} ne lie à rien : ce qu&apos;il montrait a disparu ou n&apos;a pas été chargé.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>{} mm/min (the fastest of the table)</source>
         <translation>{} mm/min (la plus rapide du tableau)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/fit_plot.py"/>
+        <location filename="../../freecad_am/gui/widgets/fit_plot.py"/>
         <source>{} mm/min (the slowest of the table)</source>
         <translation>{} mm/min (la plus lente du tableau)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking.py"/>
+        <location filename="../../freecad_am/gui/picking/picking.py"/>
         <source>{} objects are selected; pick the substrate</source>
         <translation>{} objets sont sélectionnés ; choisissez le substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/picking.py"/>
+        <location filename="../../freecad_am/gui/picking/picking.py"/>
         <source>{} objects are selected; pick the wall and the substrate</source>
         <translation>{} objets sont sélectionnés ; choisissez la paroi et le substrat</translation>
     </message>
@@ -12277,57 +12277,57 @@
         <translation>{} montre {} à zéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_proposal.py"/>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
         <source>{} solids are selected, which are filled</source>
         <translation>{} solides sont sélectionnés, qui sont remplis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/solid_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>{} solids, {:.4g} mm high; first layer: {} contours</source>
         <translation>{} solides, hauteur {:.4g} mm ; première couche : {} contours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/export_panel.py"/>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>{} was written</source>
         <translation>{} a été écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} with the nozzle upright: {} is {:.0f}° from its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} est à {:.0f}° de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{} with the nozzle upright: {} is {:.0f}° past its limit</source>
         <translation>{} avec la buse droite sur la pièce : {} dépasse sa limite de {:.0f}°</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>{}, {}</source>
         <translation>{}, {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>{}. {}</source>
         <translation>{}. {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/stage_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/stage.py"/>
         <source>{}: advanced</source>
         <translation>{} : avancé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/context_menu.py"/>
+        <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>{}: cancelled</source>
         <translation>{} : annulé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/busy.py"/>
+        <location filename="../../freecad_am/gui/background/busy.py"/>
         <source>{}: {}</source>
         <translation>{} : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/cell_panel.py"/>
+        <location filename="../../freecad_am/gui/panels/cell.py"/>
         <source>{}: {} is now {}. {}</source>
         <translation>{} : {} est maintenant {}. {}</translation>
     </message>
@@ -12337,12 +12337,12 @@
         <translation>{} : {} points au-delà de la limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/job_panel.py"/>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>{}: {}.</source>
         <translation>{} : {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/choices.py"/>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>µm</source>
         <translation>µm</translation>
     </message>
@@ -12352,7 +12352,7 @@
         <translation>σmin / σmax</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/texts.py"/>
+        <location filename="../../freecad_am/gui/texts/translation.py"/>
         <source>“{}”</source>
         <translation>« {} »</translation>
     </message>
@@ -12365,12 +12365,12 @@
 <context>
     <name>RoboticAM_Cell</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Adds a cell: machine, set-up, platform and nozzle</source>
         <translation>Ajoute une cellule : machine, installation, plateau et buse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cell…</source>
         <translation>Cellule…</translation>
     </message>
@@ -12378,12 +12378,12 @@
 <context>
     <name>RoboticAM_Cladding</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cladding…</source>
         <translation>Rechargement…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected faces to be covered with layers of beads</source>
         <translation>Prend les faces sélectionnées pour les recouvrir de couches de cordons</translation>
     </message>
@@ -12391,12 +12391,12 @@
 <context>
     <name>RoboticAM_Curves</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Curves…</source>
         <translation>Courbes…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected edges, wires, sketches or tables to be laid as beads</source>
         <translation>Prend les arêtes, fils, esquisses ou tableaux sélectionnés pour les déposer en cordons</translation>
     </message>
@@ -12404,12 +12404,12 @@
 <context>
     <name>RoboticAM_ExportPath</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Export Path…</source>
         <translation>Exporter la trajectoire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Writes a path as STEP or DXF wires or as a table, or makes a CAM path or Robot trajectory of it</source>
         <translation>Écrit une trajectoire en fils STEP ou DXF ou en tableau, ou en fait une trajectoire CAM ou Robot</translation>
     </message>
@@ -12417,12 +12417,12 @@
 <context>
     <name>RoboticAM_Feature</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Feature…</source>
         <translation>Élément…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected shape of revolution to be deposited</source>
         <translation>Prend la forme de révolution sélectionnée pour la déposer</translation>
     </message>
@@ -12430,12 +12430,12 @@
 <context>
     <name>RoboticAM_Inspect</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Compares measured points with what was planned</source>
         <translation>Compare des points mesurés à ce qui était prévu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Inspect…</source>
         <translation>Contrôler…</translation>
     </message>
@@ -12443,12 +12443,12 @@
 <context>
     <name>RoboticAM_JointPath</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Joint Path…</source>
         <translation>Trajectoire articulaire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plans the joint values of a toolpath in a cell</source>
         <translation>Planifie les valeurs articulaires d&apos;une trajectoire d&apos;outil dans une cellule</translation>
     </message>
@@ -12456,12 +12456,12 @@
 <context>
     <name>RoboticAM_NewJob</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Makes all stages for the selected shape, from cell to program</source>
         <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>New Job…</source>
         <translation>Nouveau travail…</translation>
     </message>
@@ -12469,12 +12469,12 @@
 <context>
     <name>RoboticAM_NewMachine</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Makes a machine file from a URDF, a Denavit-Hartenberg table or OPW figures, checked against poses</source>
         <translation>Fait un fichier machine d&apos;un URDF, d&apos;un tableau de Denavit-Hartenberg ou de cotes OPW, vérifié par des poses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>New Machine…</source>
         <translation>Nouvelle machine…</translation>
     </message>
@@ -12482,12 +12482,12 @@
 <context>
     <name>RoboticAM_OpenPart</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Open Part…</source>
         <translation>Ouvrir une pièce…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Opens a part or mesh from a file, which may be damaged: it is read in a process of its own</source>
         <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
     </message>
@@ -12495,12 +12495,12 @@
 <context>
     <name>RoboticAM_Path</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Path</source>
         <translation>Trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Shows a toolpath or joint path layer by layer and point by point</source>
         <translation>Montre une trajectoire d&apos;outil ou articulaire couche par couche et point par point</translation>
     </message>
@@ -12508,12 +12508,12 @@
 <context>
     <name>RoboticAM_Plots</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plots joints against limits, distances between layers and deposit rates</source>
         <translation>Trace les articulations par rapport à leurs limites, les distances entre couches et les débits de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plots…</source>
         <translation>Graphiques…</translation>
     </message>
@@ -12521,12 +12521,12 @@
 <context>
     <name>RoboticAM_Program</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Program…</source>
         <translation>Programme…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Writes the controller&apos;s program of a joint path</source>
         <translation>Écrit le programme de la commande pour une trajectoire articulaire</translation>
     </message>
@@ -12534,12 +12534,12 @@
 <context>
     <name>RoboticAM_Simulate</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Plays a joint path or program with its machine</source>
         <translation>Joue une trajectoire articulaire ou un programme avec sa machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Simulate…</source>
         <translation>Simuler…</translation>
     </message>
@@ -12547,12 +12547,12 @@
 <context>
     <name>RoboticAM_Solid</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Solid…</source>
         <translation>Solide…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected solids to be deposited in plane layers</source>
         <translation>Prend les solides sélectionnés à déposer en couches planes</translation>
     </message>
@@ -12560,12 +12560,12 @@
 <context>
     <name>RoboticAM_SolidsOnHub</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Solids on Hub…</source>
         <translation>Solides sur moyeu…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected solids to be deposited on the cylinder or cone that is selected last</source>
         <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
@@ -12573,12 +12573,12 @@
 <context>
     <name>RoboticAM_SpinMap</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Free Rotation Map…</source>
         <translation>Carte de la rotation libre…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Shows the path against the rotation about the tool; the curve can be drawn by hand</source>
         <translation>Montre la trajectoire en fonction de la rotation autour de l&apos;outil ; la courbe peut être tracée à la main</translation>
     </message>
@@ -12586,12 +12586,12 @@
 <context>
     <name>RoboticAM_Toolpath</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cuts a feature into layers and beads</source>
         <translation>Découpe un élément en couches et en cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Toolpath…</source>
         <translation>Trajectoire d&apos;outil…</translation>
     </message>
@@ -12599,12 +12599,12 @@
 <context>
     <name>RoboticAM_WallOnPart</name>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Takes the selected faces as a wall to be deposited on the other object that is selected</source>
         <translation>Prend les faces sélectionnées comme paroi à déposer sur l&apos;autre objet sélectionné</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/commands.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Wall on Part…</source>
         <translation>Paroi sur pièce…</translation>
     </message>

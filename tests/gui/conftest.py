@@ -311,7 +311,7 @@ def joint_path(person, hemisphere):
 
 def _forget_places(window):
     """Docks of ours come in the next test as they come in a new session."""
-    from freecad_am.gui import docks
+    from freecad_am.gui.docks import places as docks
 
     for dock in docks._docks.values():
         window.removeDockWidget(dock)

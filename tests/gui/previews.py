@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What previews draw, found in the scene."""
 
-from freecad_am.gui.preview import NAME
+from freecad_am.gui.views.preview import NAME
 
 
 def drawn_by_previews(person, kind):

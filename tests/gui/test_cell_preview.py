@@ -14,8 +14,8 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation.placing import at_rest
-from freecad_am.gui import cell_panel
-from freecad_am.gui.cell_nodes import resting_point
+from freecad_am.gui.nodes.cell import resting_point
+from freecad_am.gui.panels import cell as cell_panel
 from freecad_am.kdl.chain import KdlArm
 from freecad_am.objects.progress import Cancelled
 from tests.gui.previews import drawn_by_previews

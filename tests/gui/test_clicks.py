@@ -7,7 +7,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.gui import stage_panel
+from freecad_am.gui import registry
 
 
 def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
@@ -174,7 +174,7 @@ def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(per
     stages = api.make_all(doc, hemisphere)
     steps, keys = doc.UndoCount, [obj.Key for obj in stages]
     for obj in stages:
-        stage_panel.edit(obj)
+        registry.edit(obj)
         panel = person.panel(f"RoboticAM_{type(obj.Proxy).__name__}")
         assert "up to date" in person.field(panel, "findings").text()
         for fold in panel.findChildren(person.widgets.QToolButton):
@@ -207,12 +207,12 @@ def test_inputs_and_the_name_can_be_changed_in_the_panel(person, hemisphere, coa
     doc = hemisphere.Document
     _, feature, toolpath, _, program = api.make_all(doc, hemisphere, name="CUP")
     other = api.make_cell(doc, "Other cell", platform_diameter=100)
-    stage_panel.edit(toolpath)
+    registry.edit(toolpath)
     person.choose(person.panel("RoboticAM_Toolpath"), "InputCell", "Other cell")
     person.press("Ok")
     person.panel_closed()
     assert toolpath.Cell == other and toolpath.Feature == feature
-    stage_panel.edit(program)
+    registry.edit(program)
     panel = person.panel("RoboticAM_Program")
     person.type(panel, "ProgramName", "not a name")
     person.press("Ok")

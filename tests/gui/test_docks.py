@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.commands import GROUPS
 from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
 from freecad_am.gui.simulation import dock as simulations
 from freecad_am.gui.spin_map import dock as maps
+from freecad_am.gui.tools.commands import GROUPS
 
 BELOW = {"RoboticAM_Path": paths.NAME, "RoboticAM_Plots": plots.NAME, "RoboticAM_SpinMap": maps.NAME}
 ORDERS = [tuple(list(BELOW)[(start + at) % 3] for at in range(3)) for start in range(3)]

@@ -4,7 +4,7 @@
 import numpy as np
 
 from freecad_am import api
-from freecad_am.gui.preview import NAME
+from freecad_am.gui.views.preview import NAME
 
 PANEL = "RoboticAM_RevolutionFeature"
 ORANGE = (245, 120, 0)

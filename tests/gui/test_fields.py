@@ -7,8 +7,8 @@ import pytest
 from freecad_am import api
 from freecad_am.core.parameters import field as parameters
 from freecad_am.core.parameters.cell import CellParameters
-from freecad_am.gui import fields
-from freecad_am.gui.quantity import PlainQuantity, QuantityField
+from freecad_am.gui.widgets import fields
+from freecad_am.gui.widgets.quantity import PlainQuantity, QuantityField
 from freecad_am.objects.cell import Cell
 from freecad_am.objects.developable_feature import DevelopableFeature
 from freecad_am.objects.feature import RevolutionFeature

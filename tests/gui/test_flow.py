@@ -8,8 +8,8 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.commands import GROUPS
-from freecad_am.gui.stage_panel import edit
+from freecad_am.gui.registry import edit
+from freecad_am.gui.tools.commands import GROUPS
 from freecad_am.objects.job_group import is_group
 from freecad_am.objects.proposed_family import proposed
 from freecad_am.objects.shapes import taken
@@ -339,7 +339,7 @@ def test_context_menus_do_what_they_say(person, hemisphere, coarse):
     found["Shown"].trigger()
     assert doc.JointPath.ViewObject.Visibility and not doc.Toolpath.ViewObject.Visibility
     person.select(hemisphere)
-    from freecad_am.gui import menus
+    from freecad_am.gui.tools import menus
 
     assert menus.for_selection() == ["RoboticAM_NewJob"]
     person.select(doc.Cell)

@@ -17,8 +17,8 @@ from freecad_am import api
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.inspection import InspectionParameters
 from freecad_am.core.parameters.program import ProgramParameters
-from freecad_am.gui import fields
-from freecad_am.gui.quantity import PlainQuantity, QuantityField
+from freecad_am.gui.widgets import fields
+from freecad_am.gui.widgets.quantity import PlainQuantity, QuantityField
 from freecad_am.objects.rows import rows
 from tests import run
 

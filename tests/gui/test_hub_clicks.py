@@ -12,7 +12,7 @@ import pytest
 from freecad_am import api
 from freecad_am.core.process import bead_table
 from freecad_am.gui.path import colouring, legend
-from freecad_am.gui.view_hub import HubView
+from freecad_am.gui.views.hub import HubView
 
 ORANGE = (245, 120, 0)  # of first layers
 PANEL = "RoboticAM_DevelopableFeature"

@@ -61,7 +61,7 @@ def test_no_two_icons_look_alike_at_sixteen_pixels(person):
 
 
 def test_every_tool_has_an_icon_of_its_own(person):
-    from freecad_am.gui.commands import GROUPS
+    from freecad_am.gui.tools.commands import GROUPS
 
     found = {}
     for name in itertools.chain(*GROUPS):

@@ -22,7 +22,7 @@ def clean():
 
 @pytest.fixture
 def page(person, clean):
-    from freecad_am.gui.preferences_page import PreferencesPage
+    from freecad_am.gui.preferences.page import PreferencesPage
 
     shown = PreferencesPage()
     shown.loadSettings()

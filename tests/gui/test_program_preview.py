@@ -7,8 +7,8 @@ import threading
 import pytest
 
 from freecad_am import api
-from freecad_am.gui import stage_panel
-from freecad_am.gui.program_panel import FIRST
+from freecad_am.gui import registry
+from freecad_am.gui.panels.program import FIRST
 
 PANEL = "RoboticAM_Program"
 
@@ -70,7 +70,7 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(per
     program = api.make_program(document, joint_path, name="CUP", post="fanuc")
     key = program.Key
     person.gui.runCommand("Std_Refresh")
-    stage_panel.edit(program)
+    registry.edit(program)
     panel = person.panel(PANEL)
     told(person, panel, "Begins with CUP.LS.")
     for fold in ("FoldInputs", "FoldStartat"):
@@ -135,7 +135,7 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
 def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(person, hand, joint_path):
     document = joint_path.Document
     program = api.make_program(document, joint_path, name="CUP", post="fanuc")
-    stage_panel.edit(program)
+    registry.edit(program)
     panel = person.panel(PANEL)
     told(person, panel, "Preflight: ")
     promises = person.field(panel, "Preflight")

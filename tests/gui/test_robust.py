@@ -4,8 +4,11 @@
 import gc
 import json
 import os
+import re
 import shutil
+import sys
 import threading
+import zipfile
 from pathlib import Path
 
 import FreeCAD as App
@@ -13,8 +16,8 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics import machine as machines
-from freecad_am.gui import job_proposal
-from freecad_am.gui.picking import Pick
+from freecad_am.gui.new_job import proposal as job_proposal
+from freecad_am.gui.picking.picking import Pick
 from freecad_am.objects.job_group import is_group
 
 TOOLS = ("NewJob", "Cell", "Feature", "WallOnPart", "Solid", "SolidsOnHub", "Toolpath", "JointPath", "Program")
@@ -375,6 +378,9 @@ def test_a_document_of_an_earlier_version(person, tmp_path):
     doc = App.openDocument(path)
     person.idle(0.5)
     assert [obj.Proxy.kind for obj in api.stages_of(doc)] == ["cell", "feature", "toolpath", "joint path", "program"]
+    with zipfile.ZipFile(EARLIER) as file:
+        named = set(re.findall(r'module="(freecad_am\.gui\.[^"]+)"', file.read("GuiDocument.xml").decode()))
+    assert len(named) == 5 and named <= sys.modules.keys()  # view providers are found, under whatever name they had
     assert len(api.result(doc.Toolpath).layers) == doc.Toolpath.Layers > 0
     use_everything(person, doc)
     doc.recompute()

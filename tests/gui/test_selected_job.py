@@ -188,7 +188,7 @@ def test_the_cell_follows_the_toolpath_until_one_is_chosen(person, stages):
 
 def test_the_point_at_the_origin_is_of_no_path(person, jobs):
     """A joint path without its toolpath, as in a document that it was copied into alone, draws nothing."""
-    from freecad_am.gui.lines import Points
+    from freecad_am.gui.nodes.lines import Points
 
     points = Points(7.0, (1.0, 0.0, 0.0))
     assert points.set_node.numPoints.getValue() == 0 and points.coordinates.point.getNum() == 0

@@ -8,8 +8,8 @@ import numpy as np
 
 from freecad_am import api
 from freecad_am.core.geometry.patch_wall import FirstCurve
-from freecad_am.gui import stage_panel
-from freecad_am.gui.wall_nodes import WallNodes, first_curves
+from freecad_am.gui import registry
+from freecad_am.gui.nodes.wall import WallNodes, first_curves
 
 
 def on_a_pipe(hemisphere):
@@ -32,7 +32,7 @@ def test_a_wall_on_a_substrate_is_shown_and_its_panel_opens(person, hemisphere):
     view = feature.ViewObject.Proxy.wall
     assert view.first.coordinates.point.getNum() > 100 and view.faces.triangles.coordIndex.getNum() > 20
     before = feature.Key
-    stage_panel.edit(feature)
+    registry.edit(feature)
     panel = person.panel("RoboticAM_SurfaceFeature")
     assert person.field(panel, "Substrate").text() == "Pipe"
     person.press("Ok")
@@ -47,7 +47,7 @@ def test_another_substrate_is_chosen_in_the_panel(person, hemisphere):
     block.Height = 20
     block.Placement.Base = App.Vector(-50, -50, 0)
     document.recompute()
-    stage_panel.edit(feature)
+    registry.edit(feature)
     panel = person.panel("RoboticAM_SurfaceFeature")
     person.field(panel, "PickSubstrate").click()
     person.gui.Selection.clearSelection()

@@ -3,7 +3,7 @@
 
 import pytest
 
-from freecad_am.gui import commands, whats_this
+from freecad_am.gui.tools import commands, whats_this
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 from ...core.inspection.bands import band_of, bands
 from ...core.inspection.figures import Spread
 from ..path.colouring import round_numbers
-from ..texts import tr
+from ..texts.translation import tr
 
 HEIGHT = 130
 _SIDE, _TOP, _FOOT, _FAINT = 12, 6, 34, 90

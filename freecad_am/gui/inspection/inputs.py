@@ -14,10 +14,11 @@ from ...core.inspection.point_file import MESHES, TABLES
 from ...core.issues import InputError
 from ...objects.inspection import KINDS
 from ...objects.stage import Link, stage_of
-from .. import inputs, recorded
-from ..picking import usable
-from ..selection import meant
-from ..texts import tr, translated
+from .. import recorded
+from ..picking import inputs
+from ..picking.picking import usable
+from ..picking.selection import meant
+from ..texts.translation import tr, translated
 
 
 class PlannedChoice(inputs.Input):

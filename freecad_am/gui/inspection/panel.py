@@ -15,9 +15,9 @@ from ...core.inspection.inspect import Inspected
 from ...core.inspection.table import rows
 from ...core.issues import AmError
 from ...objects.inspection import Inspection
-from ..fold import Fold
-from ..stage_panel import StagePanel
-from ..texts import tr, translated, translated_error
+from ..panels.stage import StagePanel, show
+from ..texts.translation import tr, translated, translated_error
+from ..widgets.fold import Fold
 from .histogram import Histogram
 from .inputs import FileChoice, PlannedChoice
 
@@ -131,12 +131,10 @@ class InspectionPanel(StagePanel):
             self.say(tr("The document is closed; open it again to save its figures."))
 
 
-def show() -> None:
+def inspect() -> None:
     """Open the panel of a new inspection; of the one that is selected, if there is one."""
-    from .. import stage_panel
-
     chosen = [obj for obj in Gui.Selection.getSelection() if isinstance(getattr(obj, "Proxy", None), Inspection)]
     if chosen and chosen[-1].Document is App.ActiveDocument:
-        stage_panel.show(InspectionPanel(chosen[-1]))
+        show(InspectionPanel(chosen[-1]))
     else:
-        stage_panel.show(InspectionPanel())
+        show(InspectionPanel())

@@ -10,11 +10,11 @@ from pivy import coin
 
 from ...core.inspection.bands import NOT_COUNTED, bands, colours
 from ...core.inspection.inspect import Inspected
-from ..lines import fill, unshaded
+from ..nodes.lines import fill, unshaded
 from ..path import legend
 from ..path.colouring import Scale
-from ..texts import marked
-from ..view_base import StageView
+from ..texts.translation import marked
+from ..views.base import StageView
 
 
 class InspectionView(StageView):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ..texts import tr
+from ..texts.translation import tr
 
 Array = NDArray[np.float64]
 BESIDE = 12  # pixels in a cell beside its text

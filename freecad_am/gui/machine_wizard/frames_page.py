@@ -14,7 +14,7 @@ from ...core.issues import InputError
 from ...core.kinematics import machine_draft, pendant
 from ...core.kinematics.chain import Chain
 from ...core.kinematics.pendant import Shown
-from ..texts import tr
+from ..texts.translation import tr
 from .figure_table import FigureTable
 from .page import Page, axis_names, choice, heading
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...core.issues import InputError
-from ..texts import tr
+from ..texts.translation import tr
 from .figure_table import FigureTable
 from .page import Page, axis_names
 

@@ -15,7 +15,7 @@ from ...core.kinematics.opw import OpwArm
 from ...objects import user_machines
 from ...posts import catalogue
 from ...posts.names import plain
-from ..texts import tr
+from ..texts.translation import tr
 from .page import Page
 
 

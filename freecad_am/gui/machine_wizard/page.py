@@ -9,7 +9,7 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
 from ..colours import WRONG
-from ..texts import sentence, tr, translated_error
+from ..texts.translation import sentence, tr, translated_error
 
 
 class Page(QtGui.QWizardPage):

@@ -16,9 +16,9 @@ from ...core.issues import InputError
 from ...core.kinematics import pendant, pose_figures
 from ...core.kinematics.chain import Chain
 from ...core.kinematics.pendant import Deviation, Suspect
+from ..background.later import Later
 from ..colours import WRONG
-from ..later import Later
-from ..texts import tr
+from ..texts.translation import tr
 from .figure_table import FigureTable, shown
 from .page import Page, axis_names, choice, heading, told
 

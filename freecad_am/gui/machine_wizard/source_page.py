@@ -17,7 +17,7 @@ from ...core.kinematics.machine_draft import Draft
 from ...core.kinematics.opw import OpwArm
 from ...core.kinematics.urdf import Urdf
 from ...objects import user_machines
-from ..texts import tr
+from ..texts.translation import tr
 from .figure_table import FigureTable
 from .page import Page, choice, told
 

@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 
 from ...core.kinematics.machine_draft import Draft
 from .. import icons
-from ..texts import tr
+from ..texts.translation import tr
 from .frames_page import FramesPage
 from .limits_page import LimitsPage
 from .name_page import NamePage

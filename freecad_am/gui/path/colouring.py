@@ -12,8 +12,8 @@ from ...core.process.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
 from ...objects import preferences
 from ..colours import ramp
-from ..lines import Array
-from ..texts import marked, translated
+from ..nodes.lines import Array
+from ..texts.translation import marked, translated
 
 Colour = tuple[float, float, float]
 

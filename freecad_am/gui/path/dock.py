@@ -11,10 +11,12 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtGui
 
-from .. import docks, preference_watch, redraw
-from ..follower import Follower
-from ..steady import SteadyText
-from ..texts import tr, translated
+from ..background import redraw
+from ..docks import places
+from ..docks.follower import Follower
+from ..preferences import watch
+from ..texts.translation import tr, translated
+from ..widgets.steady import SteadyText
 from . import path_view
 from .colouring import LAYER
 from .facts import facts
@@ -33,12 +35,12 @@ class PathDock(Follower):
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = None  # names of document and object
         self.filling = False
-        self.dock = docks.dock(NAME, docks.BELOW)
+        self.dock = places.dock(NAME, places.BELOW)
         self._build()
         self.dock.seen = self.fill
         path_view.listen(lambda view: self.fill())
         path_view.listen_to_clicks(self.dock.isVisible, self._picked)
-        preference_watch.listen_to_language(self._speak)
+        watch.listen_to_language(self._speak)
         App.addDocumentObserver(self)
         Gui.Selection.addObserver(self)
 
@@ -305,10 +307,3 @@ def _made() -> PathDock:
     if _dock is None:
         _dock = PathDock()
     return _dock
-
-
-def add_action(menu: Any, obj: Any) -> None:
-    """The entry of a context menu that opens the dock of a path."""
-    action = menu.addAction(tr("Show path layer by layer"))
-    action.setObjectName("RoboticAM_ShowPath")
-    action.triggered.connect(lambda *_: show(obj))

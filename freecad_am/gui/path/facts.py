@@ -7,7 +7,7 @@ import numpy as np
 
 from ...core.toolpath import Bead
 from ...objects import preferences
-from ..texts import tr
+from ..texts.translation import tr
 from .rows import Rows
 
 

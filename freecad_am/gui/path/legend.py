@@ -18,10 +18,10 @@ from pivy import coin
 from PySide import QtCore, QtGui
 
 from ...objects import preferences
-from .. import preference_watch
 from ..colours import ramp
-from ..lines import unshaded
-from ..texts import tr, translated
+from ..nodes.lines import unshaded
+from ..preferences import watch
+from ..texts.translation import tr, translated
 from .colouring import DISTANCE, TOO_FAR, TOO_NEAR, Scale
 
 _FINE = 0.01  # mm; distances that differ by less are told to 1e-5 mm
@@ -200,7 +200,7 @@ def renew_soon() -> None:
     if not _watching:
         _watching.append(_Observer())
         App.addDocumentObserver(_watching[0])
-        preference_watch.listen_to_language(renew_soon)
+        watch.listen_to_language(renew_soon)
     if not _due:
         _due = True
         QtCore.QTimer.singleShot(0, _renew)

@@ -12,9 +12,9 @@ from PySide import QtCore
 
 from ...core.issues import InputError
 from ...objects import preferences
-from ..lines import Array
-from ..texts import marked
-from ..view_base import StageView
+from ..nodes.lines import Array
+from ..texts.translation import marked
+from ..views.base import StageView
 from . import legend
 from .clicks import ClickNode
 from .colouring import Scale
@@ -115,13 +115,6 @@ class PathView(StageView):
                 self.refresh()
             legend.renew_soon()
             tell(self)
-
-    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """Entries of the context menu in the tree."""
-        from .dock import add_action
-
-        super().setupContextMenu(vobj, menu)
-        add_action(menu, vobj.Object)
 
     def _colour(self, vobj: Any) -> None:
         """Colour the beads anew where that would be other colours."""

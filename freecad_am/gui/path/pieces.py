@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from pivy import coin
 
-from ..lines import Array, fill, unshaded
+from ..nodes.lines import Array, fill, unshaded
 from .rows import Index, Rows
 
 BLOCK = 128  # sections by which a piece of tubes grows: Coin reads all of it anew then

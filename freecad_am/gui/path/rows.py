@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...core.geometry import tubes
 from ...core.toolpath import Bead
-from ..lines import Array
+from ..nodes.lines import Array
 
 Index = NDArray[np.intp]
 

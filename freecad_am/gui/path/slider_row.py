@@ -7,8 +7,8 @@ from typing import Any
 
 from PySide import QtCore, QtGui
 
-from ..steady import hold
-from ..texts import tr
+from ..texts.translation import tr
+from ..widgets.steady import hold
 
 
 class Row:

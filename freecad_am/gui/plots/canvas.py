@@ -13,8 +13,8 @@ from PySide import QtCore, QtGui
 
 from ...plots.chart import Chart, Picture
 from ...plots.look import DARK, LIGHT, Look
-from ..texts import tr
-from ..worker import Worker
+from ..background.worker import Worker
+from ..texts.translation import tr
 from .reading import Range, moved, told, zoomed
 from .words import of_frames
 

@@ -15,12 +15,13 @@ from ...plots import catalogue
 from ...plots.chart import Picture
 from ...plots.rows import OVER, PATH, TIME
 from ...plots.source import Source
-from .. import docks, preference_watch
-from ..follower import Follower
-from ..later import Background, Later
-from ..selection import meant
-from ..texts import tr, translated_error
-from ..worker import Worker
+from ..background.later import Background, Later
+from ..background.worker import Worker
+from ..docks import places
+from ..docks.follower import Follower
+from ..picking.selection import meant
+from ..preferences import watch
+from ..texts.translation import tr, translated_error
 from . import saving, units, words
 from .canvas import STEP, Canvas
 from .sources import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
@@ -41,7 +42,7 @@ class PlotsDock(Follower):
         self.picture: Picture | None = None
         self.shown: tuple[Any, ...] = ()  # object, picture and axis that are looked at
         self.layers_of: tuple[str, str] | None = None  # whose layers are chosen: names are those of other documents too
-        self.dock = docks.dock(NAME, docks.BELOW)
+        self.dock = places.dock(NAME, places.BELOW)
         self.canvas = Canvas()
         self.canvas.setObjectName("canvas")
         self.canvas.say = self._said
@@ -54,8 +55,8 @@ class PlotsDock(Follower):
         self.building = Background(self.dock)
         self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
         self.dock.seen = self.fill
-        preference_watch.listen(self.fill)
-        preference_watch.listen_to_language(self._speak)
+        watch.listen(self.fill)
+        watch.listen_to_language(self._speak)
         App.addDocumentObserver(self)
         Gui.Selection.addObserver(self)
 

@@ -11,9 +11,9 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ...plots.chart import Picture
-from ..later import Background
-from ..texts import tr
-from ..worker import Worker
+from ..background.later import Background
+from ..background.worker import Worker
+from ..texts.translation import tr
 from .canvas import Canvas
 
 _writing: list[Background] = []  # Python must keep them as long as they write

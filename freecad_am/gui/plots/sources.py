@@ -20,7 +20,7 @@ from ...objects import user_machines
 from ...objects.solid_feature import SolidFeature
 from ...objects.stage import stage_of
 from ...plots.source import Source
-from ..view_toolpath import band_of
+from ..views.toolpath import band_of
 
 TOOLPATH, JOINT_PATH, PROGRAM = "toolpath", "joint path", "program"
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...plots.chart import Chart, Picture, Quantity
 from ...plots.look import Words
-from ..texts import marked, sentence, tr, translated
+from ..texts.translation import marked, sentence, tr, translated
 
 # all that stands alone in pictures, which `plots` draws in English for reports
 WORDS = (

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide import QtCore, QtGui
 
-from ..lines import Array
-from ..texts import tr
+from ..nodes.lines import Array
+from ..texts.translation import tr
 
 GOOD, BAD = QtGui.QColor(59, 111, 212), QtGui.QColor(206, 34, 44)
 _PAD, _GAP = 4, 6

@@ -12,10 +12,12 @@ import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
 
-from .. import docks, preference_watch, redraw
+from ..background import redraw
 from ..colours import WRONG
-from ..steady import SteadyLabel
-from ..texts import tr
+from ..docks import places
+from ..preferences import watch
+from ..texts.translation import tr
+from ..widgets.steady import SteadyLabel
 from . import told
 from .bars import JointBars
 from .player import Moment, Player
@@ -37,7 +39,7 @@ class Simulation:
         self.run, self.player = run, Player(run)
         self.scene: Scene | None = Scene(run, view)
         self.filling = False
-        self.dock = docks.dock(NAME, docks.RIGHT)
+        self.dock = places.dock(NAME, places.RIGHT)
         self.scroll = QtGui.QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setFrameShape(QtGui.QFrame.NoFrame)
@@ -50,8 +52,8 @@ class Simulation:
         self.dock.closed = self.close
         self.dock.come()
         App.addDocumentObserver(self)
-        preference_watch.listen(self._preferences_changed)
-        preference_watch.listen_to_language(self._speak)
+        watch.listen(self._preferences_changed)
+        watch.listen_to_language(self._speak)
         self.show()
         QtCore.QTimer.singleShot(FIT, self._fit)  # once the dock has its place and the view the rest
 
@@ -295,7 +297,7 @@ class Simulation:
         self.timer.stop()
         App.removeDocumentObserver(self)
         for listener in (self._preferences_changed, self._speak):
-            preference_watch.forget(listener)
+            watch.forget(listener)
         scene.remove(document_goes)
         self.dock.empty()
         if self in _open:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...core.simulation.margins import speed_ratios
 from ...core.simulation.timeline import State
 from ...core.simulation.watch import Finding, bad_links, shown_margins
-from ..lines import Array
+from ..nodes.lines import Array
 from .run import Run
 
 _SAME = 1e-9  # s

@@ -21,9 +21,9 @@ from ...core.kinematics.arm_contact import NONE
 from ...core.simulation.placing import Placing, at_rest, placing
 from ...core.toolpath import Bead
 from ...objects.stage import stage_of
-from ..cell_nodes import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
-from ..lines import Array, Lines, fill
-from ..machine_links import MachineNodes, move, plain_links
+from ..nodes.cell import NOZZLE, PLATFORM, coloured, holder_node, nozzle_node, platform_nodes, resting_point
+from ..nodes.lines import Array, Lines, fill
+from ..nodes.machine_links import MachineNodes, move, plain_links
 from ..path.pieces import PathNodes
 from ..path.rows import Rows
 from .run import Run

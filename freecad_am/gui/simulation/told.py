@@ -12,9 +12,9 @@ from ...core.simulation import watch
 from ...core.simulation.totals import MM3_PER_CM3
 from ...core.simulation.watch import Finding
 from ...objects import preferences
-from ..lines import Array
-from ..texts import tr, translated
-from ..touching import link_touches
+from ..nodes.lines import Array
+from ..texts.touching import link_touches
+from ..texts.translation import tr, translated
 from .player import Moment
 from .run import Run
 

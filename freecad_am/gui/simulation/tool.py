@@ -12,8 +12,8 @@ from ...core.issues import AmError
 from ...objects import hooks
 from ...objects.progress import Cancelled
 from ...objects.stage import stage_of
-from ..selection import job_named, meant
-from ..texts import error_line, tr, translated_error
+from ..picking.selection import job_named, meant
+from ..texts.translation import error_line, tr, translated_error
 from . import dock
 from .run import prepared
 

@@ -13,8 +13,8 @@ from ...core.planning import spin_map
 from ...core.planning.joint_path import BeadPath
 from ...core.planning.spin_curve import Followed
 from ...core.planning.spin_map import RZ, Columns, Picture, SpinMap
-from ..lines import Array
-from ..texts import tr
+from ..nodes.lines import Array
+from ..texts.translation import tr
 from .draft import CONSTANT, Draft
 from .source import Source
 

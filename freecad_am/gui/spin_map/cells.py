@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..later import Background
-from ..worker import Worker
+from ..background.later import Background
+from ..background.worker import Worker
 from .board import Board
 from .canvas import Canvas
 from .picture import painted

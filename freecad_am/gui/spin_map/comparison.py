@@ -14,9 +14,9 @@ from ...core.planning.spin_curve import Compared
 from ...core.planning.task import Task
 from ...objects import progress
 from ...objects.progress import Cancelled
-from ..later import Background
-from ..texts import tr, translated, translated_error
-from ..worker import Worker
+from ..background.later import Background
+from ..background.worker import Worker
+from ..texts.translation import tr, translated, translated_error
 from .source import Source
 
 TELL_EVERY = 100  # ms

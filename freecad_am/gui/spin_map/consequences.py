@@ -8,9 +8,9 @@ from typing import Any
 
 from ...core.planning import spin_curve
 from ...core.planning.spin_curve import Followed, Sums
-from ..later import Background
-from ..texts import tr
-from ..worker import Worker
+from ..background.later import Background
+from ..background.worker import Worker
+from ..texts.translation import tr
 from .curves import COLOURS, OWN, PLANNED
 from .draft import Draft
 from .form import Form

@@ -12,7 +12,7 @@ from PySide import QtCore, QtGui
 from ...core.kinematics import opw
 from ...core.parameters.joints import HIGHEST
 from ...core.planning.spin_map import ROTATION, RZ
-from ..texts import tr
+from ..texts.translation import tr
 from .board import Board
 from .draft import CONSTANT, POLYNOMIALS, Draft
 from .picture import KINDS

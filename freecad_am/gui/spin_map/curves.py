@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..lines import Array
+from ..nodes.lines import Array
 
 OWN, PLANNED = "own", "planned"
 COLOURS = {

@@ -17,9 +17,11 @@ from ...core.planning.spin_curve import Compared
 from ...objects.findings import first_message, issues_of
 from ...objects.progress import Cancelled
 from ...objects.staleness import UP_TO_DATE
-from .. import docks, preference_watch, recorded
-from ..later import Later
-from ..texts import tr, translated, translated_error
+from .. import recorded
+from ..background.later import Later
+from ..docks import places
+from ..preferences import watch
+from ..texts.translation import tr, translated, translated_error
 from .board import Board
 from .canvas import Canvas
 from .cells import Cells
@@ -44,7 +46,7 @@ class SpinMapDock:
 
     def __init__(self, obj: Any) -> None:
         self.obj, self.gone = obj, False
-        self.dock = docks.dock(NAME, docks.BELOW, WIDE, HIGH)
+        self.dock = places.dock(NAME, places.BELOW, WIDE, HIGH)
         self.holder = QtGui.QStackedWidget()
         self.canvas = Canvas()
         self._build()
@@ -59,8 +61,8 @@ class SpinMapDock:
         self._take(source_of(obj))
         self.dock.come()
         App.addDocumentObserver(self)
-        preference_watch.listen(self._renew_cells)
-        preference_watch.listen_to_language(self._speak)
+        watch.listen(self._renew_cells)
+        watch.listen_to_language(self._speak)
 
     # ---- the fields
 
@@ -297,7 +299,7 @@ class SpinMapDock:
         self.gone = True
         App.removeDocumentObserver(self)
         for listener in (self._renew_cells, self._speak):
-            preference_watch.forget(listener)
+            watch.forget(listener)
         for background in (self.cells, self.consequences, self.comparison):
             background.cancel()
         self.renewing.timer.stop()

@@ -20,7 +20,7 @@ from ...core.planning.planned_rotation import rotation_along
 from ...core.planning.points import Points
 from ...core.planning.spin_curve import Followed
 from ...core.planning.spin_map import Columns, in_turns
-from ..lines import Array
+from ..nodes.lines import Array
 from .source import Source
 
 POLYNOMIALS, CONSTANT = "polynomials", "constant"

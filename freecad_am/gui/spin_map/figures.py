@@ -11,7 +11,7 @@ from PySide import QtCore, QtGui
 
 from ...core.planning.spin_curve import Sums
 from ..colours import WRONG
-from ..texts import tr
+from ..texts.translation import tr
 
 COLUMNS = 6
 

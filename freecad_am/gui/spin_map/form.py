@@ -8,7 +8,7 @@ from typing import Any
 from PySide import QtCore, QtGui
 
 from ..colours import WRONG
-from ..texts import tr
+from ..texts.translation import tr
 from .controls import scrolled
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..lines import Array
+from ..nodes.lines import Array
 from ..path import dock as path_dock
 from ..path.path_view import PathView
 from ..simulation import dock as simulation_dock

@@ -10,7 +10,7 @@ from PySide import QtCore, QtGui
 
 from ..colours import ramp
 from ..path.colouring import round_numbers
-from ..texts import tr
+from ..texts.translation import tr
 from .curves import Curve
 from .picture import enlarged
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...core.planning.spin_map import Picture
 from ..colours import ramp
 from ..path.colouring import NONE, TOO_FAR, TOO_NEAR, Scale, automatic
-from ..texts import marked
+from ..texts.translation import marked
 
 MARGIN, CONDITION = marked("joint margin"), marked("condition")
 KINDS = (MARGIN, CONDITION)

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.kinematics.cell import Cell as Station
-from ..lines import Array
-from ..texts import tr
-from ..touching import link_touches
+from ..nodes.lines import Array
+from ..texts.touching import link_touches
+from ..texts.translation import tr
 from .board import Cell
 
 PAST = 1e-9  # rad, of rounding

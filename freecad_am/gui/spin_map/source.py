@@ -28,7 +28,7 @@ from ...objects import user_machines
 from ...objects.joint_path import planned_of
 from ...objects.link_meshes import meshes_of
 from ...objects.stage import stage_of
-from ..lines import Array
+from ..nodes.lines import Array
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import FreeCADGui as Gui
 
 from ...core.issues import AmError
 from ...objects.stage import stage_of
-from ..selection import job_named, meant
-from ..texts import error_line, tr, translated_error
+from ..picking.selection import job_named, meant
+from ..texts.translation import error_line, tr, translated_error
 from . import dock
 
 

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Long work while the window stays alive: how far it is, and a button that cancels it.
+
+The work is in another thread; this one goes on handling events, so that the window is drawn and FreeCAD's timers run. What
+the user does meanwhile is not lost: it waits for a moment, and when the work takes longer a dialog has it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from time import monotonic
+from typing import Any
+
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ...objects import progress
+from ..signals import connect
+from ..texts.translation import tr, translated
+from .worker import Worker
+
+NAME = "RoboticAM_Progress"
+AT_ONCE = 0.04  # s that are waited for without handling events
+SHOWN_AFTER = 0.5  # s
+LOOK_EVERY = 40  # ms
+GRACE = 0.15  # s that work is waited for once it is cancelled
+STEPS = 1000
+_WIDTH = 420  # px
+
+_together: _Dialog | None = None
+
+
+def carry_out(work: Callable[[], Any], title: str) -> Any:
+    """What `work` returns or raises, done in another thread; it must touch no document. Raises Cancelled."""
+    worker = Worker(work)
+    if not worker.ended.wait(AT_ONCE):
+        with busy() as dialog:
+            _attend(worker, title, dialog)
+    return worker.result()
+
+
+@contextlib.contextmanager
+def busy() -> Iterator[_Dialog]:
+    """Within it several works are one to the user: one dialog, which shows up when all of them take long."""
+    global _together
+    if _together is not None:
+        yield _together
+        return
+    _together = _Dialog()
+    try:
+        yield _together
+    finally:
+        dialog, _together = _together, None
+        dialog.close()
+
+
+def _attend(worker: Worker, title: str, dialog: _Dialog) -> None:
+    """Handle events until the work has ended, or was cancelled."""
+    loop, timer = QtCore.QEventLoop(), QtCore.QTimer()
+    failure: list[BaseException] = []
+
+    def look() -> None:
+        try:
+            if worker.fraction is not None:
+                progress.report(worker.fraction, worker.text)  # a macro may listen, and cancel
+        except BaseException as error:  # else it would be lost here
+            failure.append(error)
+        if worker.ended.is_set() or failure or dialog.cancelled or (dialog.is_due and not dialog.visible):
+            loop.quit()
+        dialog.tell(title, worker.fraction, worker.text)
+
+    timer.setInterval(LOOK_EVERY)
+    timer.timeout.connect(look)
+    timer.start()
+    while not (worker.ended.is_set() or failure or dialog.cancelled):
+        if dialog.is_due:
+            dialog.show(title)
+            _run(loop, QtCore.QEventLoop.AllEvents)
+        else:
+            _run(loop, QtCore.QEventLoop.ExcludeUserInputEvents)
+    timer.stop()
+    if failure or dialog.cancelled:
+        worker.cancel()
+        worker.ended.wait(GRACE)
+    if failure:
+        raise failure[0]
+
+
+def _run(loop: Any, flags: Any) -> None:
+    (getattr(loop, "exec", None) or loop.exec_)(flags)  # Qt 6, Qt 5
+
+
+class _Dialog:
+    """Text, bar and Cancel. It is made when it is due; Esc and closing it cancel too.
+
+    FreeCAD, which may be recomputing, takes mouse and keys from all windows but modal messages and progress dialogs; of the
+    latter Esc is a shortcut, which comes before keys. So it needs no filter of ours on all events of the application, which
+    would call Python for each of them, also while FreeCAD is in the midst of something.
+    """
+
+    def __init__(self) -> None:
+        self.since = monotonic()
+        self.cancelled = False
+        self.box: Any = None
+
+    @property
+    def is_due(self) -> bool:
+        """Whether the user has waited long enough to be told."""
+        return monotonic() - self.since >= SHOWN_AFTER
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is to be seen."""
+        return self.box is not None
+
+    def show(self, title: str) -> None:
+        """Show it, unless it is there already."""
+        if self.box is not None:
+            return
+        self.box = QtGui.QProgressDialog(Gui.getMainWindow())
+        self.box.setObjectName(NAME)
+        self.box.setWindowTitle(tr("Robotic AM"))
+        self.box.setWindowModality(QtCore.Qt.ApplicationModal)
+        self.box.setAutoClose(False)
+        self.box.setAutoReset(False)
+        self.text, self.bar, self.button = QtGui.QLabel(), QtGui.QProgressBar(), QtGui.QPushButton(tr("Cancel"))
+        self.text.setObjectName("text")
+        self.bar.setObjectName("bar")
+        self.button.setObjectName("cancel")
+        self.button.setToolTip(tr("Ends the computation; the document stays as it was before"))
+        self.box.setLabel(self.text)
+        self.box.setBar(self.bar)
+        self.box.setCancelButton(self.button)
+        for escape in self.box.findChildren(QtGui.QShortcut):  # also where the main window keeps the focus
+            escape.setContext(QtCore.Qt.ApplicationShortcut)
+            connect(escape, "activatedAmbiguously()", self.cancel)  # Qt makes one for each Cancel it was given
+        self.box.setMinimumWidth(_WIDTH)
+        self.box.canceled.connect(self.cancel)
+        self.tell(title, None, "")
+        QtGui.QApplication.setOverrideCursor(QtGui.QCursor(QtCore.Qt.ArrowCursor))  # over FreeCAD's waiting one
+        self.box.show()
+        self.button.setFocus()
+
+    def tell(self, title: str, fraction: float | None, text: str) -> None:
+        """What is computed, how far it is (None: unknown) and what it is doing."""
+        if self.box is None:
+            return
+        shown = tr("{}: {}").format(title, translated(text)) if text else tr("{} is being computed").format(title)
+        if self.text.text() != shown:
+            self.text.setText(shown)
+        self.bar.setRange(0, 0 if fraction is None else STEPS)
+        if fraction is not None:
+            self.bar.setValue(round(STEPS * min(1.0, max(0.0, fraction))))
+
+    def cancel(self, *_: Any) -> None:
+        """The user does not want it."""
+        self.cancelled = True
+
+    def close(self) -> None:
+        """Take it away."""
+        if self.box is None:
+            return
+        QtGui.QApplication.restoreOverrideCursor()
+        self.box.canceled.disconnect(self.cancel)
+        self.box.close()
+        self.box.deleteLater()
+        self.box = None

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Work in a thread of its own, which touches no document and no window, and can be cancelled at any moment.
+
+It ends at its next report of progress, or between any two steps of Python, whichever comes first. A single call into
+compiled code is not interrupted: the work is left to itself then, and what it returns is dropped.
+
+What the window is made of must end in the window's thread: a timer that is deleted in another one is still called by Qt
+afterwards, and FreeCAD crashes. Python deletes what nothing refers to in whatever thread dropped it last, and collects
+cycles (a widget and the method its signal calls are one) in whatever thread has just made many objects, which is the
+working one. So workers are kept, with what their work refers to, until their threads have ended, and while any thread
+goes on cycles are collected by a timer of the window alone.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from PySide import QtCore
+
+from ...core import one_thread
+from ...objects.progress import Cancelled, told_to
+
+AGAIN = 200  # ms between two looks at the threads that go on
+YOUNG = 1  # the generation of objects up to which cycles are collected at each look: those made since the last one
+
+
+class Worker:
+    """Carries `work` out, from now on. What it has said of its progress is in `fraction` (None before) and `text`."""
+
+    def __init__(self, work: Callable[[], Any]) -> None:
+        self.fraction: float | None = None
+        self.text = ""
+        self.ended = threading.Event()
+        self._work = work
+        self._value: Any = None
+        self._error: BaseException | None = None
+        self._cancelled = False
+        self._ending = threading.Lock()
+        self._thread = threading.Thread(target=self._run, name="Robotic AM", daemon=True)
+        _attend(self)
+        self._thread.start()
+
+    def result(self) -> Any:
+        """What the work, which has ended, returned; raises what it raised, once, and Cancelled when it was."""
+        if self._cancelled:
+            raise Cancelled
+        error, self._error = self._error, None
+        if error is not None:
+            try:
+                raise error
+            finally:
+                del error  # its traceback refers to here, and to the panel that asked
+        return self._value
+
+    def cancel(self) -> None:
+        """End it, as soon as it can be; its result is of no use any more. Compiled code may swallow the order to end: it is
+        given again until it is followed."""
+        self._cancelled = True
+        self._stop()
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        try:
+            one_thread.here()
+            try:
+                with told_to(self._tell):
+                    self._value = self._work()
+            except BaseException as error:  # told to whoever asks for the result
+                self._error = error
+            with self._ending:
+                self.ended.set()
+        except BaseException:  # the order to end came when it was over
+            with self._ending:
+                self.ended.set()
+
+    def _tell(self, fraction: float, text: str) -> None:
+        if self._cancelled:
+            raise Cancelled
+        self.fraction, self.text = fraction, text
+
+    # ---- in the window's thread
+
+    def _stop(self) -> None:
+        with self._ending:
+            if not self.ended.is_set():
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                    ctypes.c_ulong(self._thread.ident or 0), ctypes.py_object(Cancelled)
+                )
+
+    def goes_on(self) -> bool:
+        """Whether the thread may still do anything; a cancelled one is told again to end."""
+        if self._cancelled:
+            self._stop()
+            if self.ended.is_set():
+                self._value = self._error = None  # of no use, and its traceback refers to this worker
+        return self._thread.is_alive()
+
+
+_going: list[Worker] = []
+_collecting = False  # whether Python collected cycles by itself before the first of them
+
+
+def _attend(worker: Worker) -> None:
+    """Keep a worker that is about to start until its thread has ended."""
+    global _collecting
+    if not _going:
+        _collecting = gc.isenabled()
+        gc.disable()
+        one_thread.hold()
+        QtCore.QTimer.singleShot(AGAIN, _look)
+    _going.append(worker)
+
+
+def _look() -> None:
+    """Drop workers that have ended, and collect the cycles of a moment, in the window's thread."""
+    _going[:] = [worker for worker in _going if worker.goes_on()]
+    if _collecting:
+        gc.collect(YOUNG)
+    if _going:
+        QtCore.QTimer.singleShot(AGAIN, _look)
+        return
+    one_thread.release()
+    if _collecting:
+        gc.enable()

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Documents name the classes of view providers by module and class. Those of documents saved before these modules moved are
+found where they are now; FreeCAD saves them under their present names."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+_GUI = __name__.rpartition(".")[0]
+MOVED = {
+    f"{_GUI}.view_{name}": f"{_GUI}.views.{name}"
+    for name in ("cell", "cladding", "curves", "feature", "hub", "job", "joint_path", "program", "toolpath")
+}
+
+
+class _FormerNames(MetaPathFinder, Loader):
+    """Finds modules under the names they had, with the classes they have now."""
+
+    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
+        return ModuleSpec(name, self) if name in MOVED else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        now = importlib.import_module(MOVED[module.__name__])
+        vars(module).update({name: value for name, value in vars(now).items() if isinstance(value, type)})
+
+
+def install() -> None:
+    """Find them from now on; InitGui calls this before the first document can open."""
+    sys.meta_path.append(_FormerNames())

@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a new job: what is selected, how that is understood, machine and name; everything else at its default."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ... import api
+from ...core.issues import AmError, Issue
+from ...core.parameters.cell import CellParameters
+from ...objects import preferences
+from ...objects.progress import Cancelled
+from ...objects.proposed_family import GEODESIC
+from ...objects.staleness import UP_TO_DATE
+from .. import icons, recorded
+from ..background.busy import carry_out
+from ..background.later import Background
+from ..background.worker import Worker
+from ..colours import WRONG
+from ..panels.stage import CLOSED
+from ..picking import inputs, picking
+from ..picking.picking import Pick
+from ..signals import connect
+from ..texts.translation import sentence, tr, translated, translated_error
+from ..widgets import choices, suggestions
+from ..widgets.fold import Fold
+from ..widgets.wheel import scrolls
+from . import proposal
+from .left_out import left_out
+from .proposal import CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
+
+_TOLD = 15000  # ms that the next step is told on the status bar
+
+
+class JobPanel:
+    """Follows the selection as long as it is open; OK makes all stages in one step."""
+
+    is_open = True
+
+    def __init__(self) -> None:
+        self.document = App.ActiveDocument
+        self.kinds = {
+            REVOLUTION: tr("Part of revolution"), SURFACE: tr("Wall on a part"), SOLID: tr("Solids in plane layers"),
+            GEODESIC: tr("Solids without support"), DEVELOPABLE: tr("Solids on a hub"),
+            CURVES: tr("Curves as beads"),
+        }
+        self.picks: list[Pick] = []
+        self.found = JobProposal("", "")
+        self.asked = ""  # the family the user chose, '' for the one that is proposed
+        self.proposed = ""
+        self._lay_out()
+        self.background = Background(self.form)
+        self.form.destroyed.connect(self.close)
+        Gui.Selection.addObserver(self)
+        self._take()
+
+    def _lay_out(self) -> None:
+        self.form = QtGui.QWidget()
+        self.form.setObjectName("RoboticAM_NewJob")
+        self.form.setWindowTitle(tr("New job"))
+        self.form.setWindowIcon(QtGui.QIcon(icons.path("new_job")))
+        column = QtGui.QVBoxLayout(self.form)
+        self.error, self.reason, self.left_out, self.no_post = (QtGui.QLabel() for _ in range(4))
+        for label, name in (
+            (self.error, "error"), (self.reason, "reason"), (self.left_out, "left_out"), (self.no_post, "no_post"),
+        ):
+            label.setObjectName(name)
+            label.setWordWrap(True)
+            label.hide()
+        self.error.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        self.kind = QtGui.QComboBox()
+        self.kind.setObjectName("Kind")
+        self.kind.setToolTip(tr("How the part is cut into layers; proposed from the selection"))
+        self.kind.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)  # a narrow panel stays whole
+        for key, text in self.kinds.items():
+            self.kind.addItem(text, key)
+        self.kind.activated.connect(self._choose)
+        self.part = _shown("Source", tr("What is deposited: click it in the tree or the 3D view"))
+        self.ground = _shown("Ground", tr("What it grows on: click it with Ctrl in the tree or the 3D view"))
+        self.machine = QtGui.QComboBox()
+        self.machine.setObjectName("Machine")
+        self.machine.setToolTip(tr("The machine that deposits; the program is written for its controller"))
+        self.machine.setEditable(True)
+        choices.offer(self.machine, choices.machines())
+        choices.enter(self.machine, _machine_before(self.document))
+        self.name = inputs.NameChoice("")
+        self.fold = Fold(tr("Inputs"), True)
+        rows = (
+            (tr("Deposit"), self.part), (tr("Grows on"), self.ground), (tr("Kind"), self.kind),
+            (tr("Machine"), self.machine), (tr("Name"), self.name.widget),
+        )
+        notes = {widget: self.fold.add(text, widget) for text, widget in rows}
+        # under the fields, by what errors call what is entered there
+        self.notes = {"cell.machine": notes[self.machine], "name": notes[self.name.widget]}
+        connect(self.machine, "editTextChanged(QString)", self._entered_anew)
+        connect(self.name.widget, "textChanged(QString)", self._entered_anew)
+        hint = QtGui.QLabel(tr("Cell, feature, toolpath, joint path and program are made with their defaults; "
+                               "double-click one in the tree to change it."))
+        hint.setWordWrap(True)
+        for widget in (self.fold.widget, self.error, self.reason, self.left_out, self.no_post, hint):
+            column.addWidget(widget)
+        column.addStretch(1)
+        scrolls(self.form)
+        self._entered_anew()
+
+    # ---- the selection
+
+    def addSelection(self, *_: Any) -> None:
+        """Something was selected, or is no more; called by FreeCAD, which must first be done with it."""
+        QtCore.QTimer.singleShot(0, self._take)
+
+    setSelection = removeSelection = clearSelection = addSelection
+
+    def _take(self) -> None:
+        """Take what is selected now; nothing selected leaves what there is."""
+        if not self.is_open:
+            return
+        try:
+            picks, wrong = picking.selected(self.document), picking.refused(self.document)
+        except (ReferenceError, RuntimeError, NameError):  # the document is closed
+            self.close()
+            with contextlib.suppress(RuntimeError):  # so is the panel
+                self.say(tr(CLOSED))
+            return
+        if picks and picks != self.picks:
+            self.picks, self.asked = picks, ""
+            self._understand()
+        elif not self.picks:
+            self._show()
+        self.say(wrong if not picks else "")
+
+    def _choose(self, *_: Any) -> None:
+        """A family was chosen."""
+        self.asked = self.kind.currentData()
+        if self.picks:
+            try:
+                self._understand()
+            except ReferenceError:
+                self.say(tr(CLOSED))
+
+    def _understand(self) -> None:
+        """Find out what the picks mean, beside the window where it may take long."""
+        self.background.cancel()
+        try:
+            if self.asked:
+                self._understood(proposal.as_kind(self.asked, self.picks, tr("as you chose")))
+                return
+            work = proposal.proposal(self.picks)
+        except AmError as error:
+            self.found = JobProposal(self.asked, "", missing=translated_error(error))
+            self._show()
+            return
+        self.found = JobProposal("", tr("Looking at the shape."), (picking.whole(self.picks[0]),))
+        self._show()
+        self.background.start(work, self._look)
+
+    def _look(self, worker: Worker) -> None:
+        try:
+            self._understood(worker.result())
+        except AmError as error:
+            self._understood(JobProposal("", "", missing=translated_error(error)))
+        except Cancelled:
+            pass
+
+    def _understood(self, found: JobProposal) -> None:
+        """Show it, and find out what of the part would be left out."""
+        self.found = found
+        self._show()
+        if found.parts and not found.missing:
+            with contextlib.suppress(AmError):  # told when the job is made
+                self.background.start(left_out(found), self._look_at_left_out)
+
+    def _look_at_left_out(self, worker: Worker) -> None:
+        with contextlib.suppress(AmError, Cancelled, RuntimeError):  # so is this; or the panel is closed
+            self._tell_left_out(worker.result())
+
+    def _tell_left_out(self, issues: Sequence[Issue]) -> None:
+        self.left_out.setText("\n".join(sentence(issue.message) for issue in issues))
+        self.left_out.setVisible(bool(issues))
+
+    def _show(self) -> None:
+        """Show how the selection is understood, and what is missing."""
+        self._tell_left_out(())
+        found = self.found
+        if found.kind:
+            self.kind.setCurrentIndex(self.kind.findData(found.choice))
+        for widget, picks in ((self.part, found.parts), (self.ground, () if found.ground is None else (found.ground,))):
+            text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in picks)
+            widget.setText(text)
+            widget.setCursorPosition(0)
+            widget.setToolTip(text or widget.whatsThis())
+        self.fold.enable(self.ground, found.kind != REVOLUTION)
+        missing = found.missing if self.picks else tr(
+            "Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such."
+        )
+        reason = found.reason
+        if found.kind and found.reason:
+            reason = tr("{}: {}.").format(self.kinds[found.choice], found.reason)
+        whole = proposal.taken_whole(found, self.picks)
+        self.reason.setText("\n".join(filter(None, (reason, whole, missing))))
+        self.reason.setStyleSheet(f"QLabel {{ color: {WRONG if missing and self.picks else 'palette(text)'}; }}")
+        self.reason.setVisible(bool(self.reason.text()))
+        parts = found.parts
+        if parts and self.name.widget.text() in ("", self.proposed):
+            self.proposed = api.proposed_name(parts[0].obj.Label)
+            self.name.widget.setText(self.proposed)
+
+    def say(self, text: str) -> None:
+        """Show what is wrong."""
+        self.error.setText(text)
+        self.error.setVisible(bool(text))
+
+    def _tell(self, place: str, text: str) -> None:
+        """What is wrong with a field, under it."""
+        self.notes[place].setText(text)
+        self.notes[place].setVisible(bool(text))
+
+    def _entered_anew(self, *_: Any) -> None:
+        """What was wrong is no longer there; a machine without a post is told now, not when all is planned."""
+        for place in self.notes:
+            self._tell(place, "")
+        without = suggestions.no_post(choices.entered(self.machine))
+        self.no_post.setText(without)
+        self.no_post.setVisible(bool(without))
+
+    # ---- called by FreeCAD
+
+    def accept(self) -> bool:
+        """Make all stages; True closes the panel, an error is shown in it."""
+        self.say("")
+        self._entered_anew()
+        try:
+            self._wait()
+            if self.found.missing or not self.found.parts:
+                self.say(self.found.missing or self.reason.text())
+                return False
+            before = {obj.Name for obj in self.document.Objects}
+            recorded.make(self.document, "make_all", self._arguments())
+        except AmError as error:
+            if error.where in self.notes:
+                self._tell(error.where, translated(error.message))
+            else:
+                self.say(translated_error(error))
+        except Cancelled:
+            self.say(tr("Cancelled: the document is as it was."))
+        except ReferenceError:
+            self.say(tr(CLOSED))
+        else:
+            self.close()
+            made = [obj for obj in api.stages_of(self.document) if obj.Name not in before]
+            _show_alone(made)
+            _tell_next(made)
+            return True
+        return False
+
+    def _wait(self) -> None:
+        """Wait for what is still to be found out about the selection."""
+        worker = self.background.worker
+        if worker is not None:
+            carry_out(worker.ended.wait, tr("New job"))
+            self.background.at_once()
+
+    def _arguments(self) -> dict[str, str]:
+        found = self.found
+        first = found.parts[0]
+        told = {"source": recorded.reference(first.obj)}
+        if found.kind != REVOLUTION:
+            told["kind"] = repr(found.kind)
+        if found.layers == GEODESIC:
+            told["layers"] = repr(found.layers)
+        if found.kind in (DEVELOPABLE, SOLID):
+            told.update(_of_solids(found))
+        else:
+            told["faces"] = repr(list(first.names))
+            if found.ground is not None:
+                told["substrate"] = recorded.reference(found.ground.obj)
+        machine = choices.entered(self.machine)
+        if machine != CellParameters().machine:
+            told["machine"] = repr(machine)
+        if preferences.post():
+            told["post"] = repr(preferences.post())
+        if preferences.process():
+            told["process"] = repr(preferences.process())
+        return {**told, **self.name.arguments()}
+
+    def reject(self) -> Any:
+        """Nothing was done."""
+        self.close()
+        return True
+
+    def close(self, *_: Any) -> None:
+        """Look at the selection no more; once or more often."""
+        if self.is_open:
+            self.is_open = False
+            Gui.Selection.removeObserver(self)
+            self.background.cancel()
+
+
+def _of_solids(found: JobProposal) -> dict[str, str]:
+    """Solids and what they stand on, which may be one with them, as a macro says it."""
+    first, *further = (pick.obj for pick in found.parts)
+    told, ground = {}, found.ground
+    if further:
+        told["further"] = f"[{', '.join(recorded.reference(obj) for obj in further)}]"
+    if ground is not None and ground.obj == first:
+        told["faces"] = repr(list(ground.names))
+    elif ground is not None:
+        told["substrate"] = recorded.reference(ground.obj)
+        if ground.names:
+            told["base_faces"] = repr(list(ground.names))
+    return told
+
+
+def _shown(name: str, help: str) -> Any:
+    line = QtGui.QLineEdit()
+    line.setObjectName(name)
+    line.setReadOnly(True)
+    line.setToolTip(help)
+    line.setWhatsThis(help)
+    line.setPlaceholderText(tr("click it") if name == "Source" else tr("click it with Ctrl"))
+    return line
+
+
+def _machine_before(document: Any) -> str:
+    """The machine of the last cell of a document, else the one by default."""
+    cells = api.stages_of(document, "cell")
+    return str(cells[-1].Machine) if cells else preferences.machine()
+
+
+def _tell_next(stages: list[Any]) -> None:
+    """Show the whole result, and tell what came of it and what can be done next."""
+    wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
+    if wrong is not None:
+        # why is in the report view already
+        text = tr("{} is {}. Double-click a stage in the tree to change it.").format(wrong.Label, translated(wrong.Status))
+    elif stages[-1].Proxy.kind == "program":
+        text = tr("The job is ready. Simulate… plays it; double-click Program to read it, Cell to set your machine up.")
+    else:
+        text = tr(
+            "The joint path is ready; no post writes a program for this machine and set-up yet. Simulate… plays it, Export "
+            "Path… writes its points as a table."
+        )
+    Gui.getMainWindow().statusBar().showMessage(text, _TOLD)
+    App.Console.PrintMessage(text + "\n")
+    _show_whole()
+
+
+def _show_alone(stages: list[Any]) -> None:
+    """Hide what earlier jobs of the document have drawn: their cells and paths would lie across those of this one."""
+    for obj in api.stages_of(stages[0].Document) if stages else []:
+        if obj not in stages and obj.ViewObject.Visibility:
+            obj.ViewObject.Visibility = False
+
+
+def _show_whole() -> None:
+    """Fit the view; one that is still as FreeCAD opens it, straight from above, is turned so that heights are seen."""
+    view = Gui.activeDocument().activeView()
+    if hasattr(view, "getCameraOrientation") and view.getCameraOrientation().isIdentity():
+        view.viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A wall on a substrate in the 3D view: its faces tinted, and the curves in which its first layer leaves the substrate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from pivy import coin
+
+from ...core.issues import InputError
+from ...objects.shapes import Taken, taken
+from .lines import DASHED, Array, Faces, Lines
+
+COLOUR = (0.96, 0.47, 0.0)
+TINT = (1.0, 0.62, 0.2)
+_COARSE = 0.004  # chord error of the tinted faces as a share of their size
+_NOTHING = np.zeros((0, 3))
+NONE = (_NOTHING, np.zeros((0, 3), dtype=np.int32))  # points and triangles
+
+
+class WallNodes:
+    """Draws a wall. Clicks go through the faces, and, where nothing of it is `pickable`, through the lines too."""
+
+    tint, transparency = TINT, 0.72
+
+    def __init__(self, pickable: bool) -> None:
+        self.root = coin.SoSeparator()
+        self.faces = Faces(self.tint, self.transparency)
+        self.first = Lines(4.0, COLOUR)
+        self.hidden = Lines(1.5, COLOUR, DASHED)
+        behind = coin.SoSeparator()
+        depth = coin.SoDepthBuffer()
+        depth.test = False
+        lines = coin.SoSeparator()
+        for parent, child in (
+            (self.root, lines), (lines, self.first.node), (self.root, unpickable()), (behind, depth),
+            (behind, self.hidden.node), (self.root, self.faces.node), (self.root, behind),
+        ):
+            parent.addChild(child)
+        if not pickable:
+            lines.insertChild(unpickable(), 0)
+        self.switch = coin.SoSwitch()
+        self.switch.addChild(self.root)
+        self.show(True)
+
+    def show(self, visible: bool) -> None:
+        """Show or hide all of it."""
+        self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
+
+    def set_first(self, curves: Sequence[Array]) -> None:
+        """The first layers, each (k, 3), closed ones with the first point repeated."""
+        points = np.concatenate([_NOTHING, *curves])
+        for lines in (self.first, self.hidden):
+            lines.set(points, [len(curve) for curve in curves])
+
+    def set_faces(self, source: Any, names: Sequence[str]) -> None:
+        """Tint faces of an object, all where none are named; nothing where it has none such now."""
+        try:
+            found = drawn(taken(source), names)
+        except InputError:  # the shape is not read yet
+            found = NONE
+        self.faces.set(*found)
+
+
+def unpickable() -> Any:
+    """The node that lets clicks through to what is behind."""
+    style = coin.SoPickStyle()
+    style.style = coin.SoPickStyle.UNPICKABLE
+    return style
+
+
+def first_curves(wall: Any) -> list[Array]:
+    """The curves in which a wall leaves its substrate, each (k, 3), closed ones with the first point repeated."""
+    first = wall.first
+    if isinstance(first, np.ndarray):
+        return [np.concatenate([first, first[:1]])]
+    return [np.concatenate([one.points, one.points[:1]]) if one.closed else one.points for one in first]
+
+
+def drawn(part: Taken, names: Sequence[str]) -> tuple[Array, Array]:
+    """Points (n, 3) and triangles (m, 3) of a mesh, or of faces of a shape, all where none are named. NO_FACES."""
+    if part.shape is not None:
+        return triangles_of(part.shape.copy(False), names)
+    body = part.body()
+    return body.vertices, body.triangles.astype(np.int32)
+
+
+def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:
+    """Points (n, 3) and triangles (m, 3) of faces of a shape, all where none are named; NONE where it has none such."""
+    try:
+        faces = [shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names] or shape.Faces
+    except (ValueError, IndexError, RuntimeError):  # the shape has changed
+        return NONE
+    points, corners, count = [_NOTHING], [NONE[1]], 0
+    for face in faces:
+        vertices, triangles = face.tessellate(max(1e-3, _COARSE * face.BoundBox.DiagonalLength))
+        points.append(np.array([tuple(vertex) for vertex in vertices]).reshape(-1, 3))
+        corners.append(np.array(triangles, dtype=np.int32).reshape(-1, 3) + count)
+        count += len(vertices)
+    return np.concatenate(points), np.concatenate(corners)

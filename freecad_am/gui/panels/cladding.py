@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of faces that are covered with layers of beads: they are picked, and their borders are seen while it is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...core.parameters.strategy import CladdingParameters
+from ...objects.cladding_feature import CladdingFeature
+from ...objects.shapes import FIXTURES
+from ...objects.stage import Link, Outcome
+from .. import recorded
+from ..nodes.wall import WallNodes
+from ..picking import picking
+from ..picking.pick_field import PickField
+from ..texts.translation import marked, sentence, tr
+from ..views.cladding import borders_of
+from ..views.preview import Draft
+from .pick import PickPanel
+
+FACES = Link(
+    "Source", "", marked("The faces to cover; of an object that is no solid all of them, where none is picked."),
+    type_name="App::PropertyLinkSub",
+)
+SUBSTRATE = Link("Substrate", "", marked("A further part that the nozzle is kept clear of."), required=False)
+CM2 = 100.0  # mm2
+
+
+class CladdingPanel(PickPanel):
+    """Makes a feature of cladding of what is selected, or changes one."""
+
+    stage, icon, function, draft = CladdingFeature, "cladding", "make_cladding_feature", "Cladding"
+
+    def __init__(self, obj: Any = None) -> None:
+        self.faces = PickField(FACES, tr("Faces"), None if obj is None else obj.Source, self._arm, picking.FACE)
+        self.substrate = PickField(SUBSTRATE, tr("Further part"), None if obj is None else obj.Substrate, self._arm)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
+        picks = [self.faces, self.substrate, self.fixtures]
+        super().__init__(tr("Cladding") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+
+    def _propose(self, picks: list[picking.Pick]) -> str:
+        """What is selected first, with its faces."""
+        if picks:
+            self.faces.take(picks[0])
+        return ""
+
+    def _lacking(self) -> PickField | None:
+        return None if self.faces.picks else self.faces
+
+    def _refusal(self, field: PickField, pick: picking.Pick) -> str:
+        return tr("{} cannot be taken for this.").format(pick.obj.Label)
+
+    def _elements(self) -> list[str]:
+        """Of the faces picked."""
+        return list(self.faces.picks[0].names) if self.faces.picks else []
+
+    def _links(self) -> dict[str, Any]:
+        return {
+            "Source": (self.faces.picks[0].obj, self._elements()), "Substrate": self.substrate.value(),
+            "Fixtures": self.fixtures.value(),
+        }
+
+    def _inputs(self) -> dict[str, str]:
+        found = {
+            "source": recorded.reference(self.faces.picks[0].obj) if self.faces.picks else "None",
+            "faces": repr(self._elements()), **self.substrate.arguments(), **self.fixtures.arguments(),
+        }
+        return found if self.obj is not None else {
+            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
+        }
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, str]]:
+        draft.check()
+        work = draft.prepare()
+        strategy: CladdingParameters = draft.stage.parameters(draft.obj, CladdingParameters)
+
+        def both() -> tuple[Outcome, str]:
+            made = work()
+            told = tr("{} faces in {} sheets, {:.4g} cm² in each of {} layers")
+            found = made.value
+            return made, told.format(len(found.faces), len(found.sheets), found.area / CM2, strategy.layers)
+
+        return both
+
+    def _draw(self, made: Outcome, drawing: str) -> str:
+        self.nodes.set_first(borders_of(made.value))
+        self.nodes.set_faces(self.faces.picks[0].obj, made.value.faces)
+        return "\n".join([drawing, *(sentence(issue.message) for issue in made.issues)])
+
+    def _draw_without(self) -> None:
+        self.nodes.set_first([])

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of curves that are laid as beads: they are picked, and seen as points would be laid while it is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...objects.curves_feature import CurvesFeature
+from ...objects.shapes import FIXTURES
+from ...objects.stage import Link, Outcome
+from .. import recorded
+from ..nodes.wall import WallNodes
+from ..picking import picking
+from ..picking.pick_field import PickField
+from ..texts.translation import marked, sentence, tr
+from ..views.preview import Draft
+from .pick import PickPanel
+
+CURVES = Link(
+    "Source", "", marked("The edges, wire, sketch or table of points to lay as beads."), type_name="App::PropertyLinkSub"
+)
+NORMALS = Link(
+    "Normals", "", marked("Faces of the same object that the curves lie on, whose normals are the directions; none: the "
+                          "table's own, or the direction below."),
+    required=False, type_name="App::PropertyLinkSub",
+)
+SUBSTRATE = Link("Substrate", "", marked("The part that they are laid on; none is needed on a platform."), required=False)
+
+
+class CurvesPanel(PickPanel):
+    """Makes a feature of curves of what is selected, or changes one."""
+
+    stage, icon, function, draft = CurvesFeature, "curves", "make_curves_feature", "Curves"
+
+    def __init__(self, obj: Any = None) -> None:
+        source, names = (None, []) if obj is None or not obj.Source else obj.Source
+        chosen = {kind: [name for name in names if name.rsplit(".", maxsplit=1)[-1].startswith(kind)]
+                  for kind in (picking.EDGE, picking.FACE)}
+        self.curves = PickField(CURVES, tr("Curves"), None if source is None else (source, chosen[picking.EDGE]), self._arm,
+                                picking.EDGE, whole=True)
+        faces = (source, chosen[picking.FACE]) if chosen[picking.FACE] else None
+        self.normals = PickField(NORMALS, tr("Faces"), faces, self._arm, picking.FACE)
+        self.substrate = PickField(SUBSTRATE, tr("Stands on"), None if obj is None else obj.Substrate, self._arm)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
+        picks = [self.curves, self.normals, self.substrate, self.fixtures]
+        super().__init__(tr("Curves as beads") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+
+    def _propose(self, picks: list[picking.Pick]) -> str:
+        """What is selected first, with its edges."""
+        if picks:
+            self.curves.take(picks[0])
+        return ""
+
+    def _lacking(self) -> PickField | None:
+        return None if self.curves.picks else self.curves
+
+    def _refusal(self, field: PickField, pick: picking.Pick) -> str:
+        return tr("{} cannot be taken for this.").format(pick.obj.Label)
+
+    def _elements(self) -> list[str]:
+        """The names of edges and faces of the source."""
+        own = self.curves.picks[0] if self.curves.picks else picking.Pick(None)
+        faces = [name for pick in self.normals.picks if pick.obj == own.obj for name in pick.names]
+        return [*own.names, *faces]
+
+    def _links(self) -> dict[str, Any]:
+        return {
+            "Source": (self.curves.picks[0].obj, self._elements()), "Substrate": self.substrate.value(),
+            "Fixtures": self.fixtures.value(),
+        }
+
+    def _inputs(self) -> dict[str, str]:
+        found = {
+            "source": recorded.reference(self.curves.picks[0].obj) if self.curves.picks else "None",
+            "faces": repr(self._elements()), **self.substrate.arguments(), **self.fixtures.arguments(),
+        }
+        return found if self.obj is not None else {
+            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
+        }
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
+        draft.check()
+        work = draft.prepare()
+
+        def both() -> tuple[Outcome, Any]:
+            return work(), None
+
+        return both
+
+    def _link_places(self) -> dict[str, str]:
+        return {"Source": self.curves.label, "Substrate": self.substrate.label, "Fixtures": self.fixtures.label}
+
+    def _draw(self, made: Outcome, drawing: Any) -> str:
+        curves = [one.points for one in made.value.curves]
+        self.nodes.set_first(curves)
+        length = sum(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for points in curves)
+        told = tr("{} curves, {:.4g} mm in all").format(len(curves), length)
+        return "\n".join([told, *(sentence(issue.message) for issue in made.issues)])
+
+    def _draw_without(self) -> None:
+        self.nodes.set_first([])

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a part of revolution: meridian, axis and layers are seen while it is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...core.issues import AmError, Issue
+from ...core.parameters.strategy import RevolutionParameters
+from ...core.strategies.revolution import Slices, sliced
+from ...objects import deposit
+from ...objects.feature import RevolutionFeature
+from ...objects.stage import Outcome
+from ..nodes.meridian import MeridianNodes
+from ..picking import inputs
+from ..texts.translation import sentence, tr, translated
+from ..views.preview import Draft
+from .preview import PreviewPanel
+
+Drawing = tuple[RevolutionParameters, Slices, list[Issue]]
+
+
+class FeaturePanel(PreviewPanel):
+    """Makes a feature of the shape that is selected, or changes one."""
+
+    stage, draft = RevolutionFeature, "Feature"
+
+    def __init__(self, obj: Any = None) -> None:
+        title = tr("Feature") if obj is None else obj.Label
+        super().__init__(title, inputs.of(RevolutionFeature, obj), obj, MeridianNodes())
+        self.say("")  # what is missing is told where the preview will be
+        self.tell(self.choices[0].label, self.choices[0].note, wrong=False)
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
+        draft.check()
+        work, strategy = draft.prepare(), draft.stage.parameters(draft.obj, RevolutionParameters)
+
+        def both() -> tuple[Outcome, Drawing]:
+            made = work()
+            return made, (strategy, *sliced(made.value, strategy))
+
+        return both
+
+    def _draw(self, made: Outcome, drawing: Drawing) -> str:
+        strategy, slices, issues = drawing
+        self.nodes.set_wall(made.value)
+        self.nodes.set_layers(made.value, slices)
+        told = tr("About {} turns along {:.4g} mm of wall") if strategy.path == "spiral" else tr(
+            "Layers: {}, along {:.4g} mm of wall"
+        )
+        count = int(slices.layer.max(initial=-1)) + 1
+        found = (sentence(issue.message) for issue in (*deposit.expected(made.value, self.obj), *made.issues, *issues))
+        return "\n".join([told.format(count, made.value.meridian.length), *found])
+
+    def _draw_without(self) -> None:
+        self.nodes.clear()
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        """What is wrong with the shape is told under it."""
+        source = self.choices[0]
+        if source.present is not None and error.where == source.present[0].Label:
+            return source.label, translated(error.message)
+        return super()._placed(error)
+
+    def _show_own(self, visible: bool) -> None:
+        if self.obj is not None:
+            self.obj.ViewObject.Proxy.revolved.show(visible)

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of solids on a hub: solids and hub are picked, and base and first layer are seen while it is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...core.issues import AmError, Issue
+from ...core.parameters.strategy import DevelopableParameters
+from ...core.strategies import size
+from ...objects import deposit
+from ...objects.developable_feature import DevelopableFeature
+from ...objects.proposed_family import COARSE
+from ...objects.shapes import FIXTURES
+from ...objects.stage import Link, Outcome
+from .. import recorded
+from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
+from ..nodes.lines import Array
+from ..picking import picking
+from ..picking.pick_field import PickField
+from ..texts.translation import marked, sentence, tr
+from ..views.preview import Draft
+from .pick import PickPanel
+
+SOLIDS = Link(
+    "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
+    type_name="App::PropertyLinkList",
+)
+HUB = Link(
+    "Hub", "",
+    marked("The cylinder or cone of the hub to grow on, or the whole hub: then its surface is found under each solid."),
+    required=False, type_name="App::PropertyLinkSub",
+)
+_SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
+_OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_plane")
+_NO_BASE = ("NO_HUB", "NO_BASE")
+
+
+class HubPanel(PickPanel):
+    """Makes a feature of solids on a hub of what is selected, or changes one.
+
+    Where a face of the only solid is picked as hub, both are one.
+    """
+
+    stage, icon, function, draft = DevelopableFeature, "solids_on_hub", "make_developable_feature", "Solids"
+    nodes: HubNodes
+    kept: tuple[Any, Outcome, Drawing] | None = None  # what was computed last: what of, what, and what is drawn of it
+
+    def __init__(self, obj: Any = None) -> None:
+        solids, hub, fixtures = ((), None, ()) if obj is None else _present(obj)
+        self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
+        self.hub = PickField(HUB, tr("Hub"), hub, self._arm, picking.FACE, meshes=True)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), fixtures, self._arm)
+        picks = [self.solids, self.hub, self.fixtures]
+        title = tr("Solids on hub") if obj is None else obj.Label
+        super().__init__(title, picks, obj, HubNodes(pickable=False))
+        for place in _OF_WALLS:
+            field, _, fold = self.places[place]
+            if field.value == field.row.outer(field.row.default):  # what is refused must be put right here
+                fold.enable(field.widget, False)
+                field.widget.setToolTip(tr("Of walls alone: solids on a hub grow along the normals of its surface"))
+
+    # ---- what is picked
+
+    def _propose(self, picks: list[picking.Pick]) -> str:
+        """The last one is the hub, or the only one with faces picked; one alone is to be deposited."""
+        faced = [pick for pick in picks if any(name.startswith(picking.FACE) for name in pick.names)]
+        hub = None if len(picks) < 2 else faced[0] if len(faced) == 1 else picks[-1]
+        for pick in picks:
+            (self.hub if pick is hub else self.solids).take(pick)
+        return ""
+
+    def _lacking(self) -> PickField | None:
+        return None if self.solids.picks else self.solids
+
+    def _taken(self, field: PickField) -> None:
+        """What is picked as hub is no solid beside others."""
+        hub = self.hub.picks[0].obj if self.hub.picks else None
+        others = [pick for pick in self.solids.picks if pick.obj != hub]
+        if others and len(others) < len(self.solids.picks):
+            self.solids.picks = others
+            self.solids.show()
+
+    def _refusal(self, field: PickField, pick: picking.Pick) -> str:
+        told = tr("{} is another object; faces of a hub are of one object. Clear it first to start again.")
+        return told.format(pick.obj.Label)
+
+    def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
+        """The objects to deposit, faces of the first one that are the base, the hub, and faces of it."""
+        solids = [pick.obj for pick in self.solids.picks]
+        hub = self.hub.picks[0] if self.hub.picks else picking.Pick(None)
+        if solids == [hub.obj]:
+            return solids, hub.names, None, ()
+        return solids, (), hub.obj, hub.names
+
+    def _links(self) -> dict[str, Any]:
+        solids, faces, hub, base_faces = self._roles()
+        return {
+            "Source": (solids[0], list(faces)), "Further": solids[1:], "Substrate": hub,
+            "BaseFaces": (hub, list(base_faces)) if base_faces else None, "Fixtures": self.fixtures.value(),
+        }
+
+    def _inputs(self) -> dict[str, str]:
+        solids, faces, hub, base_faces = self._roles()
+        further = ", ".join(recorded.reference(obj) for obj in solids[1:])
+        found = {
+            "source": recorded.reference(solids[0]) if solids else "None", "faces": repr(list(faces)),
+            "further": f"[{further}]", "substrate": "None" if hub is None else recorded.reference(hub),
+            "base_faces": repr(list(base_faces)), **self.fixtures.arguments(),
+        }
+        return found if self.obj is not None else {
+            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
+        }
+
+    # ---- preview
+
+    def _values(self) -> dict[str, Any]:
+        """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+        found = super()._values()
+        if 0.0 < getattr(found["ChordError"], "Value", found["ChordError"]) < COARSE:
+            found["ChordError"] = COARSE
+        return found
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
+        """Computed anew only where solids or hub are others."""
+        draft.check()
+        key = (self._inputs(), [str(getattr(draft.obj, name)) for name in _SHAPING])
+        kept, work, strategy = self.kept, draft.prepare(), self._strategy()
+
+        def both() -> tuple[Outcome, Drawing]:
+            _, made, drawn = kept if kept is not None and kept[0] == key else (key, work(), None)
+            size.refuse_absurd(size.of_solids(made.value, strategy), strategy)
+            self.kept = (key, made, drawing(made.value) if drawn is None else drawn)
+            return self.kept[1:]
+
+        return both
+
+    def _strategy(self) -> DevelopableParameters:
+        """What is entered, with the chord error that the deposit is to keep."""
+        entered = Draft(self.proxy, self.document, self.draft, self._links(), super()._values())
+        found: DevelopableParameters = entered.stage.parameters(entered.obj, DevelopableParameters)
+        return found
+
+    def _link_places(self) -> dict[str, str]:
+        return {
+            "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.hub.label,
+            "BaseFaces": self.hub.label, "Fixtures": self.fixtures.label,
+        }
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        if error.code in _NO_BASE:
+            return self.hub.label, sentence(error.message)
+        return super()._placed(error)
+
+    def _draw(self, made: Outcome, drawing: Drawing) -> str:
+        self.nodes.set(drawing)
+        return _told(made, drawing.contours, (*deposit.expected(made.value, self.obj), *made.issues))
+
+    def _draw_without(self) -> None:
+        self.nodes.set(NOTHING)
+
+
+def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
+    """Solids, hub and fixtures of a feature."""
+    source, faces = obj.Source or (None, [])
+    faces = [name for name in faces if name]
+    hub = (source, faces) if faces else obj.BaseFaces or (None if obj.Substrate is None else (obj.Substrate, []))
+    return [*([] if source is None else [source]), *obj.Further], hub, obj.Fixtures
+
+
+def _told(made: Outcome, contours: Sequence[Sequence[Sequence[Array]]], findings: Sequence[Issue]) -> str:
+    lines = []
+    for group, solids in zip(made.value.groups, contours, strict=True):
+        surface, count = group.base.surface, len(group.bodies)
+        if surface.is_cylinder:
+            shape = tr("cylinder, R {:.4g} mm").format(surface.radius)
+        else:
+            shape = tr("cone, R {:.4g} mm, half angle {:.4g}°").format(surface.radius, np.degrees(surface.taper))
+        length = sum(
+            float(np.linalg.norm(np.diff(one, axis=0), axis=1).sum()) for solid in solids for one in solid
+        )
+        stands = tr("1 solid on {1} ({2})") if count == 1 else tr("{0} solids on {1} ({2})")
+        first = tr("first layer: {} contours, {:.1f} mm").format(sum(map(len, solids)), length)
+        lines.append(f"{stands.format(count, group.base.name, shape)}; {first}")
+    return "\n".join([*lines, *(sentence(issue.message) for issue in findings)])

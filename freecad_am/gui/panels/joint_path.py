@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a joint path: some points of it are planned as it is entered, and tell what will come of it."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...core.issues import ERROR, InputError, Issue
+from ...core.kinematics import cell as cells
+from ...core.kinematics import machine as machines
+from ...core.planning.joint_path import JointPath as JointsOfBeads
+from ...core.planning.judgement import Judgement, judged
+from ...core.planning.plan import OF_ROBOTS, plan_joints
+from ...core.planning.sampled import Sampled, sampled
+from ...objects import progress, user_machines
+from ...objects.joint_path import Job, JointPath
+from ...objects.stage import Outcome
+from ..nodes.joint_path import JointPathNodes
+from ..path.colouring import CONDITION, MARGIN, RATIO
+from ..picking import inputs
+from ..texts.translation import tr, translated
+from ..views.preview import Aside, Draft
+from .preview import PreviewPanel, told_stale
+
+MOST = 1000  # points that are planned for a preview, about: a second or two
+MOST_TOLD = 3  # findings
+METHOD = "joints_method"
+_ENDS = {"joints_rotation_range_low", "joints_rotation_range_high"}
+_OF_ROTARY_AXES = ("lock", "lock_at", "max_residual")
+_OF_METHODS = {"constant": ("rz",), "layer-by-layer": ("degree", "given", "parameter")}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A plan of some points of a toolpath. toolpath: its object, which may be gone by now. stale: labels of the inputs that
+    were out of date when it was begun."""
+
+    toolpath: Any
+    stale: tuple[str, ...]
+    sample: Sampled
+    planned: JointsOfBeads
+    judgement: Judgement
+
+
+class JointPathPanel(PreviewPanel):
+    """Makes a joint path, or changes one. Its preview knows no rapid moves."""
+
+    stage, draft = JointPath, "Joint path"
+    lines = 7
+
+    def __init__(self, obj: Any = None) -> None:
+        self.aside = Aside()
+        super().__init__(
+            tr("Joint path") if obj is None else obj.Label, inputs.of(JointPath, obj), obj, JointPathNodes()
+        )
+        self.places[METHOD][0].widget.currentIndexChanged.connect(self._fit)
+        self._cell().widget.currentIndexChanged.connect(self._fit)
+        self._fit()
+
+    def _cell(self) -> Any:
+        return next(one for one in self.choices if isinstance(one, inputs.StageChoice) and one.link.kind == "cell")
+
+    def _fit(self, *_: Any) -> None:
+        """Leave out what has no meaning for the machine of the cell, or with the method."""
+        with contextlib.suppress(InputError, ReferenceError):  # told by the preview
+            cell = self._cell().value()
+            if cell is None:
+                return
+            if machines.load(cell.Machine, user_machines.folders()).is_table:
+                self.leave_out({_place(name) for name in OF_ROBOTS} | _ENDS)
+                return
+            method = self.places[METHOD][0].value
+            others = {name for one, names in _OF_METHODS.items() if one != method for name in names}
+            self.leave_out({_place(name) for name in (*_OF_ROTARY_AXES, *others)})
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Trial]]:
+        job = draft.stage.job(draft.obj)
+        toolpath, stale = draft.obj.Toolpath, self._stale_inputs()
+
+        def work() -> tuple[Outcome, Trial]:
+            trial = Trial(toolpath, stale, *_tried(job))
+            return Outcome(trial.planned, trial.planned.issues), trial
+
+        return work
+
+    def _draw(self, made: Outcome, drawing: Trial) -> str:
+        judgement = drawing.judgement
+        kind = self._colouring(judgement)
+        values = {MARGIN: judgement.margin, CONDITION: judgement.condition, RATIO: judgement.ratio}[kind]
+        self.nodes.set(drawing.planned.beads, values, kind, np.isnan(judgement.margin))
+        self.aside.put(self.obj, drawing.toolpath)
+        return "\n".join([*_found(drawing), *_figures(judgement), *told_stale(drawing.stale), _looked_at(drawing.sample)])
+
+    def _colouring(self, judgement: Judgement) -> str:
+        """What the object's own view tells by its colours, if that is of the machine and known."""
+        kind = MARGIN if self.obj is None else self.obj.ViewObject.Colouring
+        known = (MARGIN, RATIO) if judgement.worst_condition is None else (MARGIN, CONDITION, RATIO)
+        return kind if kind in known else MARGIN
+
+    def _draw_without(self) -> None:
+        self.nodes.clear()
+        self.aside.put(self.obj)
+
+    def _show_own(self, visible: bool) -> None:
+        """What else stands back for the preview goes on doing so until the panel closes."""
+        others = [] if visible else [one for one in self.aside.objects if one is not self.obj]
+        self.aside.put(*others, None if visible else self.obj)
+
+
+def _place(name: str) -> str:
+    return f"joints_{name}"
+
+
+def _tried(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement]:
+    """The plan of as many points as are soon planned. Raises what planning raises."""
+    sample = sampled(job.toolpath(), MOST)
+    toolpath = sample.toolpath
+    cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
+    parameters = replace(job.parameters, compare=(), given=sample.given(job.parameters.given))
+    planned = plan_joints(toolpath, cell, parameters, progress.report)
+    return sample, planned, judged(planned.beads, cell.limits, cell.machine.max_speed)
+
+
+def _found(trial: Trial) -> list[str]:
+    """Whether it can be carried out, as far as that is known, and where not."""
+    errors = [issue for issue in trial.planned.issues if issue.level == ERROR]
+    if not errors:
+        return [tr("All deposit points can be carried out.") if trial.sample.whole else tr(
+            "Nothing stands against it so far.")]
+    told = [tr("Cannot be carried out:"), *(_told(issue, trial.sample.whole) for issue in errors[:MOST_TOLD])]
+    if len(errors) > MOST_TOLD:
+        told.append(tr("and {} more").format(len(errors) - MOST_TOLD))
+    return told
+
+
+def _told(issue: Issue, whole: bool) -> str:
+    """A finding with its place: of some points alone it is the layer, whose beads and points have other numbers."""
+    placed = issue if whole else replace(issue, bead=None, point=None)
+    return tr("{}: {}").format(translated(placed.where), translated(issue.message)) if placed.where else translated(
+        issue.message)
+
+
+def _figures(judgement: Judgement) -> list[str]:
+    """What is least and most; machines with rotary axes have no condition, and what is out of reach nothing."""
+    found = (
+        (tr("Least joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
+        (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
+        (tr("Largest joint speed: {:.0f} % of what {} can do, in layer {}"), judgement.worst_ratio, 100.0),
+    )
+    return [
+        text.format(factor * worst.value, worst.label, worst.layer) for text, worst, factor in found if worst is not None
+    ]
+
+
+def _looked_at(sample: Sampled) -> str:
+    """Of what this is the preview, and what is left to OK."""
+    if sample.whole:
+        return tr("Preview of all points; OK looks at the rapid moves too.")
+    if sample.beads == 1:
+        return tr("Preview of one point in {}; OK looks at those between and at the rapid moves too.").format(sample.points)
+    if sample.points == 1:
+        return tr("Preview of one bead in {}; OK looks at those between and at the rapid moves too.").format(sample.beads)
+    told = tr("Preview of one point in {} of one bead in {}; OK looks at those between and at the rapid moves too.")
+    return told.format(sample.points, sample.beads)

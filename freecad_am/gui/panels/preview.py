@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Panels that show what OK would make while they are open."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from PySide import QtCore
+
+from ...core.issues import AmError, InputError, has_errors
+from ...objects import expressions, hooks
+from ...objects.stage import Outcome, Stage
+from ...objects.staleness import STALE
+from ..background.later import Background
+from ..background.worker import Worker
+from ..colours import WRONG
+from ..picking.inputs import Input, StageChoice
+from ..texts.translation import tr, translated_error
+from ..views.preview import Draft, Preview
+from .stage import CLOSED, StagePanel
+
+LOOK_EVERY = 200  # ms; what has not changed between two looks is previewed
+TOLD_AFTER = 400  # ms; when a preview takes longer, that is said
+
+
+class PreviewPanel(StagePanel):
+    """Makes a stage or changes one, and shows it before, in the 3D view by its nodes, where it has any. The document is
+    left alone before OK."""
+
+    stage: type[Stage]
+    is_open = True
+    refused: Any = None  # the entries that OK or Apply did not take
+    lines = 5
+
+    def __init__(self, title: str, choices: Sequence[Input], obj: Any, nodes: Any) -> None:
+        self.nodes = nodes
+        super().__init__(self.stage, title, choices, obj)
+        self.seen: Any = None  # the entries at the last look
+        self.shown: Any = None  # those that are previewed
+        self.blamed: set[str] = set()  # the places that the last preview was refused for
+        self.state = self.messages.add("preview", "palette(text)")
+        self.preview = None if nodes is None else Preview(self.document, nodes.switch)
+        self._show_own(False)
+        self.timer = QtCore.QTimer(self.form)
+        self.timer.setInterval(LOOK_EVERY)
+        self.timer.timeout.connect(self._look)
+        self.timer.start()
+        self.background = Background(self.form)
+        self.form.destroyed.connect(self.close)
+
+    # ---- what a panel defines
+
+    def _lacks(self) -> str:
+        """What is to be entered first, '' for nothing."""
+        return next((choice.missing for choice in self.choices if choice.missing), "")
+
+    def _links(self) -> dict[str, Any]:
+        """The inputs as the links of the stage hold them."""
+        return {choice.link.name: choice.value() for choice in self.choices}
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
+        """The work, which leaves the document alone, that makes what is entered, and what is drawn of it. Both raise
+        AmError."""
+        raise NotImplementedError
+
+    def _draw(self, made: Outcome, drawing: Any) -> str:
+        """Draw what was computed; what to tell about it."""
+        raise NotImplementedError
+
+    def _draw_without(self) -> None:
+        """Draw what can be drawn where nothing can be computed."""
+        raise NotImplementedError
+
+    def _show_own(self, visible: bool) -> None:
+        """Show or hide what the object itself draws, which the preview stands for."""
+        raise NotImplementedError
+
+    # ---- preview
+
+    def _look(self) -> None:
+        """Preview what is entered once it no longer changes. What is being computed may change inputs: it is waited for."""
+        if hooks.carrying():
+            return
+        try:
+            now = self._entered()
+            if now != self.seen:
+                self.seen = now
+            elif now != self.shown:
+                self.shown = now
+                self._renew()
+        except ReferenceError:
+            self._gone()
+
+    def _gone(self) -> None:
+        """The document or the object is no more: say so, before anything else is clicked or typed."""
+        self.close()
+        with contextlib.suppress(RuntimeError):  # so is the panel
+            self.say(tr(CLOSED))
+
+    def _entered(self) -> Any:
+        texts = []
+        for field, _, _ in self.places.values():
+            try:
+                texts.append((field.row.name, field.value))
+            except InputError as error:
+                texts.append((field.row.name, error.message))
+        results = [(stage.Key, stage.Status) for stage in self._stages()]
+        return self.document.Name, self._inputs(), results, texts
+
+    def _stages(self) -> list[Any]:
+        """The stages that are inputs."""
+        chosen = [choice.value() for choice in self.choices if isinstance(choice, StageChoice)]
+        return [stage for stage in chosen if stage is not None]
+
+    def _stale_inputs(self) -> tuple[str, ...]:
+        """The labels of those that are out of date now."""
+        return tuple(stage.Label for stage in self._stages() if stage.Status == STALE)
+
+    def _renew(self) -> None:
+        """Begin to compute what is entered, in place of what was before."""
+        self.background.cancel()
+        refused = set(self.marked) if self.shown == self.refused else set()
+        for place in (self.blamed | set(self.marked)) - set(self.told) - refused:
+            self.tell(place, "")
+        self.blamed.clear()
+        lacks = self._lacks()
+        if lacks:
+            self._say(lacks, False)
+            self._draw_without()
+            return
+        try:
+            draft = Draft(self.proxy, self.document, self.draft, self._links(), self._values())
+            self.background.start(draft.told(self._work(draft)), self._show_result)
+        except AmError as error:
+            self._refuse(error)
+            return
+        worker = self.background.worker
+        QtCore.QTimer.singleShot(TOLD_AFTER, lambda: self._say_waiting(worker))
+
+    def _say_waiting(self, worker: Worker | None) -> None:
+        if worker is not None and self.background.worker is worker:
+            with contextlib.suppress(RuntimeError):
+                self._say(tr("The preview is being computed."), False)
+
+    def _show_result(self, worker: Worker) -> None:
+        """Show what was computed, or what is wrong."""
+        try:
+            made, drawing = worker.result()
+            self._say(self._draw(made, drawing), has_errors(made.issues))
+        except AmError as error:
+            self._refuse(error)
+        except ReferenceError:
+            self.close()
+        except Exception as error:  # of nobody's making; OK would tell it too
+            self._say(f"{type(error).__name__}: {error}", True)
+            self._draw_without()
+
+    def _refuse(self, error: AmError) -> None:
+        place, text = self._placed(error)
+        if place:
+            self._say(tr("No preview: see the field marked."), False)
+            self._unfolded(place)
+            self.tell(place, text)
+            self.blamed.add(place)
+        else:
+            self._say(translated_error(error), True)
+        self._draw_without()
+
+    def _values(self) -> dict[str, Any]:
+        found = {}
+        for place, (field, _, _) in self.places.items():
+            try:
+                value = field.value
+                if expressions.is_expression(value) and field.row.form in expressions.FOLLOW:
+                    value = self._evaluated(field, value)
+                found[field.row.name] = value
+            except InputError as error:
+                raise InputError(error.code, place, error.message) from None
+        return found
+
+    def _say(self, text: str, wrong: bool) -> None:
+        """Tell about the preview."""
+        self.state.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
+        self.state.setText(text)
+        self.state.setVisible(bool(text))
+
+    # ---- called by FreeCAD
+
+    def accept(self) -> bool:
+        """Make or change the feature; True closes the panel."""
+        done = super().accept()
+        if done:
+            self.close()
+        return done
+
+    def apply(self) -> bool:
+        """Make or change the feature; the preview goes on standing for what it draws."""
+        done = super().apply()
+        if done:
+            self._show_own(False)
+        return done
+
+    def _carry_out(self) -> bool:
+        self.background.cancel()
+        done = super()._carry_out()
+        self.seen = self.shown = None  # what was being previewed is begun again, what was made is another one
+        if not done:
+            with contextlib.suppress(ReferenceError):
+                self.refused = self._entered()
+        return done
+
+    def reject(self) -> bool:
+        """Nothing was done; what was previewed goes."""
+        self.close()
+        return super().reject()
+
+    def close(self, *_: Any) -> None:
+        """Take away the preview; once or more often."""
+        if not self.is_open:
+            return
+        self.is_open = False
+        self.background.cancel()
+        if self.preview is not None:
+            self.preview.remove()
+        with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
+            self.timer.stop()
+        with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # the object is gone
+            self._show_own(True)
+
+
+def told_stale(labels: Sequence[str]) -> list[str]:
+    """What to say of inputs that were out of date when the preview was begun."""
+    return [tr("{} is out of date; this is of what it was.").format(label) for label in labels]

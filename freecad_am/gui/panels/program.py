@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a program: how it begins, and what it is in all, is seen as it is entered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCAD as App
+
+from ... import api
+from ...core.issues import AmError
+from ...core.parameters.program import ProgramParameters
+from ...core.preflight.promise import Place, Promise
+from ...core.simulation.timeline import timeline
+from ...core.simulation.totals import Totals, totals
+from ...objects import preflight
+from ...objects.program import Job, Program, Written, posted
+from ...objects.stage import Outcome
+from ...objects.staleness import UP_TO_DATE
+from ...posts import catalogue
+from ..path import dock
+from ..picking import inputs
+from ..picking.selection import meant
+from ..program.listing import listing
+from ..program.preflight_list import PreflightList, summary
+from ..simulation import told
+from ..texts.translation import tr, translated
+from ..views.preview import Draft
+from ..widgets import suggestions
+from .preview import PreviewPanel, told_stale
+
+FIRST = 40  # lines that are shown: controllers want a head of twenty
+HIGH = 14  # lines that are seen at once, about
+SMALLER, LEAST = 0.85, 6.0  # than the text of the panel, which is narrow, and points at least
+POST, START, START_LAYER = "program_post", "program.start_at", "program_start_at_layer"
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """How a program begins. name: of its main file; text: the first lines. lines, files: in all. stale: labels of the inputs
+    that were out of date when it was begun. promises: of its preflight."""
+
+    name: str
+    text: str
+    lines: int
+    files: int
+    sums: Totals
+    dry: bool
+    stale: tuple[str, ...]
+    promises: tuple[Promise, ...]
+
+
+class ProgramPanel(PreviewPanel):
+    """Makes a program, or changes one. Its preview is written as the program will be; it is read back with OK, and until
+    then its preflight says so."""
+
+    stage, draft = Program, "Program"
+
+    def __init__(self, obj: Any = None) -> None:
+        self.name = inputs.NameChoice(_part_name() if obj is None else obj.ProgramName)
+        super().__init__(
+            tr("Program") if obj is None else obj.Label, [*inputs.of(Program, obj), self.name], obj, None
+        )
+        post = suggestions.post_for(self._links()["JointPath"]) if obj is None else ""
+        if post:
+            self.places[POST][0].show(post)
+        self._add_text()
+
+    def _add_text(self) -> None:
+        self.text = listing("FirstLines")
+        font = self.text.font()
+        font.setPointSizeF(max(LEAST, SMALLER * self.form.font().pointSizeF()))
+        self.text.setFont(font)
+        self.text.setFixedHeight(HIGH * self.text.fontMetrics().lineSpacing())
+        help = tr("The first lines of the program as it would be written")
+        self.text.setToolTip(help)
+        self.text.setWhatsThis(help)
+        self.text.hide()
+        self.column.insertWidget(self.column.indexOf(self.messages) + (1 if self.heading is None else 2), self.text)
+        self.preflight = PreflightList(self._go)
+        self.preflight.widget.hide()
+        self.column.insertWidget(self.column.indexOf(self.text) + 1, self.preflight.widget)
+
+    def _go(self, place: Place) -> None:
+        """A promise was clicked: the path is shown up to where it is worst."""
+        path = self._links()["JointPath"]
+        if path is not None:
+            dock.go_to(path, *place)
+
+    def _links(self) -> dict[str, Any]:
+        path = next(choice for choice in self.choices if choice is not self.name)
+        return {path.link.name: path.value(), "ProgramName": self.name.widget.text().strip()}
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Beginning | None]]:
+        job, stale = draft.stage.job(draft.obj), self._stale_inputs()
+        path = draft.obj.JointPath
+        read = self._read_back(job, path)
+        promised = preflight.prepared(path.Toolpath, path, job.parameters, read)
+
+        def work() -> tuple[Outcome, Beginning | None]:
+            return Outcome(Written({}, None)), None if job.parameters.post == "none" else _begun(job, stale, promised)
+
+        return work
+
+    def _read_back(self, job: Job, path: Any) -> Any:
+        """The `Verification` of the program, where it is up to date and what is entered is what it was made of."""
+        obj = self.obj
+        if obj is None or obj.Status != UP_TO_DATE or obj.JointPath is not path or obj.ProgramName != job.name:
+            return None
+        same = obj.Proxy.parameters(obj, ProgramParameters) == job.parameters
+        return preflight.read_back_of(obj) if same else None
+
+    def _draw(self, made: Outcome, drawing: Beginning | None) -> str:
+        if drawing is None:
+            self._draw_without()
+            return tr("Without a post no file is written.")
+        self.text.show()
+        if self.text.toPlainText() != drawing.text:
+            self.text.setPlainText(drawing.text)
+        self.preflight.widget.show()
+        self.preflight.show(drawing.promises)
+        return "\n".join([*_told(drawing), summary(drawing.promises), *told_stale(drawing.stale)])
+
+    def _draw_without(self) -> None:
+        self.preflight.clear()
+        self.text.clear()  # once seen it keeps its room: a field that is typed into stays in place
+
+    def _show_own(self, visible: bool) -> None:
+        """A program draws nothing."""
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        """Where a program starts is told under the first of its two fields."""
+        return (START_LAYER, translated(error.message)) if error.where == START else super()._placed(error)
+
+
+def _begun(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginning:
+    """The program of a joint path. Raises what writing it raises."""
+    made = posted(job)
+    main = catalogue.main_file(made.files)
+    lines = made.files[main].decode("latin-1").splitlines()[:FIRST]
+    times = timeline(made.motion, job.process, [layer.wait for layer in made.toolpath.layers])
+    return Beginning(
+        main, "\n".join(lines), sum(content.count(b"\n") for content in made.files.values()), len(made.files),
+        totals(made.motion, times, job.process, made.toolpath), job.parameters.dry_run, stale,
+        promised(),
+    )
+
+
+def _told(beginning: Beginning) -> list[str]:
+    sums = beginning.sums
+    deposits = tr("dry run, nothing is deposited") if beginning.dry else tr("mass: {:.1f} g").format(sums.mass)
+    return [
+        tr("Begins with {}. Lines: {}, files: {}").format(beginning.name, beginning.lines, beginning.files),
+        tr("Time: {}, {}").format(told.clock(sums.time), deposits),
+    ]
+
+
+def _part_name() -> str:
+    """A first proposal for the program's name, from the part that is deposited: that of the selected job first."""
+    for obj in [*meant(), *App.ActiveDocument.Objects]:
+        if getattr(getattr(obj, "Proxy", None), "kind", "") == "feature" and obj.Source:
+            return api.proposed_name(obj.Source[0].Label)
+    return api.proposed_name(App.ActiveDocument.Label)

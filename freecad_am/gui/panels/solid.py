@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of solids: solids and a guide of their layers are picked; the plane they stand on is seen while it is open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from PySide import QtCore, QtGui
+
+from ...core.issues import AmError
+from ...core.layers import along, guide_edges
+from ...core.layers.leaning import Leaning, leaning
+from ...core.layers.stacking import STANDING, stacked
+from ...core.parameters.strategy import SolidParameters
+from ...core.strategies import size
+from ...objects.proposed_family import COARSE
+from ...objects.shapes import FIXTURES
+from ...objects.solid_feature import SolidFeature
+from ...objects.stage import Link, Outcome
+from .. import recorded
+from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
+from ..nodes.lines import Array, Faces
+from ..picking import picking
+from ..picking.pick_field import PickField
+from ..texts.translation import marked, sentence, tr
+from ..views.preview import Draft
+from ..widgets.wheel import scrolls
+from .pick import PickPanel
+
+STEEPEST = 89  # deg of the slider
+MM2_PER_CM2 = 100.0
+OVERHUNG = (0.86, 0.1, 0.12)
+
+SOLIDS = Link(
+    "Solids", "", marked("The solids or closed meshes to deposit, one after the other; a click on one again leaves it out."),
+    type_name="App::PropertyLinkList",
+)
+SUBSTRATE = Link("Substrate", "", marked("The part that they stand on; none is needed on a platform."), required=False)
+GUIDE = Link(
+    "Guide", "", marked("The edges, wire or sketch that layers along a guide stand normal to; none: the centre line of the "
+                        "solid."),
+    required=False, type_name="App::PropertyLinkSub",
+)
+START = Link(
+    "StartFaces", "", marked("The faces on which the first of geodesic and offset layers lies; none: where they stand."),
+    required=False, type_name="App::PropertyLinkSub",
+)
+
+
+class SolidNodes(HubNodes):
+    """Draws the plane that solids stand on, their first layer, and what of them leans out over nothing."""
+
+    def __init__(self) -> None:
+        super().__init__(pickable=False)
+        self.over = Faces(OVERHUNG, 0.0)
+        self.root.addChild(self.over.node)
+
+    def set_overhang(self, corners: Array) -> None:
+        """Facets (m, 3, 3) that are to be red."""
+        self.over.set(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+
+
+class SolidPanel(PickPanel):
+    """Makes a feature of solids in plane layers of what is selected, or changes one."""
+
+    stage, icon, function, draft = SolidFeature, "solid", "make_solid_feature", "Solids"
+    nodes: SolidNodes
+    leaning: Leaning | None = None  # what of the part leans out, as it is previewed
+    lean = -1  # deg that the field of the largest overhang held when the slider followed it
+    kept: tuple[Any, Outcome] | None = None  # the solids read last: what of, and what
+
+    def __init__(self, obj: Any = None) -> None:
+        solids = [] if obj is None or not obj.Source else [obj.Source[0], *obj.Further]
+        self.solids = PickField(SOLIDS, tr("Solids"), solids, self._arm)
+        self.substrate = PickField(SUBSTRATE, tr("Stands on"), None if obj is None else obj.Substrate, self._arm)
+        self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
+        guide = None if obj is None else getattr(obj, "Guide", None)
+        self.guide = PickField(GUIDE, tr("Guide"), guide, self._arm, picking.EDGE, whole=True)
+        start = None if obj is None else getattr(obj, "StartFaces", None)
+        self.start = PickField(START, tr("Starts on"), start, self._arm, picking.FACE)
+        picks = [self.solids, self.substrate, self.guide, self.start, self.fixtures]
+        super().__init__(tr("Solids in plane layers") if obj is None else obj.Label, picks, obj, SolidNodes())
+        self._add_overhang()
+
+    def _add_overhang(self) -> None:
+        """The slider of the overhang view: a picture alone, it enters nothing."""
+        box, help = QtGui.QWidget(), tr("Faces that lean out over nothing by more than this angle are red in the 3D view")
+        column = QtGui.QVBoxLayout(box)
+        column.setContentsMargins(4, 0, 4, 0)
+        self.overhang, self.overhung = QtGui.QSlider(QtCore.Qt.Horizontal), QtGui.QLabel()
+        self.overhang.setObjectName("OverhangAngle")
+        self.overhang.setRange(0, STEEPEST)
+        self.overhung.setObjectName("OverhangArea")
+        for widget in (self.overhung, self.overhang):
+            widget.setToolTip(help)
+            widget.setWhatsThis(help)
+            column.addWidget(widget)
+        self._show_overhang()
+        self.overhang.valueChanged.connect(self._show_overhang)
+        self.column.insertWidget(self.column.indexOf(self.messages) + 1, box)
+        scrolls(box)
+
+    def _show_overhang(self, *_: Any) -> None:
+        """Colour what leans out by more than the slider tells."""
+        angle = self.overhang.value()
+        if self.leaning is None:
+            self.nodes.set_overhang(np.zeros((0, 3, 3)))
+            self.overhung.setText(tr("Overhang > {}°").format(angle))
+            return
+        corners, area = self.leaning.beyond(math.radians(angle))
+        self.nodes.set_overhang(corners)
+        share = 100.0 * area / max(self.leaning.whole, 1e-300)
+        self.overhung.setText(tr("Overhang > {}°: {:.4g} cm² ({:.0f} %)").format(angle, area / MM2_PER_CM2, share))
+
+    def _propose(self, picks: list[picking.Pick]) -> str:
+        """All that is selected is to be deposited."""
+        for pick in picks:
+            self.solids.take(pick)
+        return ""
+
+    def _lacking(self) -> PickField | None:
+        return None if self.solids.picks else self.solids
+
+    def _refusal(self, field: PickField, pick: picking.Pick) -> str:
+        return tr("{} cannot be taken for this.").format(pick.obj.Label)
+
+    def _links(self) -> dict[str, Any]:
+        solids = [pick.obj for pick in self.solids.picks]
+        return {
+            "Source": (solids[0], []), "Further": solids[1:], "Substrate": self.substrate.value(),
+            "Guide": self.guide.value(), "StartFaces": self.start.value(), "Fixtures": self.fixtures.value(),
+        }
+
+    def _inputs(self) -> dict[str, str]:
+        solids = [recorded.reference(pick.obj) for pick in self.solids.picks]
+        found = {
+            "source": solids[0] if solids else "None", "further": f"[{', '.join(solids[1:])}]",
+            **self.substrate.arguments(), "guide": _with_names(self.guide), "start_faces": _with_names(self.start),
+            **self.fixtures.arguments(),
+        }
+        return found if self.obj is not None else {
+            key: text for key, text in found.items() if key == "source" or text not in ("None", "[]")
+        }
+
+    def _values(self) -> dict[str, Any]:
+        """Entries, but for the chord error, which a picture need not keep; a wrong one stays wrong."""
+        found = super()._values()
+        if 0.0 < getattr(found["ChordError"], "Value", found["ChordError"]) < COARSE:
+            found["ChordError"] = COARSE
+        return found
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
+        """Solids are read anew only where they are others."""
+        draft.check()
+        kept, work = self.kept, draft.prepare()
+        strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
+        guided = strategy.layers == "along"
+        key = (self._inputs(), strategy.direction if guided else None, guided)
+
+        def both() -> tuple[Outcome, tuple[Drawing, Leaning, int]]:
+            made = kept[1] if kept is not None and kept[0] == key else work()
+            self.kept = (key, made)
+            bodies = made.value.groups[0].bodies
+            solids = made.value if guided else stacked(bodies, strategy, made.value.label)
+            size.refuse_absurd(size.of_solids(solids, strategy), strategy)
+            if guided:  # at once what is higher or lower than allowed
+                list(along.slices(solids.groups[0].base, bodies, strategy))
+            slit = strategy.chord_error if strategy.fuse == "auto" else None
+            lean = leaning(bodies, solids.groups[0].base, STANDING * strategy.layer_height, slit)
+            asked = round(math.degrees(strategy.max_overhang))
+            return Outcome(solids, solids.issues), (drawing(solids), lean, min(asked, STEEPEST))
+
+        return both
+
+    def _link_places(self) -> dict[str, str]:
+        return {
+            "Source": self.solids.label, "Further": self.solids.label, "Substrate": self.substrate.label,
+            "Guide": self.guide.label, "StartFaces": self.start.label, "Fixtures": self.fixtures.label,
+        }
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        if error.where == guide_edges.WHERE:
+            return self.guide.label, sentence(error.message)
+        return super()._placed(error)
+
+    def _draw(self, made: Outcome, drawn: tuple[Drawing, Leaning, int]) -> str:
+        drawing, self.leaning, asked = drawn
+        self.nodes.set(drawing)
+        if asked != self.lean:  # the slider begins where the field is, and follows it
+            self.lean = asked
+            self.overhang.setValue(asked)
+        self._show_overhang()
+        group = made.value.groups[0]
+        height = max(float(group.base.surface.distance(group.base.inside(body.vertices)).max()) for body in group.bodies)
+        contours = sum(len(some) for solids in drawing.contours for some in solids)
+        told = tr("{} solids, {:.4g} mm high; first layer: {} contours").format(len(group.bodies), height, contours)
+        return "\n".join([told, *(sentence(issue.message) for issue in made.issues)])
+
+    def _draw_without(self) -> None:
+        self.nodes.set(NOTHING)
+        self.leaning = None
+        self._show_overhang()
+
+
+def _with_names(field: PickField) -> str:
+    """An object with its edges or faces as a macro gives it."""
+    if not field.picks:
+        return "None"
+    pick = field.picks[0]
+    return f"({recorded.reference(pick.obj)}, {list(pick.names) or ['']!r})"

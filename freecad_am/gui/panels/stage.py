@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The task panel of a stage, made from its parameters: OK and Apply are one call of the macro interface each."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import weakref
+from collections.abc import Collection, Sequence
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ...core.issues import AmError, InputError
+from ...core.parameters.field import check_value
+from ...objects import expressions, preferences
+from ...objects.findings import issues_of
+from ...objects.progress import Cancelled
+from ...objects.rows import group_of, rows
+from ...objects.stage import Stage
+from .. import icons, recorded
+from ..background.later import Later
+from ..colours import WRONG
+from ..picking import inputs
+from ..signals import connect
+from ..texts.translation import marked, tr, translated, translated_error
+from ..widgets import fields, suggestions
+from ..widgets.fold import Fold
+from ..widgets.messages import Messages
+from ..widgets.wheel import scrolls
+from . import closing
+
+MOST_ISSUES = 6
+ADVANCED = marked("{}: advanced")
+ROOM_IN_BUTTON = 26  # pixels beside its text
+CLOSED = marked("The document or object of this panel is gone; cancel and open the panel again.")
+
+
+class StagePanel:
+    """Inputs and parameters of a stage to be made (`obj` None) or changed. Nothing happens before OK or Apply.
+
+    What is wrong is told under the field it belongs to, else at the top.
+    """
+
+    icon = function = ""  # where they are not called as the stage's kind is
+    lines = 3  # that messages have room for above the fields
+    draft = ""  # the name in errors of what is not made yet
+
+    def __init__(self, proxy: type[Stage], title: str, choices: Sequence[inputs.Input], obj: Any = None) -> None:
+        self.proxy, self.choices, self.obj = proxy, choices, obj
+        self.document = App.ActiveDocument if obj is None else obj.Document
+        self.form = QtGui.QWidget()
+        self.form.setObjectName(f"RoboticAM_{proxy.__name__}")
+        self.form.setWindowTitle(title)
+        self.form.setWindowIcon(QtGui.QIcon(icons.path(self.icon or proxy.kind.replace(" ", "_"))))
+        self.column = QtGui.QVBoxLayout(self.form)
+        self.column.setContentsMargins(2, 2, 2, 2)
+        self.messages = Messages(self.lines)
+        self.column.addWidget(self.messages)
+        self.error = self.messages.add("error", WRONG)
+        self.findings = self.messages.add("findings", "palette(text)")  # above all fields: some change what is deposited
+        self.marked: dict[str, str] = {}  # places with an error of OK or Apply, and what was entered there
+        self.told: dict[str, str] = {}  # those with what an expression gives or is wrong as typed, and that
+        self.heading: Any = None
+        self.notes: dict[str, Any] = {}  # under the fields, by the label of an input or the place of a parameter
+        if choices:
+            self.heading = Fold(tr("Inputs"), obj is None)
+            for choice in choices:
+                self.notes[choice.label] = self.heading.add(choice.label, choice.widget)
+                choice.tell = functools.partial(type(self).tell, weakref.proxy(self), choice.label)
+            self.column.addWidget(self.heading.widget)
+        self.first_inputs = self._inputs()
+        # by the name that errors give a parameter: its field, how the panel calls it, where it is
+        self.places: dict[str, tuple[fields.Field, str, Fold]] = {}
+        for section in proxy.sections:
+            self._add_section(section)
+        self.column.addStretch(1)
+        self._show_findings()
+        self.later_entries = Later(self.form, self._judge_entries)
+        for widget in (*(field.widget for field, _, _ in self.places.values()), *(choice.widget for choice in choices)):
+            for line in _lines(widget):
+                connect(line, "textChanged(QString)", self.later_entries.ask)
+        self._judge_entries()
+        scrolls(self.form)
+        missing = [choice.missing for choice in choices if choice.missing]
+        if obj is None and missing:
+            self.say(missing[0])
+
+    # ---- what is shown
+
+    def _add_section(self, section: Any) -> None:
+        current = None if self.obj is None else self._current(section)
+        folds: dict[str, Fold] = {}
+        for row in rows(section.cls):
+            nested = isinstance(row.path[-1], str) and len(row.path) > 1
+            title = group_of(row) if nested else section.group
+            title = ADVANCED if row.spec.advanced else title
+            if title not in folds:
+                told = tr(ADVANCED).format(translated(section.group)) if title == ADVANCED else translated(title)
+                folds[title] = Fold(told, title == section.group)
+            value = preferences.proposed(section.prefix, row) if current is None else current[row.key]
+            follows = "" if self.obj is None else expressions.of(self.obj, row)
+            field = fields.make(row, value, suggestions.of(section.prefix, row.key), follows, section.prefix)
+            if current is None and value != row.default:
+                field.differs_from(row.default)
+            self._mark_driven(field)
+            self.notes[f"{section.prefix}_{row.key}"] = folds[title].add(field.heading, field.widget)
+            own = title == section.group or row.spec.advanced
+            name = field.label if own else tr("{}, {}").format(translated(title), field.label.lower())
+            self.places[f"{section.prefix}_{row.key}"] = (field, name, folds[title])
+        for fold in folds.values():
+            self.column.addWidget(fold.widget)
+
+    def _current(self, section: Any) -> dict[str, Any]:
+        found = {}
+        for row in rows(section.cls):
+            try:
+                found[row.key] = row.inner(getattr(self.obj, row.name), row.name)
+            except AmError:  # what cannot be read is replaced by its default
+                found[row.key] = row.default
+        return found
+
+    def _mark_driven(self, field: fields.Field) -> None:
+        """What the window cannot let follow an expression may do so all the same, from a macro: it is not changed here."""
+        driven = dict(self.obj.ExpressionEngine) if self.obj is not None else {}
+        expression = driven.get(field.row.name)
+        if expression and field.row.form not in expressions.FOLLOW:
+            field.widget.setEnabled(False)
+            field.widget.setToolTip(tr("Driven by the expression {}").format(expression))
+
+    def _show_findings(self) -> None:
+        if self.obj is None:
+            return
+        found = issues_of(self.obj)
+        lines = [translated(self.obj.Message)] if self.obj.Message and not found else []
+        lines += [
+            tr("{}: {}").format(
+                " ".join(filter(None, (translated(issue.level), translated(issue.where)))), translated(issue.message)
+            ) for issue in found[:MOST_ISSUES]
+        ]
+        if len(found) > MOST_ISSUES:
+            lines.append(tr("and {} more").format(len(found) - MOST_ISSUES))
+        self.findings.setText("\n".join([tr("Status: {}").format(translated(self.obj.Status)), *lines]))
+        self.findings.show()
+
+    def _inputs(self) -> dict[str, str]:
+        return {key: text for choice in self.choices for key, text in choice.arguments().items()}
+
+    def say(self, text: str) -> None:
+        """Show what is wrong."""
+        self.error.setText(text)
+        self.error.setVisible(bool(text))
+        self.messages.to_top()
+
+    # ---- what is wrong
+
+    def tell(self, place: str, text: str, wrong: bool = True) -> None:
+        """Something about a field, under it; '' for nothing any more."""
+        note = self.notes[place]
+        note.setStyleSheet(f"QLabel {{ color: {WRONG if wrong else 'palette(text)'}; }}")
+        note.setText(text)
+        note.setVisible(bool(text))
+
+    def _tell_error(self, error: AmError) -> None:
+        """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
+        place, text = self._placed(error)
+        if not place:
+            self.say(translated_error(error))
+            return
+        self.marked[place] = self._entry(place)
+        self.tell(place, text)
+        widget = self._unfolded(place)
+        widget.setFocus()
+        QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(place)))
+
+    def _placed(self, error: AmError) -> tuple[str, str]:
+        """The place among the notes that an error belongs to, '' for none, and what to say there."""
+        place, names = error.where.replace(".", "_"), self._names()
+        for known, (field, _, _) in self.places.items():
+            if known == place or error.where in [f"{name}.{field.row.name}" for name in names]:
+                return known, translated(error.message)
+        for choice in self.choices:
+            own = choice.link.name if hasattr(choice, "link") else choice.widget.objectName()
+            missing = error.code == "NO_INPUT" and error.message.startswith(f"{own} is missing")
+            if missing or error.where in [*choice.places, *(f"{name}.{own}" for name in names)]:
+                return choice.label, translated(error.message)
+        return "", translated_error(error)
+
+    def _names(self) -> list[str]:
+        """What errors call the stage: by its label, while it is made and where it is but previewed."""
+        return [self.draft, self.proxy.kind.capitalize(), *([] if self.obj is None else [self.obj.Label])]
+
+    def leave_out(self, places: Collection[str], also_entered: bool = False) -> None:
+        """Show all fields but some that mean nothing now; those that hold something all the same only where it is said."""
+        for place, (field, _, fold) in self.places.items():
+            holds = not also_entered and self._entry(place) != repr(field.row.outer(field.row.default))
+            fold.show(field.widget, place not in places or holds)
+
+    def _unfolded(self, place: str) -> Any:
+        """The widget of a place, its part of the panel unfolded."""
+        if place in self.places:
+            field, _, fold = self.places[place]
+            fold.show(field.widget, True)
+            fold.heading.setChecked(True)
+            return field.widget
+        self.heading.heading.setChecked(True)
+        return next(choice.widget for choice in self.choices if choice.label == place)
+
+    def _entry(self, place: str) -> str:
+        """What is entered at a place, to be compared."""
+        try:
+            if place in self.places:
+                return repr(self.places[place][0].value)
+            return repr([line.text() for choice in self.choices if choice.label == place for line in _lines(choice.widget)])
+        except InputError as error:
+            return error.message
+
+    def _judge_entries(self) -> None:
+        """Tell under each field what its expression gives or is wrong as typed; an error of OK goes with its entry."""
+        for place, entry in list(self.marked.items()):
+            if self._entry(place) != entry:
+                del self.marked[place]
+                self.tell(place, "")
+        for place, (field, _, _) in self.places.items():
+            with contextlib.suppress(ReferenceError):
+                judged = self._judged(field)
+                if judged is not None:
+                    self.tell(place, *judged)
+                    self.told[place] = judged[0]
+                elif self.told.pop(place, None) == self.notes[place].text():
+                    self.tell(place, "")
+
+    def _judged(self, field: fields.Field) -> tuple[str, bool] | None:
+        """What the expression in a field gives, or what is wrong with what it holds; None where there is nothing to tell."""
+        try:
+            value = field.value
+            if field.row.form not in expressions.FOLLOW:
+                return None
+            if expressions.is_expression(value):
+                found = self._evaluated(field, value)
+                return f"= {getattr(found, 'UserString', found)}", False
+            check_value(field.row.spec, field.row.inner(value, field.label), field.label)
+        except InputError as error:
+            return translated(error.message), True
+        return None
+
+    def _evaluated(self, field: fields.Field, value: str) -> Any:
+        """An expression's value now, in the unit that a plain entry would have."""
+        around = self.obj if self.obj is not None else next(iter(self.document.Objects), None)
+        found = expressions.evaluated(value, around, field.label)
+        field.row.inner(found, field.label)  # refuses another dimension
+        return found
+
+    # ---- called by FreeCAD
+
+    def getStandardButtons(self) -> int:
+        """OK, Apply and Cancel."""
+        buttons = QtGui.QDialogButtonBox
+        return sum(_number(button) for button in (buttons.Ok, buttons.Apply, buttons.Cancel))
+
+    def modifyStandardButtons(self, box: Any) -> None:
+        """Let three buttons be as narrow as two: the task panel would be cut off on the right."""
+        QtCore.QTimer.singleShot(0, lambda: _narrow(box))  # once they have their texts
+
+    def clicked(self, button: Any) -> None:
+        """One of them was clicked; OK and Cancel have functions of their own."""
+        if _number(button) == _number(QtGui.QDialogButtonBox.Apply):
+            self.apply()
+
+    def accept(self) -> bool:
+        """Make or change the stage; True closes the panel, an error is shown in it."""
+        return self._carry_out()
+
+    def apply(self) -> bool:
+        """Make or change the stage and keep the panel open, as that of the stage; a step of undo of its own."""
+        before = set() if self.obj is not None else {obj.Name for obj in self.document.Objects}
+        if not self._carry_out():
+            return False
+        if self.obj is None:
+            made = [obj for obj in self.document.Objects if obj.Name not in before and type(obj.Proxy) is self.proxy]
+            self.obj = made[-1]
+            self.form.setWindowTitle(self.obj.Label)
+        for field, _, _ in self.places.values():
+            field.applied()
+        for choice in self.choices:
+            choice.applied()
+        self.first_inputs = self._inputs()
+        self._show_findings()
+        return True
+
+    def _carry_out(self) -> bool:
+        """Do what is entered, in one step of undo; False where it is refused, which is told."""
+        self.say("")
+        for place in self.marked:
+            self.tell(place, "")
+        self.marked.clear()
+        try:
+            chosen = self._inputs()
+            changed = self._changed()
+            if self.obj is None:
+                function = self.function or f"make_{self.proxy.kind.replace(' ', '_')}"
+                recorded.make(self.document, function, {**chosen, **changed})
+            elif changed or chosen != self.first_inputs:
+                recorded.change(self.obj, {**(chosen if chosen != self.first_inputs else {}), **changed})
+        except AmError as error:
+            self._tell_error(error)
+        except Cancelled:
+            self.say(tr("Cancelled: the document is as it was."))
+        except ReferenceError:
+            self.say(tr(CLOSED))
+        else:
+            return True
+        return False
+
+    def _changed(self) -> dict[str, str]:
+        """Arguments of what was changed by keyword. Raises InputError named as a parameter is, not as a field."""
+        found = {}
+        for place, (field, _, _) in self.places.items():
+            try:
+                if field.changed:
+                    found[field.row.key] = repr(field.value)
+            except InputError as error:
+                raise InputError(error.code, place, error.message) from None
+        return found
+
+    def reject(self) -> bool:
+        """Nothing was done since the last Apply, so nothing is taken back."""
+        return True
+
+
+def _lines(widget: Any) -> list[Any]:
+    """The line edits of a field: itself, or those in it."""
+    return [widget] if isinstance(widget, QtGui.QLineEdit) else list(widget.findChildren(QtGui.QLineEdit))
+
+
+def _narrow(box: Any) -> None:
+    with contextlib.suppress(RuntimeError):  # the panel is closed again
+        for button in box.buttons():
+            button.setIcon(QtGui.QIcon())
+            button.setFixedWidth(button.fontMetrics().boundingRect(button.text()).width() + ROOM_IN_BUTTON)
+
+
+def _number(button: Any) -> int:
+    return int(getattr(button, "value", button))  # an enumeration of Qt 6
+
+
+def _bring_into_sight(form: Any, widget: Any) -> None:
+    """Scroll the task panel to something in it."""
+    with contextlib.suppress(RuntimeError):  # the panel is gone by now
+        for area in Gui.getMainWindow().findChildren(QtGui.QScrollArea):
+            if widget is not None and area.isVisible() and area.isAncestorOf(form):
+                area.ensureWidgetVisible(widget)
+
+
+def show(panel: Any) -> None:
+    """Open a task panel, unless another one is open."""
+    if Gui.Control.activeDialog():
+        App.Console.PrintWarning(tr("Another task panel is open; close it first.") + "\n")
+        return
+    Gui.Control.showDialog(panel)
+    closing.with_document(panel)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel of a wall on an existing part: wall and substrate are picked, and the first layer is seen while it is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...core.issues import Issue
+from ...objects import deposit
+from ...objects.shapes import taken
+from ...objects.stage import Outcome
+from ...objects.surface_feature import SurfaceFeature
+from ..nodes.wall import WallNodes, drawn, first_curves
+from ..picking import picking
+from ..picking.pick_field import PickField
+from ..texts.translation import marked, sentence, tr, translated
+from ..views.preview import Draft
+from .pick import PickPanel
+
+_NAMES = {"Source": marked("Wall")}
+_ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
+
+
+class WallPanel(PickPanel):
+    """Makes a wall on a part of what is selected, or changes one."""
+
+    note = ""  # about what was selected before it was opened
+    stage, icon, function, draft = SurfaceFeature, "wall_on_part", "make_surface_feature", "Wall"
+
+    def __init__(self, obj: Any = None) -> None:
+        picks = [
+            PickField(
+                link, _label(link), None if obj is None else getattr(obj, link.name), self._arm,
+                _ELEMENTS.get(link.name, ""), meshes=link.name == "Source",
+            )
+            for link in SurfaceFeature.links
+        ]
+        super().__init__(tr("Wall on part") if obj is None else obj.Label, picks, obj, WallNodes(pickable=False))
+        self.tell(self._field("Source").label, self.note, wrong=False)
+
+    def _propose(self, picks: list[picking.Pick]) -> str:
+        wall, substrate, unclear = picking.proposal(picks)
+        whole = None if wall is None else picking.whole(wall)
+        if wall is not None and whole is not None and wall.names and not whole.names:
+            self.note = tr("The whole of {} is taken; Pick takes faces alone, click by click.").format(wall.obj.Label)
+            wall = whole
+        for name, pick in (("Source", wall), ("Substrate", substrate)):
+            if pick is not None:
+                self._field(name).take(pick)
+        edges = [pick for pick in picks if wall is not None and pick.obj == wall.obj]
+        for field in self.picks:
+            if field.element == picking.EDGE and edges:
+                field.take(edges[0])
+        return unclear
+
+    def _lacking(self) -> PickField | None:
+        """A substrate is not missing where a wall starts at edges of its own, and where it is a mesh, which may stand on the
+        platform."""
+        if not self._field("Source").picks:
+            return self._field("Source")
+        edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
+        if edges or self._field("Substrate").picks or picking.is_mesh(self._field("Source").picks[0].obj):
+            return None
+        return self._field("Substrate")
+
+    def _following(self, field: PickField) -> PickField | None:
+        """The substrate while a click on another object than the wall's can only mean it."""
+        substrate = self._field("Substrate")
+        return substrate if field.link.name == "Source" and field.picks and not substrate.picks else None
+
+    def _refusal(self, field: PickField, pick: picking.Pick) -> str:
+        if field.element == picking.EDGE:
+            return tr("Click edges of one object.")
+        told = tr("{} is another object; faces of a wall are of one object. Clear it first to start again.")
+        return told.format(pick.obj.Label)
+
+    def _links(self) -> dict[str, Any]:
+        return {field.link.name: field.value() for field in self.picks}
+
+    def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
+        work, part = draft.prepare(), taken(draft.obj.Source[0])
+
+        def both() -> tuple[Outcome, Any]:
+            made = work()
+            return made, drawn(part, made.value.faces)
+
+        return both
+
+    def _draw(self, made: Outcome, drawing: Any) -> str:
+        curves = first_curves(made.value)
+        self.nodes.set_first(curves)
+        self.nodes.faces.show(True)
+        self.nodes.faces.set(*drawing)
+        return _told(curves, (*deposit.expected(made.value, self.obj), *made.issues))
+
+    def _draw_without(self) -> None:
+        wall = self._field("Source").picks
+        self.nodes.set_first([])
+        self.nodes.faces.show(bool(wall))
+        if wall:
+            self.nodes.set_faces(wall[0].obj, wall[0].names)
+
+
+def _label(link: Any) -> str:
+    return tr(_NAMES[link.name]) if link.name in _NAMES else translated(link.label)
+
+
+def _told(curves: list[Any], issues: tuple[Issue, ...]) -> str:
+    lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
+    parts = [
+        (tr("closed, {:.1f} mm") if np.allclose(curve[0], curve[-1], atol=1e-9) else tr("open, {:.1f} mm")).format(length)
+        for curve, length in zip(curves, lengths, strict=True)
+    ]
+    findings = (sentence(issue.message) for issue in issues)
+    return "\n".join([tr("First layer: {}").format("; ".join(parts)), *findings])

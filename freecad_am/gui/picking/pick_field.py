@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""An input of a panel that is picked in the tree or the 3D view: a button waits for clicks, another one clears."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ...objects.stage import Link
+from .. import recorded
+from ..texts.translation import tr, translated
+from .inputs import Input
+from .picking import EDGE, FACE, Pick, is_mesh
+
+_LIST = "App::PropertyLinkList"
+
+
+class PickField(Input):
+    """What a link of a stage holds: faces or edges of one object, a whole object, or several objects."""
+
+    def __init__(
+        self, link: Link, label: str, present: Any, toggled: Callable[[PickField, bool], None], element: str = "",
+        meshes: bool = False, whole: bool = False,
+    ) -> None:
+        """element: what of an object is picked, where it is not the whole; meshes: they may be picked all the same;
+        whole: so may an object as a whole in place of its edges."""
+        self.link, self.label, self.element = link, label, element
+        self.several = link.type_name == _LIST
+        self.meshes = meshes or not element
+        self.whole = whole or element != EDGE
+        self.picks = self._present(present)
+        self.told = link.required or bool(self.picks)  # whether a macro must say that there is nothing
+        self.widget = QtGui.QWidget()
+        self.widget.setObjectName(f"Input{link.name}")
+        self.widget.setToolTip(translated(link.help))
+        self.text = QtGui.QLineEdit()
+        self.text.setObjectName(link.name)
+        self.text.setReadOnly(True)
+        self.text.setMinimumWidth(40)
+        self.pick = _button(
+            tr("Pick"), f"Pick{link.name}", tr("Then click in the tree or the 3D view. {}").format(translated(link.help))
+        )
+        self.pick.setCheckable(True)
+        self.pick.toggled.connect(lambda on: toggled(self, on))
+        self.empty = _button("×", f"Clear{link.name}", tr("Clears it"))
+        self.empty.clicked.connect(self.clear)
+        row = QtGui.QHBoxLayout(self.widget)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        row.addWidget(self.text, 1)
+        for button in (self.pick, self.empty):
+            row.addWidget(button)
+        self.show()
+
+    def _present(self, present: Any) -> list[Pick]:
+        if not present:
+            return []
+        if self.element:
+            return [Pick(present[0], tuple(name for name in present[1] if name))]
+        return [Pick(obj) for obj in (present if self.several else [present])]
+
+    # ---- picking
+
+    def take(self, pick: Pick) -> bool:
+        """Take what was clicked, or leave it out where it was in already; False for what cannot be taken."""
+        names = tuple(name for name in pick.names if self.element and name.startswith(self.element))
+        if (not self.whole and not names) or (is_mesh(pick.obj) and not self.meshes):
+            return False
+        mine = self.picks[0] if self.picks else None
+        if self.several:
+            kept = [one for one in self.picks if one.obj != pick.obj]
+            self.picks = kept if len(kept) < len(self.picks) else [*kept, Pick(pick.obj)]
+        elif mine is not None and mine.names and names:
+            if mine.obj != pick.obj:
+                return False
+            kept_names = tuple(name for name in mine.names if name not in names)
+            new = tuple(name for name in names if name not in mine.names)
+            self.picks = [Pick(mine.obj, kept_names + new)] if kept_names + new else []
+        else:
+            self.picks = [Pick(pick.obj, names)]
+        self.show()
+        return True
+
+    @property
+    def more(self) -> bool:
+        """Whether further clicks add to what is picked."""
+        return self.several or bool(self.element and self.picks and self.picks[0].names)
+
+    def clear(self, *_: Any) -> None:
+        """Nothing is picked."""
+        self.picks = []
+        self.show()
+
+    def show(self) -> None:
+        """Tell what is picked, or what to click."""
+        text = ", ".join(" ".join([pick.obj.Label, *pick.names]) for pick in self.picks)
+        self.text.setText(text)
+        self.text.setCursorPosition(0)
+        self.text.setToolTip(text or translated(self.link.help))
+        if self.pick.isChecked():
+            several = tr("click objects") if self.several else tr("click an object")
+            told = {FACE: tr("click faces or an object"), EDGE: tr("click edges")}.get(self.element, several)
+        else:
+            told = tr("pick") if self.link.required else tr("none")
+        self.text.setPlaceholderText(told)
+        self.empty.setEnabled(bool(self.picks))
+
+    # ---- for the panel
+
+    @property
+    def missing(self) -> str:
+        if not self.link.required or self.picks:
+            return ""
+        return tr("{} is missing: click it in the tree or the 3D view.").format(self.label)
+
+    def value(self) -> Any:
+        """What is picked as the link's property holds it."""
+        if self.several:
+            return [pick.obj for pick in self.picks]
+        if not self.picks:
+            return None
+        return (self.picks[0].obj, list(self.picks[0].names)) if self.element else self.picks[0].obj
+
+    def applied(self) -> None:
+        self.told = self.told or bool(self.picks)
+
+    def arguments(self) -> dict[str, str]:
+        references = [recorded.reference(pick.obj) for pick in self.picks]
+        if not references and not self.told:
+            return {}
+        if self.several:
+            return {self.link.key: f"[{', '.join(references)}]"}
+        if not self.picks:
+            return {self.link.key: "None"}
+        names = list(self.picks[0].names)
+        if self.link.name == "Source":
+            return {"source": references[0], "faces": repr(names)}
+        return {self.link.key: repr(names) if self.element else references[0]}  # edges are the wall's own
+
+
+def _button(text: str, name: str, help: str) -> Any:
+    button = QtGui.QToolButton()
+    button.setText(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    button.setFocusPolicy(QtCore.Qt.TabFocus)
+    return button

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the selection in the tree or the 3D view means: objects with their faces or edges, wall and substrate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCADGui as Gui
+
+from ...core.issues import InputError
+from ...objects.job_group import is_group
+from ...objects.shapes import global_shape
+from ...objects.stage import stage_of
+from ..texts.translation import tr
+
+FACE, EDGE = "Face", "Edge"
+_GROUPS = ("App::Part", "App::DocumentObjectGroup")
+_LINES = ("App::Line", "PartDesign::Line")
+_SKETCH_AXES = ("V_Axis", "H_Axis", "N_Axis")
+_SAME = 1e-6  # mm; of two faces that are the same
+
+
+@dataclass(frozen=True)
+class Pick:
+    """An object, and the names of the faces or edges of it that were picked; none for the whole object."""
+
+    obj: Any
+    names: tuple[str, ...] = ()
+
+
+def selected(document: Any) -> list[Pick]:
+    """What is selected in a document now, in the order of selection; what can be neither wall nor substrate left out."""
+    found: dict[str, Pick] = {}
+    for entry in Gui.Selection.getSelectionEx(document.Name, 0):
+        for path in entry.SubElementNames or ("",):
+            obj, name = resolved(entry.Object, path)
+            obj = _alone(obj)
+            if usable(obj):
+                before = found.get(obj.Name, Pick(obj)).names
+                found[obj.Name] = Pick(obj, (*before, name) if name and name not in before else before)
+    return list(found.values())
+
+
+def selected_line(document: Any) -> Pick | None:
+    """The first edge, datum line or axis of a sketch that is selected in a document, or a whole object where none is: what
+    something may turn about. None where nothing is selected."""
+    whole: Pick | None = None
+    for entry in Gui.Selection.getSelectionEx(document.Name, 0):
+        for path in entry.SubElementNames or ("",):
+            pick = _line(entry.Object, path)
+            if pick.names or pick.obj.TypeId in _LINES:
+                return pick
+            whole = whole or pick
+    return whole
+
+
+def _line(top: Any, path: str) -> Pick:
+    obj, name = resolved(top, path)
+    element = path.rsplit(".", maxsplit=1)[-1]
+    if name.startswith(EDGE):
+        return Pick(obj, (name,))
+    if element in _SKETCH_AXES and obj.isDerivedFrom("Sketcher::SketchObject"):
+        return Pick(obj, (element,))
+    leaf = (top.getSubObjectList(path) or [obj])[-1]  # a line of an origin, deep within its part
+    return Pick(leaf if leaf.TypeId in _LINES else obj)
+
+
+def _alone(obj: Any) -> Any:
+    """What a group holds, where that is one thing with a shape; else the object itself."""
+    if not any(obj.isDerivedFrom(kind) for kind in _GROUPS):
+        return obj
+    held = [one for one in obj.Group if usable(one)]
+    return held[0] if len(held) == 1 else obj
+
+
+def usable(obj: Any) -> bool:
+    """Whether an object has a shape or a mesh, and is no stage of ours."""
+    if obj is None or stage_of(obj) is not None:
+        return False
+    shape = getattr(obj, "Shape", None)
+    return is_mesh(obj) or (shape is not None and not shape.isNull())
+
+
+def is_mesh(obj: Any) -> bool:
+    """Whether an object is a mesh, which has no faces to deposit."""
+    return hasattr(obj, "Mesh")
+
+
+def resolved(top: Any, path: str) -> tuple[Any, str]:
+    """The object that a selected element belongs to for its user, and the element's name on it, '' for all of it.
+
+    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the body, or of the
+    feature where it is not the body's tip. What a link shows belongs to the link.
+    """
+    *steps, element = path.split(".")
+    steps = [step for step in steps if step[:1] not in (";", "?")]  # names of FreeCAD 1.0 that outlive changes
+    obj = top
+    while steps and any(obj.isDerivedFrom(kind) for kind in _GROUPS):
+        obj = obj.Document.getObject(steps.pop(0)) or obj
+    if steps and obj.isDerivedFrom("PartDesign::Body"):
+        feature = obj.Document.getObject(steps[-1])
+        if feature is not None and feature != obj.Tip and usable(feature):
+            obj = feature
+    if not element.startswith((FACE, EDGE)) or is_mesh(obj):
+        return obj, ""
+    return obj, element if obj == top and not steps else _own_name(obj, top.getSubObject(path), element)
+
+
+def _own_name(obj: Any, picked: Any, element: str) -> str:
+    """The name that an object itself has for a face or edge in document coordinates; '' when it has no such."""
+    try:
+        shape = global_shape(obj)
+    except InputError:
+        return ""
+    kind = FACE if element.startswith(FACE) else EDGE
+    elements = shape.Faces if kind == FACE else shape.Edges
+    for number, one in enumerate(elements, start=1):
+        apart = (one.CenterOfMass - picked.CenterOfMass).Length
+        if apart < _SAME and abs(one.Length - picked.Length) < _SAME * max(1.0, one.Length):
+            return f"{kind}{number}"
+    return ""
+
+
+def with_faces(pick: Pick) -> Pick:
+    """The pick with its faces alone."""
+    return Pick(pick.obj, tuple(name for name in pick.names if name.startswith(FACE)))
+
+
+def whole(pick: Pick) -> Pick:
+    """What a click on something to be deposited means: one face of several stands for all of its object, for that is what a
+    click in the 3D view selects; several faces are meant themselves."""
+    faces = with_faces(pick)
+    lone = len(faces.names) == 1 and len(global_shape(pick.obj).Faces) > 1
+    return Pick(pick.obj) if lone else faces
+
+
+def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
+    """Wall and substrate of a selection, None for what it does not tell, and what is unclear about it.
+
+    The one with faces picked is the wall, else the first; a mesh is the substrate, but by itself a wall.
+    """
+    if len(picks) == 1 and is_mesh(picks[0].obj):
+        return picks[0], None, ""
+    picks = [with_faces(pick) for pick in picks]
+    walls = [pick for pick in picks if not is_mesh(pick.obj)]
+    faced = [pick for pick in walls if pick.names]
+    if len(picks) > 2:
+        wall = faced[0] if len(faced) == 1 else None
+        told = tr("{} objects are selected; pick the wall and the substrate") if wall is None else tr(
+            "{} objects are selected; pick the substrate"
+        )
+        return wall, None, told.format(len(picks))
+    wall = (faced or walls or [None])[0]
+    others = [pick for pick in picks if pick is not wall]
+    return wall, Pick(others[0].obj) if len(others) == 1 else None, ""
+
+
+def refused(document: Any) -> str:
+    """Why nothing that is selected in a document can be deposited; '' where nothing is selected."""
+    for entry in Gui.Selection.getSelectionEx(document.Name, 0):
+        obj, _ = resolved(entry.Object, (entry.SubElementNames or ("",))[0])
+        if usable(obj):
+            continue
+        if stage_of(obj) is not None or is_group(obj):
+            return tr("{} belongs to a job; select the part itself.").format(obj.Label)
+        if obj.isDerivedFrom("App::Link") and obj.getLinkedObject() in (None, obj):
+            return tr("{} links to nothing: what it showed is gone or was not loaded.").format(obj.Label)
+        return tr("{} has no shape; select a body, solid, face, link or sketch.").format(obj.Label)
+    return ""

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The page of Edit > Preferences > Robotic AM."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtGui
+
+from ...core.issues import InputError
+from ...core.kinematics import machine
+from ...objects import preferences, user_machines
+from ...objects.rows import MIXED
+from ...posts import catalogue
+from ..texts.translation import tr, translated
+from ..widgets import choices, fields
+
+
+class PreferencesPage:
+    """One per opening of the dialog."""
+
+    def __init__(self, *_: Any) -> None:
+        self.form = QtGui.QWidget()
+        self.form.setObjectName("RoboticAM_Preferences")
+        self.form.setWindowTitle(tr("General"))
+        self.column = QtGui.QVBoxLayout(self.form)
+        note = QtGui.QLabel(tr(
+            "These are proposals of the window for what is made from now on, and its looks. Existing documents, jobs and "
+            "macros never depend on them."))
+        note.setWordWrap(True)
+        self.column.addWidget(note)
+        self._new_work()
+        self._process()
+        self._folders()
+        self._looks()
+        self.column.addStretch(1)
+
+    def _group(self, title: str) -> Any:
+        box = QtGui.QGroupBox(title)
+        self.column.addWidget(box)
+        return QtGui.QFormLayout(box)
+
+    def _new_work(self) -> None:
+        rows = self._group(tr("New jobs and cells"))
+        self.machine = QtGui.QComboBox()
+        self.machine.setObjectName("machine")
+        self.machine.setEditable(True)
+        choices.offer(self.machine, choices.machines())
+        self.post = QtGui.QComboBox()
+        self.post.setObjectName("post")
+        self.post.addItem(tr("what the machine's controller reads"), "")
+        for name in catalogue.NAMES:
+            self.post.addItem(name, name)
+        rows.addRow(tr("Machine"), self.machine)
+        rows.addRow(tr("Post"), self.post)
+
+    def _process(self) -> None:
+        rows = self._group(tr("Process of new toolpaths"))
+        preferred = preferences.process()
+        self.process = {}
+        for row in preferences.process_rows():
+            value = row.inner(preferred[row.key], row.name) if row.key in preferred else row.default
+            field = fields.make(row, value, section="process")
+            _without_expression(field.widget)
+            rows.addRow(translated(preferences.label(row)), field.widget)
+            self.process[row.key] = field
+
+    def _folders(self) -> None:
+        rows = self._group(tr("Folders"))
+        self.machines = self._folder(rows, "machineFolder", tr("Machine files"), tr(
+            "A further folder of machine files, such as one that is shared; your own are in {} as well").format(
+                os.path.join("RoboticAM", "machines")))
+        self.programs = self._folder(rows, "programsFolder", tr("Programs"), tr(
+            "Where programs are written first; empty for the folder of last time, or beside the document"))
+
+    def _folder(self, rows: Any, name: str, label: str, help: str) -> Any:
+        line, edit, button = QtGui.QHBoxLayout(), QtGui.QLineEdit(), QtGui.QPushButton(tr("Browse…"))
+        edit.setObjectName(name)
+        edit.setToolTip(help)
+        button.setAutoDefault(False)
+
+        def browse(*_: Any) -> None:
+            found = QtGui.QFileDialog.getExistingDirectory(self.form, label, edit.text())
+            if found:
+                edit.setText(found)
+
+        button.clicked.connect(browse)
+        line.addWidget(edit, 1)
+        line.addWidget(button)
+        rows.addRow(label, line)
+        return edit
+
+    def _looks(self) -> None:
+        rows = self._group(tr("Looks"))
+        self.unit, self.ramp = QtGui.QComboBox(), QtGui.QComboBox()
+        self.unit.setObjectName("speedUnit")
+        self.unit.setToolTip(tr("Of speeds in fields and read-outs; what is typed may have any"))
+        self.unit.addItems(list(preferences.SPEED_UNITS))
+        self.ramp.setObjectName("ramp")
+        self.ramp.setToolTip(tr("Of paths, from the least to the greatest"))
+        names = (tr("blue to yellow"), tr("violet to orange"), tr("grey"))
+        for key, text in zip(preferences.RAMPS, names, strict=True):
+            self.ramp.addItem(text, key)
+        self.colour = Gui.UiLoader().createWidget("Gui::ColorButton")
+        self.colour.setObjectName("machineColour")
+        rows.addRow(tr("Unit of speeds"), self.unit)
+        rows.addRow(tr("Colours of paths"), self.ramp)
+        rows.addRow(tr("Colour of machines"), self.colour)
+
+    # ---- called by FreeCAD, through preferences_hook
+
+    def loadSettings(self) -> None:
+        """Show what is kept."""
+        choices.enter(self.machine, preferences.machine())
+        self.post.setCurrentIndex(max(0, self.post.findData(preferences.post())))
+        self.machines.setText(preferences.machine_folder())
+        self.programs.setText(preferences.text("ProgramsFolder"))
+        self.unit.setCurrentIndex(self.unit.findText(preferences.speed_unit()))
+        self.ramp.setCurrentIndex(self.ramp.findData(preferences.ramp()))
+        self.colour.setProperty("color", QtGui.QColor.fromRgbF(*preferences.machine_colour()))
+
+    def saveSettings(self) -> None:
+        """Keep what is shown. What cannot be is told on the report view, and stays as it was."""
+        preferences.keep("Post", self.post.currentData())
+        for name, edit in (("MachineFolder", self.machines), ("ProgramsFolder", self.programs)):
+            folder = edit.text().strip()
+            if folder and not os.path.isdir(folder):
+                _warn(tr("there is no folder {}").format(folder))
+            else:
+                preferences.keep(name, folder)
+        self._keep_machine()  # it may be in the folder
+        preferences.keep_process(self._figures())
+        preferences.keep("SpeedUnit", "" if self.unit.currentIndex() == 0 else self.unit.currentText())
+        preferences.keep("Ramp", "" if self.ramp.currentIndex() == 0 else self.ramp.currentData())
+        colour = self.colour.property("color")
+        plain = QtGui.QColor.fromRgbF(*preferences.MACHINE_COLOUR).name()
+        preferences.keep("MachineColour", "" if colour.name() == plain else colour.name())
+
+    def _keep_machine(self) -> None:
+        name = choices.entered(self.machine) or preferences.builtin_machine()
+        try:
+            machine.load(name, user_machines.folders())
+        except InputError as error:
+            _warn(tr("{}: {}").format(tr("Machine"), translated(error.message)))
+        else:
+            preferences.keep("Machine", "" if name == preferences.builtin_machine() else name)
+
+    def _figures(self) -> dict[str, Any]:
+        """The figures that are sound, in outer units by row key; texts of those that take words."""
+        found: dict[str, Any] = {}
+        for key, field in self.process.items():
+            try:
+                value = field.value
+                inner = field.row.inner(value, field.label)
+                preferences.check(field.row, inner)
+                found[key] = field.row.text(inner) if field.row.form == MIXED else float(field.row.outer(inner))
+            except InputError as error:
+                _warn(tr("{}: {}").format(field.label, translated(error.message)))
+        return found
+
+
+def _without_expression(widget: Any) -> None:
+    """A preference is a figure: there is no document whose expressions it could follow."""
+    line = widget if isinstance(widget, QtGui.QLineEdit) else widget.findChild(QtGui.QLineEdit)
+    for action in line.actions():
+        line.removeAction(action)
+
+
+def _warn(text: str) -> None:
+    App.Console.PrintWarning(tr("Robotic AM, preferences: {}").format(text) + "\n")

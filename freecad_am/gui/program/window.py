@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The text of a program in a window of its own, to be read and exported."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from ... import api
+from ...core.issues import AmError
+from ...objects import preferences
+from ...objects.staleness import UP_TO_DATE
+from .. import icons
+from ..colours import WRONG
+from ..simulation import told
+from ..simulation.run import run_of
+from ..texts.translation import error_line, tr, translated, translated_error
+from .listing import listing
+
+
+class ProgramWindow:
+    """The files of a program, one at a time, read-only, with a button to export them all."""
+
+    def __init__(self, obj: Any) -> None:
+        self.obj = obj
+        self.files: dict[str, bytes] = {}
+        self.window = QtGui.QDialog(Gui.getMainWindow())
+        self.window.setObjectName("RoboticAM_ProgramText")
+        self.window.setWindowTitle(obj.Label)
+        self.window.setWindowIcon(QtGui.QIcon(icons.path("program")))
+        self.window.setAttribute(QtCore.Qt.WA_DeleteOnClose)
+        self.window.resize(760, 620)
+        self.state = QtGui.QLabel()
+        self.state.setObjectName("state")
+        self.state.setWordWrap(True)
+        self.sums = QtGui.QLabel()
+        self.sums.setObjectName("sums")
+        self.sums.setWordWrap(True)
+        self.choice = QtGui.QComboBox()
+        self.choice.setObjectName("file")
+        self.text = listing("text")
+        self.export_button = _button(
+            tr("Export…"), "export", tr("Writes all files of the program into a folder"), self._export
+        )
+        self._lay_out()
+        self.load()
+        self.choice.currentIndexChanged.connect(self._show)
+        self.window.finished.connect(lambda *_: _shown.remove(self))
+        _shown.append(self)
+
+    def load(self) -> None:
+        """Show what the object holds now."""
+        try:
+            self.files = api.result(self.obj).files if self.obj.Key else {}
+        except AmError:  # within undo the parts of a result come back one by one
+            return
+        names, chosen = sorted(self.files), self.choice.currentText()
+        self.choice.blockSignals(True)
+        self.choice.clear()
+        self.choice.addItems(names)
+        self.choice.setCurrentIndex(names.index(chosen) if chosen in names else 0)
+        self.choice.blockSignals(False)
+        self.export_button.setEnabled(bool(names))
+        fits = self.obj.Status == UP_TO_DATE
+        warning = "" if fits or not names else tr("This text is of an earlier plan; do not run it.")
+        status = tr("Status: {}.").format(translated(self.obj.Status))
+        self.state.setText(" ".join(filter(None, (warning, status, translated(self.obj.Message)))))
+        try:
+            sums = told.totals(run_of(self.obj))
+            self.sums.setText("  ·  ".join(tr("{}: {}").format(name, value) for name, value in sums))
+        except (AmError, AttributeError):  # its joint path is gone, or undo has not yet brought all of it back
+            self.sums.setText("")
+        self.state.setStyleSheet("" if fits else f"QLabel {{ color: {WRONG}; }}")
+        self.text.setStyleSheet("" if fits else "QPlainTextEdit { color: gray; }")
+        self._show()
+
+    def _lay_out(self) -> None:
+        column, row = QtGui.QVBoxLayout(self.window), QtGui.QHBoxLayout()
+        row.addWidget(self.choice, 1)
+        row.addWidget(self.export_button)
+        row.addWidget(_button(tr("Close"), "close", tr("Closes this window"), lambda *_: self.window.close()))
+        column.addLayout(row)
+        column.addWidget(self.text, 1)
+        column.addWidget(self.sums)
+        column.addWidget(self.state)
+
+    def _show(self, *_: Any) -> None:
+        text = self.files.get(self.choice.currentText(), b"").decode("latin-1").replace("\r\n", "\n")
+        if text != self.text.toPlainText():
+            self.text.setPlainText(text)
+
+    def _export(self, *_: Any) -> None:
+        try:
+            self.state.setText(export(self.obj, self.window))
+        except ReferenceError:
+            self.state.setText(tr("The document is closed; open it again to export."))
+
+
+def _button(text: str, name: str, help: str, act: Any) -> Any:
+    button = QtGui.QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(help)
+    button.setAutoDefault(False)
+    button.clicked.connect(act)
+    return button
+
+
+_shown: list[ProgramWindow] = []  # Python must keep them as long as they are open
+
+
+def show(obj: Any) -> None:
+    """Open the text of a program in a window that does not block the others; the one that is open, if it is."""
+    shown = _of(obj) or ProgramWindow(obj)
+    shown.window.show()
+    shown.window.raise_()
+
+
+def renew(obj: Any) -> None:
+    """The program has changed: show it in its window, if that is open."""
+    shown = _of(obj)
+    if shown is not None:
+        shown.load()
+
+
+def _of(obj: Any) -> ProgramWindow | None:
+    return next((shown for shown in _shown if shown.obj is obj), None)
+
+
+def export(obj: Any, window: Any = None) -> str:
+    """Ask for a folder, first the one of last time or the document's, and write the files; says what came of it."""
+    first = preferences.programs_folder() or os.path.dirname(obj.Document.FileName)
+    folder = QtGui.QFileDialog.getExistingDirectory(window or Gui.getMainWindow(), tr("Export program"), first)
+    if not folder:
+        return tr("Status: {}.").format(translated(obj.Status))
+    try:
+        paths = api.export(obj, folder)
+    except AmError as error:
+        App.Console.PrintError(error_line(error))
+        return translated_error(error)
+    preferences.keep("ExportFolder", folder)
+    text = tr("Files written to {}: {}").format(folder, len(paths))
+    Gui.getMainWindow().statusBar().showMessage(text, 5000)
+    return text

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel and the context menu of a stage, for those that panels and menus import themselves.
+
+View providers open panels, and panels show what view providers draw: views ask here by the name of the act, and need import
+neither. `views.attach` says who does it, and imports that at first need.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+_acts: dict[str, Callable[..., None]] = {}
+
+
+def register(**acts: Callable[..., None]) -> None:
+    """Say who does `edit`, `fill_menu_of_stage` and `fill_menu_of_job`."""
+    _acts.update(acts)
+
+
+def edit(obj: Any) -> None:
+    """Open the panel of an existing stage."""
+    _acts["edit"](obj)
+
+
+def fill_menu_of_stage(menu: Any, obj: Any) -> None:
+    """Add what can be done with a stage to its context menu in the tree."""
+    _acts["fill_menu_of_stage"](menu, obj)
+
+
+def fill_menu_of_job(menu: Any, group: Any) -> None:
+    """Add what can be done with a whole job to its context menu in the tree."""
+    _acts["fill_menu_of_job"](menu, group)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts of the window in the user's language."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from pathlib import Path
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from ...core.issues import AmError
+from .field_names import as_in_panels
+from .phrases import Phrases
+
+CONTEXT = "RoboticAM"
+KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as messages call them
+FOLDER = Path(__file__).resolve().parents[3] / "resources" / "translations"
+
+
+def install() -> None:
+    """Let FreeCAD find our translations, and use that of its language."""
+    Gui.addLanguagePath(str(FOLDER))
+    Gui.updateLocale()
+
+
+def tr(text: str) -> str:
+    """The text in the language of FreeCAD's window; itself where no translation is there.
+
+    Called with literals, or what was `marked`, so that a script can collect them; figures are put in afterwards, by
+    `format`.
+    """
+    return str(App.Qt.translate(CONTEXT, text))
+
+
+def marked(text: str) -> str:
+    """The text as it is, for a script to collect: it is translated when it is shown, by `tr` or by FreeCAD."""
+    return text
+
+
+def translated(text: str) -> str:
+    """What the core wrote, which knows no language and no panel - a help, a word, a message with figures in it - in that of
+    the window, with parameters as its panels call them; itself where no translation is there."""
+    return _translated(text, tr("en"), tr("“{}”"))  # each translation says its own code
+
+
+def translated_error(error: BaseException) -> str:
+    """An error with the place it belongs to, in the language of the window."""
+    if not isinstance(error, AmError):
+        return str(error)
+    return tr("{}: {}").format(_translated(error.where, tr("en"), "{}"), translated(error.message))
+
+
+def error_line(error: AmError) -> str:
+    """An error as a line of the report view, with the code that it has in the headless commands."""
+    return f"error[{error.code}] {translated_error(error)}\n"
+
+
+def sentence(text: str) -> str:
+    """A text that begins small, such as a finding, as a sentence of its own, in the language of the window. One that begins
+    with the name of a part or file keeps that as it is."""
+    told = translated(text)
+    return told if _phrases().names_first(text) else told[:1].upper() + told[1:]
+
+
+@lru_cache(maxsize=4096)
+def _translated(text: str, language: str, quoted: str) -> str:
+    told = text if language == "en" else _phrases().translated(text, tr)
+    return as_in_panels(told, tr if language == "en" else translated, quoted)
+
+
+@lru_cache(maxsize=1)
+def _phrases() -> Phrases:
+    return Phrases(json.loads((FOLDER / "messages.json").read_text(encoding="utf-8")), KINDS)

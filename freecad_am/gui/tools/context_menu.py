@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Entries of context menus in the tree: what can be done with a stage, or with a whole job."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from ... import api
+from ...core.issues import AmError
+from ...objects.job_group import stages_in
+from ...objects.progress import Cancelled
+from ...objects.stage import stage_of
+from ...objects.staleness import UP_TO_DATE
+from .. import recorded, registry
+from ..texts.translation import error_line, tr
+
+Act = Callable[[], Any]
+_NAME = "RoboticAM_Menu"
+_MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
+
+
+def of_stage(menu: Any, obj: Any) -> None:
+    """What can be done with a stage: edit, renew, follow it to its inputs; more by its kind."""
+    from ..program import window
+
+    kind = obj.Proxy.kind
+    if kind == "program":
+        _add(menu, "ReadProgram", tr("Read the text…"), lambda: window.show(obj), bool(obj.Key))
+        _add(menu, "EditProgram", tr("Edit parameters…"), lambda: registry.edit(obj))
+        _add(menu, "ExportProgram", tr("Export files…"), lambda: _export(obj), bool(obj.Key))
+    else:
+        _add(menu, "Edit", tr("Edit…"), lambda: registry.edit(obj))
+    fits = obj.Status == UP_TO_DATE
+    _add(menu, "Renew", tr("Compute again") if fits else tr("Renew"), lambda: renew(obj, fits))
+    if kind in ("joint path", "program"):
+        _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(obj), bool(obj.Key))
+    for tool, text in _next_tools(kind):
+        _of_tool(menu, tool, text, obj, fits if tool in _MAKE_NEXT else bool(obj.Key))
+    _add_inputs(menu, obj)
+    path = obj.JointPath if kind == "program" else obj if kind in ("toolpath", "joint path") else None
+    if path is not None:
+        _add(menu, "ShowPath", tr("Show path layer by layer"), lambda: _look_at(path))
+
+
+def _next_tools(kind: str) -> list[tuple[str, str]]:
+    """Tools of the toolbar that take a stage of this kind, in the order of the toolbar."""
+    return {
+        "feature": [("Toolpath", tr("Cut into layers…")), ("Inspect", tr("Compare with measured points…"))],
+        "toolpath": [
+            ("JointPath", tr("Plan joint path…")), ("Plots", tr("Plots…")), ("Inspect", tr("Compare with measured points…")),
+            ("ExportPath", tr("Export path…")),
+        ],
+        "joint path": [
+            ("SpinMap", tr("Map of the free rotation…")), ("Program", tr("Write program…")), ("Plots", tr("Plots…")),
+            ("ExportPath", tr("Export path…")),
+        ],
+        "program": [("Plots", tr("Plots…"))],
+    }.get(kind, [])
+
+
+def of_job(menu: Any, group: Any) -> None:
+    """What can be done with a whole job."""
+    stages = stages_in(group)
+    _add(menu, "RenewJob", tr("Renew"), lambda: _renew_all(stages), any(obj.Status != UP_TO_DATE for obj in stages))
+    paths = [obj for obj in stages if obj.Proxy.kind == "joint path" and obj.Key]
+    _add(menu, "Simulate", tr("Simulate…"), lambda: _simulate(paths[-1]), bool(paths))
+    if paths:
+        _of_tool(menu, "Plots", tr("Plots…"), paths[-1], True)
+    _add(menu, "Shown", tr("Show this job alone"), lambda: show_alone(group))
+
+
+def renew(obj: Any, force: bool = False) -> None:
+    """Renew a stage and what it is made from; what is wrong is told in the report view and in its status."""
+    told = ", force=True" if force else ""
+    Gui.doCommand(recorded.IMPORT)
+    try:
+        Gui.doCommand(f"am.recompute({recorded.reference(obj)}{told})")
+    except AmError as error:
+        App.Console.PrintError(error_line(error))
+    except Cancelled:
+        App.Console.PrintWarning(tr("{}: cancelled").format(obj.Label) + "\n")
+
+
+def show_alone(group: Any) -> None:
+    """Show the last path of a job and its cell, hide those of other stages, and turn the camera to it."""
+    own = stages_in(group)
+    paths = [obj for obj in own if obj.Proxy.kind in ("toolpath", "joint path") and obj.Key]
+    seen = {obj.Name for obj in own if obj.Proxy.kind == "cell"} | {obj.Name for obj in paths[-1:]}
+    for obj in api.stages_of(group.Document):
+        obj.ViewObject.Visibility = obj.Name in seen
+    Gui.SendMsgToActiveView("ViewFit")
+
+
+def _renew_all(stages: list[Any]) -> None:
+    for obj in sorted(stages, key=lambda obj: len(obj.OutListRecursive)):
+        renew(obj)
+
+
+def _add(menu: Any, name: str, text: str, act: Act, on: bool = True) -> None:
+    action = menu.addAction(text)
+    action.setObjectName(f"{_NAME}{name}")
+    action.setEnabled(on)
+    action.triggered.connect(lambda *_: act())
+
+
+def _add_inputs(menu: Any, obj: Any) -> None:
+    """An entry for each input, which is selected and shown in the tree."""
+    found: dict[str, Any] = {}
+    for link in obj.Proxy.links:
+        value = getattr(obj, link.name)
+        for one in value if isinstance(value, list) else [value[0] if isinstance(value, tuple) else value]:
+            if one is not None:
+                found[one.Name] = one
+    if found:
+        menu.addSeparator()
+    for one in found.values():
+        _add(menu, f"Input_{one.Name}", tr("Go to {}").format(one.Label), lambda one=one: go_to(one))
+
+
+def go_to(obj: Any) -> None:
+    """Select an object, see it in the tree, and show it."""
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(obj.Document.Name, obj.Name)
+    Gui.runCommand("Std_TreeSelection")
+    if stage_of(obj) is None:
+        obj.ViewObject.Visibility = True
+
+
+def _of_tool(menu: Any, name: str, text: str, obj: Any, on: bool) -> None:
+    """An entry that uses a tool of the toolbar on an object; of what needs no more than this, `on` tells."""
+    command = Gui.Command.get(f"RoboticAM_{name}")
+    _add(menu, name, text, lambda: _tool(name, obj), on and command is not None and command.isActive())
+
+
+def _tool(name: str, obj: Any) -> None:
+    """Use a tool of the toolbar on an object."""
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(obj.Document.Name, obj.Name)
+    Gui.runCommand(f"RoboticAM_{name}")
+
+
+def _look_at(path: Any) -> None:
+    from ..path import dock
+
+    dock.show(path)
+
+
+def _simulate(obj: Any) -> None:
+    from ..simulation import tool
+
+    tool.show(obj)
+
+
+def _export(obj: Any) -> None:
+    from ..program import window
+
+    window.export(obj)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Help on our tools and panels: What's This opens their page of docs/tools in a window of FreeCAD.
+
+FreeCAD hands what was clicked to its Help module, which knows pages of FreeCAD's wiki alone; 0.20 has no such module and
+asks for it in a dialog. So in the mode of What's This, and only then, clicks on what is ours are taken before FreeCAD.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import Any
+
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+
+from .. import icons
+from ..signals import connect
+from ..texts.translation import tr
+
+PAGES = Path(__file__).resolve().parents[3] / "docs" / "tools"
+NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
+# of panels and docks that are not called as their tool is
+_CALLED = {
+    "RevolutionFeature": "feature", "SurfaceFeature": "wall-on-part", "DevelopableFeature": "solids-on-hub",
+    "SolidFeature": "solid", "CurvesFeature": "curves", "CladdingFeature": "cladding",
+    "PathDock": "path", "Simulation": "simulate", "ProgramText": "program", "Inspection": "inspect",
+}
+_SIZE = (900, 700)
+
+
+def page_of(name: str) -> str:
+    """The file of a tool, panel or dock by its name: `RoboticAM_SpinMap` gives `spin-map.md`, what is unknown the index."""
+    bare = name.removeprefix(PREFIX)
+    words = "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in bare).lstrip("-")
+    page = f"{_CALLED.get(bare, words)}.md"
+    return page if (PAGES / page).is_file() else INDEX
+
+
+def url(name: str) -> str:
+    """The address of a page, for a FreeCAD that shows it itself."""
+    return QtCore.QUrl.fromLocalFile(str(PAGES / page_of(name))).toString()
+
+
+class Help:
+    """The command that opens the list of tools."""
+
+    def GetResources(self) -> dict[str, str]:
+        """Texts, in the language that the window has when the workbench is opened."""
+        return {
+            "MenuText": tr("Help on Robotic AM"), "ToolTip": tr("Opens the pages of the tools"),
+            "WhatsThis": url(INDEX),
+        }
+
+    def Activated(self, index: int = 0) -> None:
+        """It was chosen in the menu."""
+        show(INDEX)
+
+
+class HelpWindow:
+    """Pages in a window of their own; links lead on."""
+
+    def __init__(self) -> None:
+        self.window = QtGui.QDialog(Gui.getMainWindow())
+        self.window.setObjectName(NAME)
+        self.window.setWindowTitle(tr("Help on Robotic AM"))
+        self.window.setWindowIcon(QtGui.QIcon(icons.path("workbench")))
+        self.window.resize(*_SIZE)
+        self.note = QtGui.QLabel()
+        self.note.setObjectName("note")
+        self.note.setWordWrap(True)
+        self.text = QtGui.QTextBrowser()
+        self.text.setObjectName("page")
+        self.text.setOpenExternalLinks(True)
+        connect(self.text, "sourceChanged(QUrl)", self._without_empty_headings)
+        row, column = QtGui.QHBoxLayout(), QtGui.QVBoxLayout(self.window)
+        for label, act in ((tr("All tools"), lambda: self.show(INDEX)), (tr("Back"), self.text.backward)):
+            button = QtGui.QPushButton(label)
+            button.setAutoDefault(False)
+            button.clicked.connect(lambda *_, act=act: act())
+            row.addWidget(button)
+        row.addStretch(1)
+        column.addLayout(row)
+        column.addWidget(self.note)
+        column.addWidget(self.text, 1)
+
+    def _without_empty_headings(self, *_: Any) -> None:
+        """Markdown has a row of headings in every table: those that are empty are left out."""
+        for table in self.text.document().rootFrame().childFrames():
+            if isinstance(table, QtGui.QTextTable) and table.rows() > 1:
+                cells = (table.cellAt(0, column) for column in range(table.columns()))
+                if not any(cell.firstCursorPosition().block().text().strip() for cell in cells):
+                    table.removeRows(0, 1)
+
+    def show(self, page: str, note: str = "") -> None:
+        """Show a page of docs/tools, above it a note."""
+        self.note.setText(note)
+        self.note.setVisible(bool(note))
+        self.text.setSource(QtCore.QUrl.fromLocalFile(str(PAGES / page)))
+        self.window.show()
+        self.window.raise_()
+
+
+class Watch(QtCore.QObject):
+    """Hears the main window enter the mode of What's This, and takes the clicks on what is ours while it lasts."""
+
+    def __init__(self, window: Any) -> None:
+        super().__init__(window)
+        self.window = window
+        window.installEventFilter(self)
+
+    def eventFilter(self, watched: Any, event: Any) -> bool:
+        """Called by Qt; True for what is dealt with."""
+        kind = event.type()
+        if kind == QtCore.QEvent.EnterWhatsThisMode and watched is self.window:
+            QtCore.QTimer.singleShot(0, self._take)  # after FreeCAD has begun to: who comes last is asked first
+        elif kind == QtCore.QEvent.LeaveWhatsThisMode and watched is self.window:
+            QtGui.QApplication.instance().removeEventFilter(self)
+        elif kind == QtCore.QEvent.WhatsThis and isinstance(watched, QtGui.QWidget):
+            name, note = _ours(watched)
+            if name:
+                event.accept()
+                QtCore.QTimer.singleShot(0, lambda: _answer(name, note))
+                return True
+        return False
+
+    def _take(self) -> None:
+        if QtGui.QWhatsThis.inWhatsThisMode():
+            QtGui.QApplication.instance().installEventFilter(self)
+
+
+def _ours(widget: Any) -> tuple[str, str]:
+    """The name of the tool, panel or dock that a widget is of, '' for none of ours; what is said of the widget itself."""
+    if isinstance(widget, QtGui.QToolButton) and widget.defaultAction() is not None:
+        action = widget.defaultAction()
+        for name in (str(action.data() or ""), action.objectName()):
+            if name.startswith(PREFIX):
+                return name, ""
+    note, one = "", widget
+    while one is not None:
+        said = one.whatsThis()
+        note = note or ("" if said.startswith("file:") else said)
+        if one.objectName().startswith(PREFIX):
+            return one.objectName(), note
+        one = one.parentWidget()
+    return "", ""
+
+
+def _answer(name: str, note: str) -> None:
+    QtGui.QWhatsThis.leaveWhatsThisMode()
+    show(page_of(name), note)
+
+
+_windows: list[HelpWindow] = []
+_watches: list[Watch] = []
+
+
+def show(page: str, note: str = "") -> None:
+    """Show a page of docs/tools in the window for help, which is made when it is first asked for."""
+    for known in list(_windows):
+        with contextlib.suppress(RuntimeError):  # it went with the main window
+            known.show(page, note)
+            return
+        _windows.remove(known)
+    _windows.append(HelpWindow())
+    _windows[-1].show(page, note)
+
+
+def install() -> None:
+    """Register the command and watch the main window; once or more often."""
+    if not _watches:
+        Gui.addCommand(NAME, Help())
+        _watches.append(Watch(Gui.getMainWindow()))

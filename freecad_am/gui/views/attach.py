@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Gives objects of ours their view providers; named to `objects.hooks` by InitGui."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtCore
+
+from ...objects.cladding_feature import CladdingFeature
+from ...objects.curves_feature import CurvesFeature
+from ...objects.developable_feature import DevelopableFeature
+from ...objects.job_group import is_group
+from ...objects.solid_feature import SolidFeature
+from ...objects.stage import Stage
+from .. import registry
+from ..background.busy import carry_out
+from ..inspection.view import InspectionView
+from ..preferences import watch
+from . import job
+from .base import MODE, StageView
+from .cell import CellView
+from .cladding import CladdingView
+from .curves import CurvesView
+from .feature import FeatureView
+from .hub import HubView, SolidView
+from .joint_path import JointPathView
+from .program import ProgramView
+from .toolpath import ToolpathView
+
+__all__ = ("attach", "carry_out", "view_of")  # what `objects.hooks` calls, and what tests ask
+
+VIEWS: dict[str, type[StageView]] = {
+    "cell": CellView, "feature": FeatureView, "toolpath": ToolpathView, "joint path": JointPathView,
+    "program": ProgramView, "inspection": InspectionView,
+}
+OF_FAMILIES: dict[type[Stage], type[StageView]] = {
+    DevelopableFeature: HubView, SolidFeature: SolidView, CurvesFeature: CurvesView,
+    CladdingFeature: CladdingView,
+}
+
+_to_be_seen: set[str] = set()
+
+
+# ---- what views ask for; imported at first need, for panels and menus take longer to import than a document to open
+
+
+def _edit(obj: Any) -> None:
+    from ..panels.of_stages import edit
+
+    edit(obj)
+
+
+def _fill_menu_of_stage(menu: Any, obj: Any) -> None:
+    from ..tools import context_menu
+
+    context_menu.of_stage(menu, obj)
+
+
+def _fill_menu_of_job(menu: Any, group: Any) -> None:
+    from ..tools import context_menu
+
+    context_menu.of_job(menu, group)
+
+
+registry.register(edit=_edit, fill_menu_of_stage=_fill_menu_of_stage, fill_menu_of_job=_fill_menu_of_job)
+
+
+# ---- what is shown
+
+
+def _preferences_changed() -> None:
+    """All that is drawn is to be as the user prefers it now."""
+    for document in App.listDocuments().values():
+        for obj in document.Objects:
+            view = getattr(obj.ViewObject, "Proxy", None)
+            if isinstance(view, StageView) and view.obj is not None:
+                view.preferences_changed()
+
+
+watch.listen(_preferences_changed)
+
+
+def view_of(stage: Stage) -> type[StageView]:
+    """The view provider of a stage."""
+    return OF_FAMILIES.get(type(stage), VIEWS[stage.kind])
+
+
+def attach(obj: Any) -> None:
+    """Show an object: with a new view provider when it has none (new, or made without a window), else redrawn."""
+    vobj = obj.ViewObject
+    if is_group(obj):
+        job.attach(obj)
+        return
+    if not getattr(vobj, "Proxy", None):
+        if obj.Document.Restoring and obj.Document.Name not in _to_be_seen:
+            _to_be_seen.add(obj.Document.Name)
+            QtCore.QTimer.singleShot(0, lambda name=obj.Document.Name: _show_all(name))
+        view_of(obj.Proxy)(vobj)
+        vobj.DisplayMode = MODE
+        vobj.Visibility = True
+    else:
+        vobj.Proxy.complete(vobj)
+    vobj.Proxy.refresh()
+
+
+def _show_all(name: str) -> None:
+    """Turn the camera to a document that was made without a window, and so has none."""
+    document = Gui.getDocument(name) if name in App.listDocuments() else None
+    if document is not None and document.Document.Restoring:
+        QtCore.QTimer.singleShot(100, lambda: _show_all(name))
+        return
+    _to_be_seen.discard(name)
+    for view in [] if document is None else document.mdiViewsOfType("Gui::View3DInventor"):
+        view.viewIsometric()
+        view.fitAll()

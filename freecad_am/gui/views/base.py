@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the view providers of all stages share. Their class paths are a file format."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import FreeCAD as App
+from pivy import coin
+
+from ...core.issues import InputError
+from ...objects.job_group import is_group
+from .. import icons, registry
+from ..texts.translation import error_line
+
+MODE = "Drawing"
+
+
+class StageView:
+    """Draws the stored result of a stage, and tells its status by its icon."""
+
+    icon: ClassVar[str] = ""
+    # view property: FreeCAD type, default (of an enumeration all choices, the default first), help
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {}
+    obj: Any = None
+    root: Any = None
+    drawn = ""
+
+    def __init__(self, vobj: Any) -> None:
+        vobj.Proxy = self
+        self.complete(vobj)
+
+    def complete(self, vobj: Any) -> None:
+        """Add the view properties and choices the object lacks."""
+        have = set(vobj.PropertiesList)
+        for name, (type_name, default, help) in self.options.items():
+            if name not in have:
+                vobj.addProperty(type_name, name, "Drawing", help)
+                setattr(vobj, name, list(default) if isinstance(default, tuple) else default)
+            elif isinstance(default, tuple) and tuple(vobj.getEnumerationsOfProperty(name)) != default:
+                chosen = getattr(vobj, name)  # of a document of an earlier version
+                setattr(vobj, name, list(default))
+                setattr(vobj, name, chosen if chosen in default else default[0])
+
+    # ---- what a view defines
+
+    def scene(self, root: Any) -> None:
+        """Add the nodes to the root, once."""
+
+    def read(self, obj: Any) -> Any:
+        """What `draw` is given: the stored result, or what of it is drawn. InputError as `Stage.value`."""
+        return obj.Proxy.value(obj)
+
+    def draw(self, obj: Any, value: Any) -> None:
+        """Fill the nodes from what was read."""
+
+    def style(self, vobj: Any) -> None:
+        """Apply the view properties."""
+
+    def preferences_changed(self) -> None:
+        """Show what the user prefers now; most views depend on no preference."""
+
+    def edit(self, obj: Any) -> None:
+        """Open what a double click opens."""
+        registry.edit(obj)
+
+    # ---- called by FreeCAD
+
+    def attach(self, vobj: Any) -> None:
+        """Make the scene; called when the view provider is set, and when a document opens."""
+        self.obj = vobj.Object
+        self.root, self.switch = coin.SoSeparator(), coin.SoSwitch()
+        self.scene(self.root)
+        self.switch.addChild(self.root)
+        self.stand_back(False)
+        vobj.addDisplayMode(self.switch, MODE)
+
+    def stand_back(self, aside: bool) -> None:
+        """Draw nothing while a preview stands for it, whatever its properties say; they stay as they are."""
+        self.switch.whichChild = coin.SO_SWITCH_NONE if aside else coin.SO_SWITCH_ALL
+
+    def refresh(self) -> None:
+        """Draw what is stored now."""
+        obj = self.obj
+        if obj is None or self.root is None or not getattr(obj, "Key", ""):
+            return
+        try:
+            self.draw(obj, self.read(obj))
+            self.drawn = obj.Key
+        except InputError as error:
+            if not obj.Document.Transacting:  # within undo the parts of a result come back one by one
+                App.Console.PrintError(error_line(error))
+            return
+        self.style(obj.ViewObject)
+
+    def updateData(self, obj: Any, name: str) -> None:
+        """A property of the object has changed."""
+        if self.obj is None or obj.Document.Restoring:
+            return
+        if name in ("Key", "ResultLayout", "ResultData") and obj.Key != self.drawn:
+            self.refresh()
+        elif name == "Status":
+            for shown in (obj, *filter(is_group, obj.InList)):
+                shown.ViewObject.signalChangeIcon()
+
+    def onChanged(self, vobj: Any, name: str) -> None:
+        """A view property has changed."""
+        if name in self.options and all(hasattr(vobj, option) for option in self.options) and self.root is not None:
+            self.style(vobj)
+
+    def getDisplayModes(self, vobj: Any) -> list[str]:
+        """There is one."""
+        return [MODE]
+
+    def getDefaultDisplayMode(self) -> str:
+        """There is one."""
+        return MODE
+
+    def setDisplayMode(self, mode: str) -> str:
+        """There is one."""
+        return mode
+
+    def getIcon(self) -> str:
+        """The icon, with a badge unless all is well."""
+        return icons.with_badge(self.icon, getattr(self.obj, "Status", ""))
+
+    def doubleClicked(self, vobj: Any) -> bool:
+        """Open the panel."""
+        self.edit(vobj.Object)
+        return True
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """Entries of the context menu in the tree."""
+        registry.fill_menu_of_stage(menu, vobj.Object)
+
+    def dumps(self) -> None:
+        """Nothing is kept."""
+
+    def loads(self, state: Any) -> None:
+        """Nothing to restore."""
+
+    __getstate__ = dumps
+    __setstate__ = loads

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The cell in the 3D view, as the part sees it: platform under it, nozzle where the deposit ends, on demand the machine."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ...core.issues import InputError
+from ...core.kinematics.cell import mounted
+from ...objects import user_machines
+from ...objects.stage import stage_of
+from ...objects.store import Place
+from ..nodes.cell import CellNodes, at_end, with_machine, without_machine
+from ..path import path_view
+from ..texts.translation import tr
+from .base import StageView
+
+
+class CellView(StageView):
+    """Draws platform and nozzle in part coordinates; without a toolpath the platform lies at the origin.
+
+    The machine is drawn at rest: the part upright, its highest point under the nozzle.
+    """
+
+    icon = "cell"
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {
+        "ShowMachine": ("App::PropertyBool", False, "Show the machine at rest, the nozzle upright on the highest point."),
+    }
+    end = np.zeros(3), np.array([0.0, 0.0, 1.0])  # the last point of the deposit, and the tool axis there
+    stands_on = ""  # the key of the toolpath that platform and nozzle were placed by, "" for none
+
+    def scene(self, root: Any) -> None:
+        self.nodes = CellNodes()
+        root.addChild(self.nodes.switch)
+
+    def draw(self, obj: Any, value: Any) -> None:
+        standing = _standing(obj)
+        self.stands_on = "" if standing is None else _key_of(toolpath_of(obj))
+        if getattr(obj.ViewObject, "ShowMachine", False):
+            found = _of_toolpath(obj, ())
+            self.nodes.set(with_machine(value, None if found is None else found[0], user_machines.folders()))
+            return
+        tip, axis, mount = np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4)
+        if standing is not None:
+            points, tools, frame, family = standing
+            tip, axis = points[-1], tools[-1]
+            mount = mounted(value, frame, family)
+        self.end = tip, axis
+        self.nodes.set(without_machine(value, *(_reached(obj) or self.end), mount))
+
+    def follow_stretch(self, view: path_view.PathView) -> None:
+        """The nozzle goes to where a stretch of a path ends that is looked at; the machine at rest stays."""
+        if self.drawn and self.nodes.machine is None and view.obj.ViewObject.Visibility:
+            self.nodes.move_nozzle(at_end(*(view.reached() or self.end)))
+
+    def follow(self) -> None:
+        """Draw anew where the toolpath is another than it was."""
+        if self.drawn and self.stands_on != _key_of(toolpath_of(self.obj)):
+            self.refresh()
+
+    def onChanged(self, vobj: Any, name: str) -> None:
+        """A view property has changed."""
+        if name == "ShowMachine" and self.root is not None and not vobj.Object.Document.Restoring:
+            self.refresh()
+
+    def preferences_changed(self) -> None:
+        if self.nodes.machine is not None:
+            self.nodes.machine.renew_colours()
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """Entries of the context menu in the tree."""
+        super().setupContextMenu(vobj, menu)
+        action = menu.addAction(tr("Hide machine") if vobj.ShowMachine else tr("Show machine"))
+        action.setObjectName("RoboticAM_ShowMachine")
+        action.triggered.connect(lambda *_: setattr(vobj, "ShowMachine", not vobj.ShowMachine))
+
+
+def toolpath_of(obj: Any) -> Any:
+    """The toolpath object that is for a cell, or that a joint path is planned of in it; None without one."""
+    for follower in obj.InList:
+        kind = getattr(stage_of(follower), "kind", "")
+        toolpath = follower if kind == "toolpath" else follower.Toolpath if kind == "joint path" else None
+        if toolpath is not None and toolpath.Key:
+            return toolpath
+    return None
+
+
+def _standing(obj: Any) -> Any:
+    """Points and tool axes of the last bead, frame and family of the toolpath; what else it has is not read."""
+    last = ("layers", -1, "beads", -1)
+    return _of_toolpath(obj, (*last, "points"), (*last, "tool"), ("frame",), ("family",))
+
+
+def _reached(obj: Any) -> Any:
+    """Where a stretch ends that is shown of a path for the cell, None where none is."""
+    for follower in obj.InList:
+        view = getattr(follower.ViewObject, "Proxy", None)
+        if isinstance(view, path_view.PathView) and follower.ViewObject.Visibility and view.shown is not None:
+            return view.reached()
+    return None
+
+
+def _of_toolpath(obj: Any, *places: Place) -> Any:
+    toolpath = toolpath_of(obj)
+    if toolpath is not None:
+        with contextlib.suppress(InputError):  # within undo
+            return stage_of(toolpath).picked(toolpath, *places)
+    return None
+
+
+def _key_of(toolpath: Any) -> str:
+    return "" if toolpath is None else str(toolpath.Key)
+
+
+def _path_changed(view: path_view.PathView) -> None:
+    """A toolpath or joint path was drawn: the cell it is for goes with it."""
+    cell = view.obj.Cell
+    if cell is not None and isinstance(cell.ViewObject.Proxy, CellView):
+        cell.ViewObject.Proxy.follow()
+
+
+def _stretch_changed(view: path_view.PathView) -> None:
+    cell = view.obj.Cell
+    if cell is not None and isinstance(cell.ViewObject.Proxy, CellView):
+        cell.ViewObject.Proxy.follow_stretch(view)
+
+
+path_view.listen(_path_changed)
+path_view.listen_to_stretches(_stretch_changed)

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The feature in the 3D view: meridian and axis, or faces and first layer of a wall on a substrate."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ...core.geometry.profile import RevolvedWall
+from .. import icons
+from ..nodes.meridian import MeridianNodes
+from ..nodes.wall import WallNodes, first_curves
+from .base import StageView
+
+
+class FeatureView(StageView):
+    """Draws the meridian at the start of the turn, and the axis; of a wall on a substrate faces and first layer."""
+
+    icon = "feature"
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {
+        "ShowFaces": ("App::PropertyBool", True, "Tint the faces of a wall on a substrate."),
+    }
+
+    def complete(self, vobj: Any) -> None:
+        """Add the view properties a wall on a substrate lacks; there are none for parts of revolution."""
+        if hasattr(vobj.Object, "Substrate"):
+            super().complete(vobj)
+
+    def scene(self, root: Any) -> None:
+        self.revolved, self.wall = MeridianNodes(), WallNodes(pickable=True)
+        for node in (self.revolved.switch, self.wall.switch):
+            root.addChild(node)
+
+    def draw(self, obj: Any, value: Any) -> None:
+        if not isinstance(value, RevolvedWall):
+            self.revolved.clear()
+            self.wall.set_first(first_curves(value))
+            self.wall.set_faces(obj.Source[0], value.faces)
+            return
+        self.revolved.set_wall(value)
+
+    def style(self, vobj: Any) -> None:
+        self.wall.faces.show(getattr(vobj, "ShowFaces", False))
+
+    def getIcon(self) -> str:
+        """That of its family, with a badge unless all is well."""
+        family = "wall_on_part" if hasattr(self.obj, "Substrate") else self.icon
+        return icons.with_badge(family, getattr(self.obj, "Status", ""))

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The group of a job in the tree. Its class path is a file format."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...objects.job_group import stages_in
+from ...objects.stage import stage_of
+from ...objects.staleness import FAILED, INFEASIBLE, STALE
+from .. import icons, registry
+
+
+class JobView:
+    """Shows the worst status of the stages within. Deleted, it takes them with it; what else was dragged in stays."""
+
+    obj: Any = None
+
+    def __init__(self, vobj: Any) -> None:
+        vobj.Proxy = self
+
+    def attach(self, vobj: Any) -> None:
+        """Called when the view provider is set, and when a document opens."""
+        self.obj = vobj.Object
+
+    def getIcon(self) -> str:
+        """That of a job, with a badge unless all is well."""
+        statuses = set() if self.obj is None else {stage.Status for stage in stages_in(self.obj)}
+        worst = next((status for status in (FAILED, INFEASIBLE, STALE) if status in statuses), "")
+        return icons.with_badge("job", worst)
+
+    def canDropObject(self, obj: Any) -> bool:
+        """Stages alone belong into a job."""
+        return stage_of(obj) is not None
+
+    def replaceObject(self, old: Any, new: Any) -> bool:
+        """A stage dropped onto another one does not take its place, as FreeCAD would have it: that one would be lost from
+        the job, while what follows still needs it."""
+        return False
+
+    def onDelete(self, vobj: Any, names: Any) -> bool:
+        """The stages go too, those that follow first, within the step of undo that deletes the group."""
+        document = vobj.Object.Document
+        stages = sorted(stages_in(vobj.Object), key=lambda obj: -len(obj.OutListRecursive))
+        for name in [stage.Name for stage in stages]:
+            document.removeObject(name)
+        return True
+
+    def setupContextMenu(self, vobj: Any, menu: Any) -> None:
+        """Entries of the context menu in the tree."""
+        registry.fill_menu_of_job(menu, vobj.Object)
+
+    def dumps(self) -> None:
+        """Nothing is kept."""
+
+    def loads(self, state: Any) -> None:
+        """Nothing to restore."""
+
+    __getstate__ = dumps
+    __setstate__ = loads
+
+
+def attach(obj: Any) -> None:
+    """Show a group that has no view provider yet."""
+    if not getattr(obj.ViewObject, "Proxy", None):
+        JobView(obj.ViewObject)

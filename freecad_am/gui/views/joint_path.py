@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The joint path in the 3D view: the beads coloured by how near the machine comes to what it cannot do, the rapid moves,
+and points that something is wrong with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.issues import ERROR, InputError
+from ...core.kinematics import machine as machines
+from ...core.parameters.strategy import RevolutionParameters
+from ...core.simulation.margins import from_next, speed_ratios
+from ...objects import user_machines
+from ...objects.findings import issues_of
+from ..nodes.lines import DASHED, Array, Lines, Points
+from ..path.colouring import CONDITION, JOINT_KINDS, MARGIN, RATIO, UNREACHABLE, Scale, by_machine, coloured, unknown
+from ..path.path_view import OPTIONS, TUBES, PathView
+from ..path.rows import Rows
+from .toolpath import band_of, width_of
+
+
+@dataclass(frozen=True)
+class Course:
+    """Those columns of a motion of n rows that are drawn: to open a document they alone are read."""
+
+    deposit: NDArray[np.bool_]
+    layer: NDArray[np.int64]
+    bead: NDArray[np.int64]
+    point: NDArray[np.int64]
+    position: Array
+    width: Array
+    joints: Array
+
+    def __len__(self) -> int:
+        return len(self.deposit)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A joint path as a view sees it. limits: their name. read: gives the result that this is of, or places of it."""
+
+    course: Course
+    limits: str
+    read: Callable[..., Any]
+
+
+class JointPathView(PathView):
+    """Draws the beads as they are run, rapid moves as thin dashed lines, and a red point wherever the machine does not reach
+    or a finding forbids a program."""
+
+    icon = "joint_path"
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {
+        "Colouring": ("App::PropertyEnumeration", JOINT_KINDS, "What the colours of the beads tell."), **OPTIONS,
+        "ShowRapids": ("App::PropertyBool", True, "Show the rapid moves as thin dashed lines."),
+    }
+    source_hidden = True
+
+    def __init__(self, vobj: Any) -> None:
+        super().__init__(vobj)
+        self.source_hidden = False
+
+    def scene(self, root: Any) -> None:
+        super().scene(root)
+        self.rapids = Lines(1.0, (0.45, 0.45, 0.5), DASHED)
+        self.wrong = Points(7.0, UNREACHABLE)
+        root.addChild(self.rapids.node)
+        root.addChild(self.wrong.node)
+
+    def read(self, obj: Any) -> Seen:
+        """What of the result is drawn."""
+        columns = [("motion", column.name) for column in fields(Course)]
+        read = obj.Proxy.reader(obj)
+        limits, *found = read(("joint_path", "limits"), *columns)
+        return Seen(Course(*found), limits, read)
+
+    def rows_of(self, obj: Any, value: Seen) -> Rows:
+        course, width = value.course, width_of(_linked(obj))
+        height = _layer_height(obj) if obj.ViewObject.Look == TUBES else None  # lines do without the toolpath
+        starts = np.flatnonzero(course.point[self.at] == 0)
+        known = course.width[self.at]
+        return Rows(
+            course.position[self.at], np.append(starts, len(self.at)), course.layer[self.at[starts]],
+            np.where(np.isfinite(known), known, width), lambda: [path.bead for path in value.read().joint_path.beads],
+            lambda: _known_layer_height(obj) if height is None else height,
+            lambda index: value.read(("joint_path", "beads", index, "bead"))[0],
+        )
+
+    def draw(self, obj: Any, value: Seen) -> None:
+        self.seen, motion = value, value.course
+        self.motion, self.at = motion, np.flatnonzero(motion.deposit)  # the row of the motion of each point
+        self.reachable = np.isfinite(motion.joints).all(axis=1)
+        self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
+        self.find_wrong(obj)
+        super().draw(obj, value)
+        if not self.source_hidden:  # the beads lie where those of the toolpath do
+            self.source_hidden = True
+            obj.Toolpath.ViewObject.Visibility = False
+
+    def find_wrong(self, obj: Any) -> None:
+        """The rows of the motion that the machine does not reach, or that a finding forbids a program for."""
+        motion, layers = self.motion, self.motion.layer[self.at]  # rising
+        wrong = motion.deposit & ~self.reachable
+        for issue in issues_of(obj):
+            if issue.level == ERROR and issue.layer is not None:
+                here = self.at[slice(*np.searchsorted(layers, [issue.layer, issue.layer + 1]))]
+                for column, index in ((motion.bead, issue.bead), (motion.point, issue.point)):
+                    here = here if index is None else here[column[here] == index]
+                wrong[here] = True
+        self.bad = np.flatnonzero(wrong)
+
+    def updateData(self, obj: Any, name: str) -> None:
+        """A property of the object has changed; undo and redo may bring findings back after the result they are of."""
+        super().updateData(obj, name)
+        if name == "Issues" and self.rows is not None and not obj.Document.Restoring:
+            self.find_wrong(obj)
+            self.limited(*self.stretch())
+
+    def limited(self, first: int, end: int) -> None:
+        low = 0 if first == 0 else int(self.at[first - 1]) + 1  # with what leads to the first bead
+        high = len(self.motion) if end >= len(self.at) else int(self.at[max(end - 1, 0)]) + 1
+        rapid = self.rapid[(self.rapid >= low) & (self.rapid < high)]
+        self.rapids.set(np.stack([self.motion.position[rapid - 1], self.motion.position[rapid]], axis=1),
+                        np.full(len(rapid), 2))
+        self.wrong.set(self.motion.position[self.bad[(self.bad >= low) & (self.bad < high)]])
+
+    def style(self, vobj: Any) -> None:
+        super().style(vobj)
+        self.rapids.show(vobj.ShowRapids)
+
+    def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
+        if kind == CONDITION:
+            condition = np.concatenate([path.condition for path in self.seen.read().joint_path.beads])
+            return by_machine(np.where(self.reachable[self.at], condition, np.nan), kind)
+        if kind in (MARGIN, RATIO):
+            try:
+                return by_machine(_of_machine(obj, self.seen, kind)[self.at], kind)
+            except InputError as error:
+                return unknown(len(self.at), kind, error.message)
+        planned = self.seen.read().joint_path
+        return coloured(planned.toolpath(_toolpath_of(obj)), kind, band_of(obj.Toolpath))
+
+    def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
+        return () if obj.Toolpath is None else (band_of(obj.Toolpath),)
+
+
+def _linked(obj: Any) -> Any:
+    """The toolpath object of a joint path. InputError where it was deleted."""
+    if obj.Toolpath is None:
+        raise InputError("NO_INPUT", obj.Label, "its toolpath is gone; choose another, or delete the joint path too")
+    return obj.Toolpath
+
+
+def _toolpath_of(obj: Any) -> Any:
+    """The toolpath of a joint path. InputError where it was deleted, or where undo has not yet brought it back."""
+    return _linked(obj).Proxy.value(obj.Toolpath)
+
+
+def _layer_height(obj: Any) -> float:
+    """Of the toolpath, which is not read for it. InputError as `_toolpath_of`."""
+    return float(_linked(obj).Proxy.picked(obj.Toolpath, ("layer_height",))[0])
+
+
+def _known_layer_height(obj: Any) -> float:
+    """Of the toolpath, where a joint path that is drawn has one, else as high as layers mostly are."""
+    try:
+        return _layer_height(obj)
+    except InputError:
+        return RevolutionParameters().layer_height
+
+
+def _of_machine(obj: Any, seen: Seen, kind: str) -> Array:
+    """(n,) the smallest share left to a limit, or the largest share used of a joint speed, of all rows. InputError of the
+    machine."""
+    if obj.Cell is None:
+        raise InputError("NO_INPUT", obj.Label, "its cell is gone")
+    machine = machines.load(obj.Cell.Machine, tuple(user_machines.folders()))
+    joints, limits = seen.course.joints, machine.limits(seen.limits)
+    if joints.shape[1] != limits.axes:
+        raise InputError("BAD_INPUT", obj.Label, f"{machine.title} has other axes than the joint path")
+    if kind == MARGIN:
+        return limits.smallest_share(joints)
+    motion = seen.read().motion
+    return from_next(motion.deposit, motion.point, speed_ratios(joints, motion.duration, machine.max_speed).max(axis=1))

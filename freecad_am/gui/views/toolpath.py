@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The toolpath in the 3D view: beads coloured by layer or by what else is chosen, build directions on demand."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ...core.parameters.process import ProcessParameters
+from ...core.parameters.strategy import SurfaceParameters
+from ...objects.toolpath import features_of
+from ..nodes.lines import Array
+from ..path.colouring import KINDS, Scale, coloured
+from ..path.path_view import OPTIONS, PathView
+from ..path.rows import Rows
+
+
+class ToolpathView(PathView):
+    """Draws the beads from blue at the least to yellow at the most; a single bead is coloured along its way."""
+
+    icon = "toolpath"
+    options: ClassVar[dict[str, tuple[str, Any, str]]] = {
+        "Colouring": ("App::PropertyEnumeration", KINDS, "What the colours of the beads tell."), **OPTIONS,
+    }
+    source_hidden = True
+
+    def __init__(self, vobj: Any) -> None:
+        super().__init__(vobj)
+        self.source_hidden = False
+
+    def rows_of(self, obj: Any, value: Any) -> Rows:
+        places = list(value)
+        beads, layers = [bead for _, _, bead in places], [layer for layer, _, _ in places]
+        return Rows.of(beads, layers, width_of(obj), lambda: value.layer_height)
+
+    def draw(self, obj: Any, value: Any) -> None:
+        super().draw(obj, value)
+        if not self.source_hidden:  # a new path lies in the surface of its shape, and its start in that of a wall
+            self.source_hidden = True
+            for feature in features_of(obj):
+                for source in (feature.Source[0], *getattr(feature, "Further", ())):
+                    source.ViewObject.Visibility = False
+                if hasattr(feature, "Substrate"):
+                    feature.ViewObject.Visibility = False
+        if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):
+            obj.Cell.ViewObject.Proxy.refresh()
+
+    def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
+        return coloured(obj.Proxy.value(obj), kind, band_of(obj))
+
+    def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
+        return (band_of(obj),)
+
+
+def band_of(obj: Any) -> float:
+    """By how much of a layer height the distance of layers may differ, of a toolpath's feature."""
+    return float(getattr(obj.Feature, "Band", 100.0 * SurfaceParameters().band)) / 100.0
+
+
+def width_of(obj: Any) -> float:
+    """The width, mm, of a toolpath's beads that know none: as far as neighbours are apart, else as it is reported."""
+    spacing = getattr(obj.Feature, "BeadSpacing", None)
+    return float((obj.BeadWidth if spacing is None else spacing).Value) or ProcessParameters().bead_width

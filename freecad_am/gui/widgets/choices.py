@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Lists to choose from that show words where job files, macros and documents hold keys: 'along the wall' for arc-length,
+the full name of a machine for its id."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ...core.kinematics import machine
+from ...objects import user_machines
+from ..texts.translation import marked, tr, translated
+
+FEWEST_LETTERS = 8  # a list may be as narrow: panels are
+WORDS = {  # of keys that are no words by themselves; `tr` gives them in the language of the window
+    "part-on-robot": marked("part on robot"),
+    "tool-on-robot": marked("tool on robot"),
+    "rotary-table": marked("five-axis machine"),
+    "tool-on-robot+positioner": marked("tool on the robot, part on a positioner"),
+    "arc-length": marked("along the wall"),
+    "iso-height": marked("along the axis"),
+    "constant-distance": marked("constant distance"),
+    "iso-parameter": marked("lines of the surface"),
+    "geodesic": marked("through the part, without support"),
+    "offset": marked("parallel to where it stands"),
+    "along": marked("normal to a guide curve"),
+    "around-axis": marked("around the axis"),
+    "symmetry-plane": marked("plane of symmetry"),
+    "bead_width": marked("bead width"),
+    "layer-by-layer": marked("layer by layer"),
+    "point-by-point": marked("point by point"),
+    "rz": marked("RZ of the paper"),
+    "limits-liegeois": marked("joint limits (Liégeois)"),
+    "limits-fournier": marked("joint limits (Fournier)"),
+    "limits-klein": marked("joint limits (Klein)"),
+    "um": marked("µm"),
+}
+SIDES = {"front": marked("front"), "back": marked("back"), "up": marked("up"), "down": marked("down"),
+         "flip": marked("flip"), "noflip": marked("no flip")}
+
+
+def worded(key: str) -> str:
+    """What the window calls a key that may be chosen."""
+    parts = key.split("-")
+    if len(parts) == 3 and set(parts) <= set(SIDES):
+        return ", ".join(tr(SIDES[part]) for part in parts)
+    return tr(WORDS[key]) if key in WORDS else translated(key)
+
+
+def machines() -> list[tuple[str, str]]:
+    """Id and full name of each machine; two of one name are told apart by their ids."""
+    known = machine.known(user_machines.folders())
+    names = [name for _, name in known]
+    return [
+        (one, one if name.startswith(machine.REFUSED) else f"{name} ({one})" if names.count(name) > 1 else name)
+        for one, name in known
+    ]
+
+
+def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
+    """Fill a list with keys and what is shown of them; it opens as wide as its longest entry."""
+    for key, text in pairs:
+        combo.addItem(text, key)
+        combo.setItemData(combo.count() - 1, text, QtCore.Qt.ToolTipRole)
+    shrink(combo)
+    combo.view().setMinimumWidth(combo.view().sizeHintForColumn(0) + combo.view().verticalScrollBar().sizeHint().width())
+
+
+def entered(combo: Any) -> str:
+    """The key of what a list that can be typed into shows; what was typed where that is no entry."""
+    text = str(combo.currentText()).strip()
+    at = next((row for row in range(combo.count()) if combo.itemText(row) == text), -1)
+    return str(combo.itemData(at) or text) if at >= 0 else text
+
+
+def enter(combo: Any, key: str) -> None:
+    """Show a key in a list that can be typed into, in words where it has any."""
+    at = combo.findData(key)
+    combo.setEditText(combo.itemText(at) if at >= 0 else key)
+    combo.lineEdit().setCursorPosition(0)
+
+
+def shrink(combo: Any) -> None:
+    """Let a list be narrower than its longest text: the panel is narrow."""
+    combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
+    combo.setMinimumContentsLength(FEWEST_LETTERS)

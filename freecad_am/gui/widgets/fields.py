@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One widget per parameter, made from its row: what is shown, and what was typed in outer units."""
+
+from __future__ import annotations
+
+import contextlib
+import html
+import re
+from collections.abc import Callable
+from typing import Any
+
+from PySide import QtGui
+
+from ...core.issues import InputError
+from ...core.parameters import field as f
+from ...objects import preferences
+from ...objects.expressions import FOLLOW, is_expression
+from ...objects.rows import LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, split
+from ..texts.translation import tr, translated
+from . import choices
+from .quantity import PlainQuantity, QuantityField
+
+_QUANTITIES = (f.LENGTH, f.ANGLE, f.SPEED, f.TIME)
+_NUMBERS = (*_QUANTITIES, f.TURN_RATE, f.NUMBER, f.RATIO)
+_POSE_UNITS = ("mm", "mm", "mm", "deg", "deg", "deg")
+_POSE_NAMES = ("X", "Y", "Z", "RX", "RY", "RZ")
+_PLAIN = re.compile(r"[-+]?(?:\d+|\d*\.\d+)(?:[eE][-+]?\d+)?")
+Texts = Callable[[], list[tuple[str, str]]]
+_LARGEST = 2_147_483_647
+LEAST_MM = 1e-3  # FreeCAD shows shorter lengths in nm
+
+
+class Field:
+    """A widget, how to read it, and how to show another outer value in it where a panel does. `value` raises InputError
+    naming the field for what cannot be read; it is a text that starts with `=` for an expression."""
+
+    def __init__(
+        self, row: Row, widget: Any, read: Callable[[], Any], show: Callable[[Any], None] | None = None
+    ) -> None:
+        self.row = row
+        self.widget = widget
+        self.read = read
+        self._show = show
+        self.label = translated(row.label)
+        self.shown = read()
+        widget.setObjectName(row.name)
+        widget.setToolTip(translated(row.spec.help))
+
+    @property
+    def value(self) -> Any:
+        """What the widget holds, in outer units as a macro passes it."""
+        return self.read()
+
+    def show(self, value: Any) -> None:
+        """Show another value, in outer units, in place of what is there."""
+        if self._show is None:
+            raise NotImplementedError(f"no panel shows another value in {self.row.name} yet")
+        self._show(value)
+
+    @property
+    def changed(self) -> bool:
+        """True when it holds something else than at first, or than what was applied last."""
+        return bool(self.read() != self.shown)
+
+    def differs_from(self, value: Any) -> None:
+        """What it holds differs from this inner value, which a stage would have without it."""
+        self.shown = self.row.outer(value)
+
+    def applied(self) -> None:
+        """What it holds is what the document has now."""
+        self.shown = self.read()
+
+    @property
+    def heading(self) -> str:
+        """Its label, with the unit where what is shown has none."""
+        shown = self.row.form in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
+        unit = self.row.spec.unit or ("" if shown else self.row.unit)
+        return f"{self.label} ({unit})" if unit else self.label
+
+
+def make(
+    row: Row, value: Any, suggestions: Texts | None = None, expression: str = "", section: str = ""
+) -> Field:
+    """The field of a row that shows an inner value, or the expression it follows; `suggestions`: texts to choose from, and
+    what is shown of each. The section, of a job file, is for its help."""
+    field = _make(row, value, suggestions, expression)
+    for widget in (field.widget, *field.widget.findChildren(QtGui.QWidget)):
+        with contextlib.suppress(RuntimeError):  # a dead one, found at the same place in memory (docs/versions.md)
+            widget.setWhatsThis(whats_this(row, section))
+    return field
+
+
+def whats_this(row: Row, section: str) -> str:
+    """The help of a field: what it is, what it may be, what it is by default, and its name in jobs and macros."""
+    spec, default = row.spec, row.text(row.default)
+    unit = row.unit if row.form in (f.RATIO, f.TURN_RATE) else ""
+    lines = [translated(spec.help)]
+    if spec.choices or spec.words:
+        lines.append(tr("Words: {}.").format(", ".join((*spec.choices, *spec.words))))
+    allowed = f.range_text(spec) if spec.low is not None or spec.high is not None else ""
+    if allowed:
+        lines.append(tr("Allowed: {}.").format(translated(allowed)))
+    if row.form in FOLLOW:
+        lines.append(tr("It may follow an expression: {}.").format("=Spreadsheet.height / 2"))
+    if default:
+        lines.append(tr("By default: {}.").format(f"{default} {unit}".strip() if unit not in default else default))
+    job = ".".join(map(str, (section, *row.path))) if section else ""
+    lines.append(tr("In a job file: {}; in macros: {}.").format(job, row.key))
+    return "<b>{}</b><p>{}</p>".format(translated(row.label), "<br>".join(map(html.escape, lines)))
+
+
+def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> Field:
+    shown = row.outer(value)
+    if row.form == f.POSE:
+        return _pose(row, shown)
+    if row.form == f.SPEED:
+        return _speed(row, shown, expression)
+    if row.form in _QUANTITIES:
+        made = PlainQuantity if row.form == f.LENGTH and 0.0 < abs(shown) < LEAST_MM else QuantityField
+        quantity = made(shown, row.unit, row.label, expression)
+        return Field(row, quantity.box, quantity.read, quantity.show)
+    if row.form == f.CHOICE:
+        return _choice(row, shown)
+    if row.form == f.FLAG:
+        check = QtGui.QCheckBox()
+        check.setChecked(shown)
+        return Field(row, check, check.isChecked)
+    if row.form == f.COUNT:
+        spin = QtGui.QSpinBox()
+        spin.setRange(-_LARGEST, _LARGEST)  # what is out of range is told by the core, not cut off here
+        spin.setValue(shown)
+        return Field(row, spin, spin.value) if not expression else _text(row, value, expression)
+    if suggestions is not None:
+        return _suggested(row, shown, suggestions())
+    return _text(row, value, expression)
+
+
+def _speed(row: Row, shown: float, expression: str) -> Field:
+    """A speed in the unit that the user prefers; what is read is in mm/s all the same."""
+    unit = preferences.speed_unit()
+    factor = preferences.SPEED_UNITS[unit]
+    made = QuantityField if factor == 1.0 else PlainQuantity
+    quantity = made(round(shown * factor, 9), unit, row.label, expression)
+    if isinstance(quantity.box, QtGui.QAbstractSpinBox):
+        quantity.box.setButtonSymbols(QtGui.QAbstractSpinBox.NoButtons)  # room for "100 mm/s" in a narrow panel
+
+    def read() -> float | str:
+        value = quantity.read()
+        return value if isinstance(value, str) else round(value / factor, 9)
+
+    return Field(row, quantity.box, read, lambda value: quantity.show(round(value * factor, 9)))
+
+
+def _text(row: Row, value: Any, expression: str = "") -> Field:
+    edit = QtGui.QLineEdit()
+    if row.form == TEXT_LIST:
+        edit.setText(_with_point(" ".join(value), ".", _point(edit)))
+        return Field(row, edit, lambda: tuple(split(_with_point(str(edit.text()), _point(edit), "."), row.label)))
+    numeric = row.spec.kind in (*_NUMBERS, f.POSE)
+    text = row.text(value) if row.form in (MIXED, LENGTH_OR_POSE) else f"{row.outer(value)}"
+    edit.setText(_with_point(text, ".", _point(edit)) if numeric else text)
+    wanted = ([tr("a quantity in {}").format(row.unit)] if row.unit else []) + list(row.spec.words)
+    if wanted or row.spec.optional:
+        words = tr(" or ").join(wanted)
+        edit.setPlaceholderText(tr("{} (empty: none)").format(words).strip() if row.spec.optional else words)
+    if expression:
+        edit.setText(expression)
+
+    def entered() -> str:
+        entry = str(edit.text()).strip()
+        return _with_point(entry, _point(edit), ".") if numeric else entry
+
+    if row.form == f.NUMBER:
+        return Field(row, edit, lambda: _number(entered(), row.label))
+    return Field(row, edit, entered)
+
+
+def _point(edit: Any) -> str:
+    """What decimals begin with in the language of the window."""
+    return str(edit.locale().decimalPoint())
+
+
+def _with_point(text: str, old: str, new: str) -> str:
+    """A text of one number, with its unit or without, or of several with nothing but blanks between, with another decimal
+    point; any other text as it is."""
+    numbers = re.split(r"[ \t]+", text.strip())  # no-break blanks stand within a number
+    if len(numbers) > 1 and all(_PLAIN.fullmatch(number.replace(old, ".")) for number in numbers):
+        return " ".join(number.replace(old, new) for number in numbers)
+    return re.sub(rf"^([-+]?\d*){re.escape(old)}(\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s.,].*)?)$", rf"\g<1>{new}\2", text)
+
+
+def _number(text: str, name: str) -> float | str:
+    if is_expression(text):
+        return text.strip()
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError("BAD_VALUE", name, f"{text!r} is not a number; give one such as 0.1") from None
+
+
+def _choice(row: Row, shown: str) -> Field:
+    combo = QtGui.QComboBox()
+    for choice in row.spec.choices:  # a job file and a macro have the word itself
+        combo.addItem(choices.worded(choice), choice)
+    choices.shrink(combo)
+    combo.setCurrentIndex(row.spec.choices.index(shown))
+    return Field(row, combo, combo.currentData)
+
+
+def _suggested(row: Row, shown: str, texts: list[tuple[str, str]]) -> Field:
+    combo = QtGui.QComboBox()
+    combo.setEditable(True)
+    choices.offer(combo, texts)
+    choices.enter(combo, shown)
+    return Field(row, combo, lambda: choices.entered(combo), lambda value: choices.enter(combo, value))
+
+
+def _pose(row: Row, shown: tuple[float, ...]) -> Field:
+    widget = QtGui.QWidget()
+    grid = QtGui.QGridLayout(widget)
+    grid.setContentsMargins(12, 0, 0, 0)
+    grid.setColumnStretch(1, 1)
+    quantities = []
+    for index, (number, unit, name) in enumerate(zip(shown, _POSE_UNITS, _POSE_NAMES, strict=True)):
+        quantity = QuantityField(number, unit, f"{row.label} {name}")
+        quantity.box.setObjectName(f"{row.name}{name}")
+        quantity.box.setToolTip(tr("{}: {}").format(name, translated(row.spec.help)))
+        grid.addWidget(QtGui.QLabel(name), index, 0)
+        grid.addWidget(quantity.box, index, 1)
+        quantities.append(quantity)
+
+    def show(numbers: tuple[float, ...]) -> None:
+        for quantity, number in zip(quantities, numbers, strict=True):
+            quantity.show(number)
+
+    return Field(row, widget, lambda: tuple(quantity.read() for quantity in quantities), show)

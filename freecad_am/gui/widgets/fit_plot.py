@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The fit of a bead model: drawn, and in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from PySide import QtCore
+
+from ...core.process.bead_model import MINUTE, BeadModel
+from ...core.process.bead_table import Measured
+from ...plots.chart import Picture
+from ...plots.fit import fit
+from ..plots.canvas import Canvas
+from ..plots.words import in_words
+from ..texts.translation import tr
+
+HEIGHT = 210
+
+
+class FitPlot(Canvas):
+    """Width over travel speed, a curve per radius beside what was measured."""
+
+    def __init__(self) -> None:
+        super().__init__(interactive=False)
+        self.setObjectName("BeadModelPlot")
+        self.setMinimumHeight(HEIGHT)
+
+    def set(self, measured: Measured, model: BeadModel, wanted: float | None) -> None:
+        """Show another fit; `wanted` is a width drawn across, mm."""
+        self.show_picture(in_words(Picture("fit", "", (fit(measured, model, wanted),))))
+
+    def sizeHint(self) -> Any:
+        """Called by Qt."""
+        return QtCore.QSize(240, HEIGHT)
+
+
+def told(measured: Measured, model: BeadModel) -> str:
+    """The fits in words."""
+    lines = []
+    for name, found in ((tr("Width"), model.width), (tr("Height"), model.height)):
+        lines.append(
+            f"{name} = {found.m:.4g} v^(-1/3) {_signed(found.p)}/r {_signed(found.t)} mm, "
+            + tr("v in mm/min; R² {:.4f}, RMSE {:.3f} mm").format(found.r_squared, found.rmse)
+        )
+    slow, fast = (MINUTE * speed for speed in model.speeds)
+    lines.append(
+        tr("{} beads, {:g} to {:g} mm/min, r {:g} to {:g} mm, wire {:g} m/min").format(
+            len(measured.width), slow, fast, model.radii[0], model.radii[1], MINUTE * model.wire_feed / 1000.0
+        )
+    )
+    return "\n".join(lines)
+
+
+def speeds_told(model: BeadModel, width: float) -> str:
+    """What speeds a width asks for, and whether the table has such."""
+    asked = model.speed_for(width, np.array([model.radii[0], np.inf]))
+    ends = np.select(
+        [asked.too_slow, asked.too_fast],
+        [tr("{} mm/min (the slowest of the table)"), tr("{} mm/min (the fastest of the table)")], "{} mm/min",
+    )
+    tight, straight = (str(end).format(f"{MINUTE * speed:.0f}") for speed, end in zip(asked.speed, ends, strict=True))
+    return tr("{:g} mm wide: {} where straight, {} where r is {:g} mm").format(width, straight, tight, model.radii[0])
+
+
+def _signed(number: float) -> str:
+    return f"{'+' if number >= 0.0 else '−'} {abs(number):.4g}"

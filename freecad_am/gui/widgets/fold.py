@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A part of a panel that can be folded away."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+from PySide import QtCore, QtGui
+
+from ..colours import WRONG
+
+WIDEST_LABEL = 96  # pixels; longer ones go on below
+LONGEST_ROW = 2  # fields beside a label; more go below it
+WIDEST_CHOICE = 84  # pixels of the texts of a choice beside its label; longer ones go below it
+
+
+class Note(QtGui.QLabel):
+    """A text that has room for all its lines; a form cuts off the last ones of other labels where it is narrow. Its place
+    stays once it was there: a field that is put right would else move those below it as the next one is being clicked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setWordWrap(True)
+        self.tallest = 0  # pixels that it took so far
+
+    def minimumSizeHint(self) -> Any:
+        """Called by Qt."""
+        hint = super().minimumSizeHint()
+        return QtCore.QSize(hint.width(), max(hint.height(), self.heightForWidth(self.width())))
+
+    def heightForWidth(self, width: int) -> int:
+        """Called by Qt."""
+        return max(super().heightForWidth(width), self.tallest)
+
+    def showEvent(self, event: Any) -> None:
+        """Called by Qt: from now on it takes its place."""
+        super().showEvent(event)
+        policy = self.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        self.setSizePolicy(policy)
+
+    def resizeEvent(self, event: Any) -> None:
+        """Called by Qt: another width may take more lines, or fewer."""
+        super().resizeEvent(event)
+        self.tallest = max(self.tallest, event.size().height()) if event.oldSize().width() == event.size().width() else 0
+        if event.oldSize().width() != event.size().width():
+            QtCore.QTimer.singleShot(0, self._renew)  # the layout that gives it the width would overlook it
+
+    def _renew(self) -> None:
+        with contextlib.suppress(RuntimeError):  # the panel is closed
+            self.updateGeometry()
+
+
+class Fold:
+    """A heading with an arrow, and under it a form that it folds and unfolds."""
+
+    def __init__(self, title: str, unfolded: bool) -> None:
+        self.widget = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(self.widget)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.setSpacing(2)
+        self.heading = QtGui.QToolButton()
+        self.heading.setObjectName(f"Fold{title.replace(' ', '')}")
+        self.heading.setText(title)
+        self.heading.setCheckable(True)
+        self.heading.setAutoRaise(True)
+        self.heading.setToolButtonStyle(QtCore.Qt.ToolButtonTextBesideIcon)
+        self.heading.setStyleSheet("QToolButton { font-weight: bold; border: none; }")
+        self.body = QtGui.QWidget()
+        self.form = QtGui.QFormLayout(self.body)
+        self.form.setContentsMargins(4, 0, 0, 4)
+        self.form.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
+        self.form.setRowWrapPolicy(QtGui.QFormLayout.DontWrapRows)
+        self.rows: dict[str, tuple[Any, Any]] = {}  # label, and what holds the field and its note, by the field's name
+        column.addWidget(self.heading)
+        column.addWidget(self.body)
+        self.heading.toggled.connect(self._show)
+        self.heading.setChecked(unfolded)
+        self._show(unfolded)
+
+    def add(self, label: str, widget: Any) -> Any:
+        """A row of the form. Returns the note under the widget, hidden, for what is wrong with it."""
+        name = QtGui.QLabel(label)
+        name.setToolTip(widget.toolTip())
+        for one in (widget, *widget.findChildren(QtGui.QWidget), name):
+            if not one.whatsThis():
+                one.setWhatsThis(widget.whatsThis() or one.toolTip() or widget.toolTip())
+        note = Note()
+        note.setObjectName(f"{widget.objectName()}Note")
+        note.setStyleSheet(f"QLabel {{ color: {WRONG}; }}")
+        note.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        note.hide()
+        both = QtGui.QWidget()
+        column = QtGui.QVBoxLayout(both)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(1)
+        column.addWidget(widget)
+        column.addWidget(note)
+        if _is_long(widget):
+            self.form.addRow(name)
+            self.form.addRow(both)
+        else:
+            if name.sizeHint().width() > WIDEST_LABEL:
+                name.setWordWrap(True)
+                name.setFixedWidth(WIDEST_LABEL)
+            self.form.addRow(name, both)
+        self.rows[widget.objectName()] = (name, both)
+        return note
+
+    def enable(self, widget: Any, on: bool) -> None:
+        """Make a field and its label work, or grey them."""
+        widget.setEnabled(on)
+        self.rows[widget.objectName()][0].setEnabled(on)
+
+    def show(self, widget: Any, on: bool) -> None:
+        """Show the row of a field, or leave it out; a part of the panel that has no row left goes as a whole."""
+        for one in self.rows[widget.objectName()]:
+            one.setVisible(on)
+        self.widget.setVisible(any(not name.isHidden() for name, _ in self.rows.values()))
+
+    def add_below(self, widget: Any, more: Any) -> None:
+        """A row of the whole width right below that of a field."""
+        both = self.rows[widget.objectName()][1]
+        items = ((row, self.form.itemAt(row, QtGui.QFormLayout.FieldRole)) for row in range(self.form.rowCount()))
+        self.form.insertRow(next(row for row, item in items if item is not None and item.widget() is both) + 1, more)
+
+    def _show(self, unfolded: bool) -> None:
+        self.body.setVisible(unfolded)
+        self.heading.setArrowType(QtCore.Qt.DownArrow if unfolded else QtCore.Qt.RightArrow)
+
+
+def _is_long(widget: Any) -> bool:
+    """Whether a field needs the width of the panel to be read: of several fields, or a choice of long texts."""
+    if isinstance(widget, QtGui.QComboBox):
+        measure = widget.fontMetrics().boundingRect
+        return any(measure(widget.itemText(row)).width() > WIDEST_CHOICE for row in range(widget.count()))
+    return widget.layout() is not None and widget.layout().count() > LONGEST_ROW

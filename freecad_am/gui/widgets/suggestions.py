@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Texts to choose from for parameters whose words are known only at run time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...core.issues import InputError
+from ...core.kinematics import machine
+from ...core.kinematics.cell import PART_ON_ROBOT, ROTARY_TABLE
+from ...core.parameters.program import ProgramParameters
+from ...core.planning.program import written_by
+from ...core.process import bead_table
+from ...objects import preferences, user_machines
+from ...posts import catalogue
+from ..texts.translation import tr
+from .choices import machines
+
+NO_POST = "none"
+
+
+def of(section: str, key: str) -> Callable[[], list[tuple[str, str]]] | None:
+    """A function that lists the texts for a parameter and what is shown of each, None where anything goes."""
+    texts = _texts_of(section, key)
+    if (section, key) == ("cell", "machine"):
+        return machines
+    return None if texts is None else lambda: [(text, text) for text in texts()]
+
+
+def _texts_of(section: str, key: str) -> Callable[[], list[str]] | None:
+    return {
+        ("cell", "limits"): lambda: ["maker", "paper"],
+        ("cell", "branch"): _branches,
+        ("program", "post"): lambda: [*catalogue.NAMES, NO_POST],
+        ("process", "bead_model"): lambda: ["none", *bead_table.BUILT_IN],
+    }.get((section, key))
+
+
+def _branches() -> list[str]:
+    sides = [(a, b, c) for a in ("front", "back") for b in ("up", "down") for c in ("flip", "noflip")]
+    return ["auto", *(" ".join(words) for words in sides)]
+
+
+def no_post(name: str) -> str:
+    """What to say of a machine that no post writes a new job for; '' for others, and for one that cannot be read."""
+    try:
+        told = machine.load(name, user_machines.folders())
+    except InputError:
+        return ""
+    posts, setup = written_by(told), ROTARY_TABLE if told.is_table else PART_ON_ROBOT
+    if posts is None or catalogue.fitting(posts, ProgramParameters().motion, setup):
+        return ""
+    if posts:
+        return tr("Programs for this machine's controller need the tool on the robot and cartesian motion. A new job is "
+                  "planned, checked and simulated, but no program is written with it.")
+    if told.posts:
+        return tr("Programs for this machine need what only its controller tells, its pulses per degree, in a machine file "
+                  "of your own. All is planned, checked and simulated without; Export Path… writes its points as a table.")
+    return tr("There is no post for this machine's controller yet: all is planned, checked and simulated, but no program is "
+              "written. Export Path… writes its points as a table.")
+
+
+def post_for(path: Any) -> str:
+    """The post for the machine of a joint path, `none` where nothing writes for its controller; '' where the one by default
+    will do, or the machine says nothing."""
+    if path is None or path.Cell is None:
+        return ""
+    try:
+        posts = written_by(machine.load(path.Cell.Machine, user_machines.folders()))
+    except InputError:
+        return ""
+    wanted = preferences.post() or ProgramParameters().post
+    if posts is None or wanted in posts:
+        return ""
+    fit = catalogue.fitting(posts, ProgramParameters().motion, path.Cell.Setup)
+    return next(iter(fit), NO_POST)

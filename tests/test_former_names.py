@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Documents of earlier versions name classes where these no longer are, and get those of now."""
+
+import ast
+import importlib
+import sys
+from pathlib import Path
+
+import pytest
+
+from freecad_am.gui import former_names
+
+ROOT = Path(__file__).resolve().parent.parent
+SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the window moved into folders
+    "view_cell": {"CellView"}, "view_cladding": {"CladdingView"}, "view_curves": {"CurvesView"},
+    "view_feature": {"FeatureView"},
+    "view_hub": {"HubView", "SolidView"}, "view_job": {"JobView"}, "view_joint_path": {"JointPathView"},
+    "view_program": {"ProgramView"}, "view_toolpath": {"ToolpathView"}, "inspection.view": {"InspectionView"},
+}
+
+
+@pytest.mark.parametrize("module", SAVED)
+def test_classes_that_documents_name_are_where_they_are_looked_for(module):
+    name = f"freecad_am.gui.{module}"
+    path = ROOT / (former_names.MOVED.get(name, name).replace(".", "/") + ".py")
+    there = {node.name for node in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(node, ast.ClassDef)}
+    assert there >= SAVED[module]
+
+
+def test_a_former_name_has_the_class_itself(monkeypatch):
+    monkeypatch.setattr(sys, "meta_path", [*sys.meta_path])
+    monkeypatch.setitem(former_names.MOVED, "freecad_am.gui.view_old", "fractions")
+    former_names.install()
+    old = importlib.import_module("freecad_am.gui.view_old")
+    monkeypatch.delitem(sys.modules, "freecad_am.gui.view_old")
+    assert old.Fraction is importlib.import_module("fractions").Fraction and old.__spec__.name == "freecad_am.gui.view_old"
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module("freecad_am.gui.view_of_nothing")
