@@ -38,12 +38,23 @@ def test_version_is_that_of_the_project_and_of_the_changelog(package):
     assert f"## [{version}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
-def test_urls(package):
-    urls = {node.get("type"): node for node in package.findall(f"{NAMESPACE}url")}
-    assert {"repository", "readme", "bugtracker"} <= set(urls)
-    assert urls["repository"].get("branch")
-    assert all(node.text.startswith("https://") for node in urls.values())
-    assert urls["readme"].text.endswith("README.md")
+def test_no_address_is_promised_that_is_not_there(package):
+    """There is no repository in public yet: nothing leads to one. Once there is, package.xml alone names it."""
+    assert package.findall(f"{NAMESPACE}url") == []
+    owns = re.compile(r"(?:github|gitlab|codeberg)[\w./-]*/(?:freecad-am|robotic-?am)", re.IGNORECASE)
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "freecad_am").rglob("*.py"), ROOT / "freecad-am"]
+    assert [path.name for path in pages if owns.search(path.read_text(encoding="utf-8"))] == []
+
+
+def test_dependencies_are_those_of_the_window(package):
+    """numpy and scipy of every job; shapely of solids and matplotlib of plots, which tell when they miss it. PyYAML is
+    of commands alone, which the Addon Manager does not install."""
+    workbench, = package.findall(f"{NAMESPACE}content/{NAMESPACE}workbench")
+    depends = {node.text: node.get("optional") == "true" for node in workbench.findall(f"{NAMESPACE}depend")}
+    assert depends == {"numpy": False, "scipy": False, "shapely": True, "matplotlib": True}
+    assert {node.get("type") for node in workbench.findall(f"{NAMESPACE}depend")} == {"python"}
+    launcher = (ROOT / "freecad-am").read_text(encoding="utf-8")
+    assert all(f"python3-{name}" in launcher for name in depends)
 
 
 def test_files_named_exist(package):
