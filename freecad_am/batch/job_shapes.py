@@ -13,6 +13,7 @@ from freecad_am.brep.chosen import owners_of
 from freecad_am.brep.overlap import touching
 from freecad_am.core.issues import NOTE, InputError, Issue
 from freecad_am.core.strategies.families import NONE, family_of
+from freecad_am.objects.shapes import taken
 
 from .job import Job
 from .job_features import about_feature, chosen, stacking
@@ -49,8 +50,7 @@ class Shapes:
         """Choose the family where the job leaves it open; a note that says what and why. Raises InputError."""
         if self.of.sections is None:
             return None
-        from freecad_am.objects.proposed_family import proposed
-        from freecad_am.objects.shapes import taken
+        from freecad_am.objects.proposed_family import proposed  # what it imports takes long
 
         ground = next(iter(self._touched(earlier)), None) if self.substrate is None else self.substrate
         try:
