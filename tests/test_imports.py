@@ -2,6 +2,8 @@
 """The table of imports of docs/architecture.md, enforced: data flows one way, hosts stay where they belong."""
 
 import ast
+import functools
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -83,28 +85,40 @@ def home(path):
     return "/".join(parts[:2]) if parts[0] == "core" else parts[0]
 
 
+@functools.cache
+def tree(path):
+    """The syntax tree of a file."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def statements(tree, typing=True):
-    """All nodes of a syntax tree, those in functions too; without `typing` none that only type checkers see."""
+    """The import statements of a syntax tree, those in functions too; without `typing` none that only type checkers see."""
     for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING") and not typing:
-            for other in node.orelse:
-                yield other
-                yield from statements(other, typing)
-        else:
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
             yield node
+        elif isinstance(node, ast.If) and not typing and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            yield from (found for other in node.orelse for found in statements(ast.Module([other], []), typing))
+        elif isinstance(node, (ast.stmt, ast.ExceptHandler, ast.match_case)):
             yield from statements(node, typing)
 
 
 def imported(path, typing=True):
     """(module, names) of every import statement of a file, ours as dotted paths below the package."""
     package = ["freecad_am", *path.relative_to(PACKAGE).parts[:-1]]
-    for node in statements(ast.parse(path.read_text(encoding="utf-8")), typing):
+    for node in statements(tree(path), typing):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name, ()
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
             yield ".".join([*base, *(node.module or "").split(".")]).strip("."), tuple(alias.name for alias in node.names)
+
+
+def named(path):
+    """(module, names) of the imports of ours in a file that is not of the package: read as text, which is quick."""
+    text = path.read_text(encoding="utf-8")
+    for module, many, one in re.findall(r"^ *from (freecad_am[\w.]*) import (?:\(([^)]*)\)|([^\n#]*))", text, re.MULTILINE):
+        yield module, tuple(name.split()[0] for name in (many or one).split(",") if name.strip())
 
 
 def ours(module, names):
@@ -170,11 +184,27 @@ def test_no_imports_run_in_a_circle():
 
 
 def test_circles_are_found():
-    tree = ast.parse("if TYPE_CHECKING:\n    import a\nelse:\n    import b\ndef f():\n    from . import c")
-    seen = [node for node in statements(tree, typing=False) if isinstance(node, (ast.Import, ast.ImportFrom))]
-    assert [node.names[0].name for node in seen] == ["b", "c"]
+    text = "if TYPE_CHECKING:\n import a\nelse:\n import b\ndef f():\n try:\n  from . import c\n except E:\n  import d"
+    seen = [node.names[0].name for node in statements(ast.parse(text), typing=False)]
+    assert seen == ["b", "c", "d"]
     assert on_circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == {"b": {"c"}, "c": {"b"}}
     assert on_circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {}
+
+
+def test_imports_lead_somewhere():
+    """Those of tests and benchmarks too, which the window alone or nobody runs."""
+    root = PACKAGE.parent
+    files = {".".join(path.relative_to(root).with_suffix("").parts) for path in PACKAGE.rglob("*.py")}
+    folders = {name.removesuffix(".__init__") for name in files if name.endswith(".__init__")}
+    others = [*root.glob("tests/**/*.py"), *root.glob("bench/**/*.py"), root / "InitGui.py", root / "Init.py"]
+    found = [(path, *one) for path in modules() for one in imported(path)]
+    found += [(path, *one) for path in others for one in named(path)]
+    wrong = []
+    for path, module, names in found:
+        if module.split(".")[0] == "freecad_am":
+            asked = [f"{module}.{name}" for name in names] if module in folders else [module]
+            wrong += [f"{path.relative_to(root)} imports {name}" for name in asked if name not in files | folders]
+    assert len(found) > 5000 and wrong == []
 
 
 def test_no_folder_of_the_window_is_crowded():
