@@ -3,19 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import Any
 
 from freecad_am.core.geometry.on_hub import SolidsOnHub
 from freecad_am.core.process.spacing import local_distances
-from freecad_am.core.strategies.wall_comparison import Compared, Refused
-from freecad_am.core.toolpath import Array, Toolpath
+from freecad_am.core.strategies.wall_comparison import Compared
+from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 
 from . import hub_figures, view, wall_figures
-from .pictures import MISSING, Pictures
+from .pictures import MISSING, OfFeature, Pictures
 
 _MOST_ISSUES = 200
 _WHOLE = (
@@ -83,13 +83,12 @@ svg .platform{fill:var(--line);stroke:var(--soft);stroke-width:.8}svg .platform-
 
 @dataclass(frozen=True)
 class Content:
-    """What the page shows besides the report itself. source: the job. spacing: of each layer, what lies below it, mm."""
+    """What the page shows besides the report itself. source: the job."""
 
     report: dict[str, Any]
     source: Source
-    spacing: tuple[Array, ...]
+    features: Sequence[OfFeature]
     platform_diameter: float | None = None
-    compared: tuple[Compared | Refused, ...] = ()
     solids: SolidsOnHub | None = None
 
     @property
@@ -113,7 +112,8 @@ def render(content: Content) -> str:
         *_joints(content, pictures),
         _process(content, pictures),
         _on_hub(content, pictures),
-        _spacings(content),
+        *(_spacings(one) for one in content.features if one.rows),
+        _spacing_motion(report),
         _comparison(report),
         _totals(report["totals"]),
         _criteria(report),
@@ -194,7 +194,7 @@ def _in_units(word: str, report: dict[str, Any]) -> str:
 
 
 def _process(content: Content, pictures: Pictures) -> str:
-    plots = pictures.process(content.spacing)
+    plots = pictures.process(content.features)
     return f"<h2>Layers and path</h2>{_grid(plots)}" if plots else ""
 
 
@@ -205,12 +205,10 @@ def _on_hub(content: Content, pictures: Pictures) -> str:
     return f"<h2>Layers laid flat</h2>{_grid(hub_figures.layer_plots(content.solids, content.toolpath) + pictures.beads())}"
 
 
-def _spacings(content: Content) -> str:
-    """What each spacing of a wall costs and gains: the paper's plots, the figures, the robot's motion."""
-    rows = content.report["spacing_comparison"]
-    if not rows:
-        return ""
-    toolpath, done = content.toolpath, [one for one in content.compared if isinstance(one, Compared)]
+def _spacings(of: OfFeature) -> str:
+    """What each spacing of a wall costs: the paper's plots and the figures."""
+    rows, toolpath = of.rows, of.toolpath
+    done = [one for one in of.compared if isinstance(one, Compared)]
     height = toolpath.layer_height
     plots = wall_figures.distance_plots(done, height) if done else []
     plots += [wall_figures.step_plot(one, height) for one in done if one.method == "constant-distance"]
@@ -224,10 +222,10 @@ def _spacings(content: Content) -> str:
     told = [(word, key) for key, word in _SPACING if any(row[key] is not None for row in cut)]
     table = _table([("", names)] + [(word, [_figure(row[key]) for row in cut]) for word, key in told])
     reasons = "".join(f'<p class="sub">{escape(row["method"] + ": " + row["reason"])}.</p>' for row in rows if row["reason"])
+    name = f": {escape(of.name)}" if of.name else ""
     return (
-        '<h2>What spacing costs</h2><p class="sub">Distance of each point to the nearest point of the layer below, around '
-        f'the wall; every curve is a layer, dark ones first.</p>{_grid(plots)}{both}{table}{reasons}'
-        f"{_spacing_motion(content.report)}"
+        f'<h2>What spacing costs{name}</h2><p class="sub">Distance of each point to the nearest point of the layer below, '
+        f'around the wall; every curve is a layer, dark ones first.</p>{_grid(plots)}{both}{table}{reasons}'
     )
 
 

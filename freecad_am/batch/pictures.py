@@ -6,10 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from types import ModuleType
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from freecad_am.core.toolpath import Array
+from freecad_am.core.strategies.wall_comparison import Compared, Refused
+from freecad_am.core.toolpath import Array, Toolpath
 from freecad_am.plots import joints, process
 from freecad_am.plots.chart import Chart, together
 from freecad_am.plots.fit import fit
@@ -19,6 +21,18 @@ from freecad_am.plots.source import Source
 
 HALF, WHOLE, TALL = 460, 940, 230  # pixels
 MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
+
+
+class OfFeature(NamedTuple):
+    """What is shown of each feature. name: empty of a single one. spacing: (points,) mm from each of its layers to what lies
+    below it; band: share of the layer height by which that may differ. compared, rows: how else its wall may be cut."""
+
+    name: str
+    toolpath: Toolpath
+    spacing: Sequence[Array]
+    band: float | None = None
+    compared: Sequence[Compared | Refused] = ()
+    rows: Sequence[dict[str, Any]] = ()
 
 
 class Pictures:
@@ -53,10 +67,13 @@ class Pictures:
         charts = (*joints.shares(self.source, self.rows), accelerations, jerks, *joints.condition(self.source, self.rows))
         return self._drawn(charts, WHOLE)
 
-    def process(self, spacing: Sequence[Array]) -> list[str]:
-        """Distances (points of layers, in mm) between layers, speed along the path, deposit rate and mass."""
+    def process(self, features: Sequence[OfFeature]) -> list[str]:
+        """Distances between the layers of each feature, speed along the path, deposit rate and mass."""
         source = self.source
-        first = [process.distances(np.concatenate(spacing), source.toolpath.layer_height, source.band)] if spacing else []
+        first = [
+            process.distances(np.concatenate(one.spacing), one.toolpath.layer_height, one.band, one.name)
+            for one in features if one.spacing
+        ]
         return self._half((*first, *process.travel(source, self.rows), *process.deposit(source, self.rows)))
 
     def beads(self) -> list[str]:

@@ -70,11 +70,12 @@ def build(
 
 
 def features(
-    of_job: Sequence[JobFeature], toolpath: Toolpath, motion: Motion, balances: Sequence[Balance | None]
+    of_job: Sequence[JobFeature], toolpath: Toolpath, motion: Motion, balances: Sequence[Balance | None],
+    compared: Sequence[list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
-    """The key `features`: what each of several features comes to."""
+    """The key `features`: what each of several features comes to. compared: of each, how else its wall may be cut."""
     found = []
-    for one, (part, numbers), balance in zip(of_job, toolpath.parts, balances, strict=True):
+    for one, (part, numbers), balance, rows_of_wall in zip(of_job, toolpath.parts, balances, compared, strict=True):
         rows = motion.deposit & np.isin(motion.layer, numbers)
         found.append({
             "name": one.name, "kind": family_of(one.strategy).kind, "layers": [int(number) for number in numbers],
@@ -82,7 +83,8 @@ def features(
             "length_mm": part.length, "layer_height_mm": part.layer_height, "bead_width_mm": part.bead_width,
             "deposit_s": float(np.nan_to_num(motion.duration)[rows & motion.moves].sum()),
             "spacing_mm": spread(layer_spacing.between_layers(part)), "unsupported_mm": part.unsupported,
-            "deposit": deposit_balance.as_dict(balance),
+            "deposit": deposit_balance.as_dict(balance), "spacing_comparison": rows_of_wall,
+            "beads": None if one.process.bead_model == "none" else predicted.beads(part, numbers),
         })
     return found
 

@@ -215,7 +215,9 @@ def _write(
         if planned is not None:
             report.add_joints(content, planned.joint_path, cell, job.joints, stages.joint_path.Seconds)
     with stages.timed("spacing_comparison", session):
-        compared = _compare_spacings(job, stages, content, toolpath, distances, planned, cell, session)
+        walls = _compared_walls(job, stages, toolpath, distances)
+        if not toolpath.features:
+            content["spacing_comparison"] = _with_motion(job, stages, walls[0], planned, cell, session)
     with stages.timed("preflight", session):
         content["preflight"] = [one.as_dict() for one in _preflight(stages, distances)]
     balances = [
@@ -224,7 +226,7 @@ def _write(
     ]
     content["deposit"] = deposit_balance.as_dict(deposit_balance.together(balances))
     if toolpath.features:
-        content["features"] = report.features(job.features, toolpath, motion, balances)
+        content["features"] = report.features(job.features, toolpath, motion, balances, [list(one.rows) for one in walls])
     content["programs"] = [f"{outputs.PROGRAMS}/{name}" for name in sorted(programs)]
     content["timing_s"] = {**stages.timing, "total": time.perf_counter() - started}
     files.write(outputs.REPORT, [report.text(content)])
@@ -233,7 +235,7 @@ def _write(
             alone = len(job.features) == 1 and family_of(job.strategy).filled
             found = api.result(stages.features[0]) if alone else None
             solids = found if isinstance(found, SolidsOnHub) else None
-            page_text = _page(job, content, toolpath, motion, distances, planned, cell, compared, solids)
+            page_text = _page(job, content, toolpath, motion, walls, planned, cell, solids)
             files.write(outputs.PAGE, [page_text])
     written = files.publish(outputs.earlier_outputs(files.folder))
     return Result([os.path.join(files.folder, name) for name in written], content, 0 if content["status"] == "ok" else 3)
@@ -246,46 +248,56 @@ def _preflight(stages: Stages, distances: Any) -> Any:
     return preflight.of_stages(stages.toolpath, stages.joint_path, stages.program, distances)
 
 
-def _compare_spacings(
-    job: Job, stages: Stages, content: dict[str, Any], toolpath: Any, distances: Any, planned: Any, cell: Any, session: Any
-) -> Any:
-    """Fill in what other spacings of a wall would be, nothing for other families; what the page draws of them."""
-    if len(job.features) > 1 or family_of(job.strategy).kind != "surface":
-        content["spacing_comparison"] = []
-        return ()
+def _compared_walls(job: Job, stages: Stages, toolpath: Any, distances: Any) -> list[Any]:
+    """Of each feature what the page shows, with what other spacings of a wall would be: nothing for other families.
+    distances: between all layers."""
+    from freecad_am import api
+    from freecad_am.core.process import spacing
+
+    from . import spacing_comparison
+    from .pictures import OfFeature
+
+    found = []
+    for feature, one, (part, _) in zip(stages.features, job.features, toolpath.parts, strict=True):
+        apart = spacing.between_layers(part) if toolpath.features else distances
+        shown = OfFeature(one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None))
+        if family_of(one.strategy).kind == "surface":
+            compared = spacing_comparison.compare(api.result(feature), one)
+            shown = shown._replace(compared=compared, rows=spacing_comparison.rows(compared, one, part, apart))
+        found.append(shown)
+    return found
+
+
+def _with_motion(job: Job, stages: Stages, wall: Any, planned: Any, cell: Any, session: Any) -> list[dict[str, Any]]:
+    """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
     from freecad_am import api
 
     from . import spacing_comparison
 
-    wall = api.result(stages.features[0])
-    compared = spacing_comparison.compare(wall, job)
-    rows = spacing_comparison.rows(compared, job, toolpath, distances)
+    rows: list[dict[str, Any]] = list(wall.rows)
     if rows and planned is not None:
         rows[0]["motion"] = spacing_comparison.motion_of(planned.joint_path, planned.motion, cell, job.joints)
-        others = spacing_comparison.motions(wall, job, session)
+        others = spacing_comparison.motions(api.result(stages.features[0]), job, session)
         for row in rows[1:]:
             found = others.get(row["method"])
             row["reason" if isinstance(found, str) else "motion"] = found or row["motion"]
-    content["spacing_comparison"] = rows
-    return compared
+    return rows
 
 
 def _page(
-    job: Job, content: dict[str, Any], toolpath: Any, motion: Any, distances: Any, planned: Any, cell: Any, compared: Any,
-    solids: Any,
+    job: Job, content: dict[str, Any], toolpath: Any, motion: Any, walls: Sequence[Any], planned: Any, cell: Any, solids: Any
 ) -> str:
     from freecad_am.core.simulation.margins import on_deposit
     from freecad_am.plots.source import Source
 
     from . import page
 
-    band = getattr(job.strategy, "band", None) if len(job.features) == 1 else None
-    source = Source(toolpath, motion, job.process, band=band)
+    source = Source(toolpath, motion, job.process)
     if planned is not None:
         condition, threshold = (on_deposit(motion.deposit, column) for column in planned.joint_path.judged(motion))
-        source = Source(toolpath, motion, job.process, cell, condition, threshold, band)
+        source = Source(toolpath, motion, job.process, cell, condition, threshold)
     platform = job.cell.platform_diameter if job.cell else None
-    return page.render(page.Content(content, source, distances, platform, compared, solids))
+    return page.render(page.Content(content, source, walls, platform, solids))
 
 
 def _save(document: Any, path: str) -> None:

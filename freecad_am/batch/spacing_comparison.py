@@ -28,6 +28,7 @@ from freecad_am.objects.planned import Given, planned
 
 from . import report
 from .job import Job
+from .job_features import JobFeature
 
 _MOTION = (
     "condition_min", "range_per_layer_max_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3",
@@ -43,21 +44,21 @@ _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut
 }
 
 
-def compare(wall: Any, job: Job) -> tuple[Compared | Refused, ...]:
-    """The wall of a job cut by every method; walls without one closed parameter by none."""
+def compare(wall: Any, of: Job | JobFeature) -> tuple[Compared | Refused, ...]:
+    """The wall of a job or feature cut by every method; walls without one closed parameter by none."""
     if isinstance(wall, SurfaceWall):
-        return wall_comparison.compare(wall, job.strategy)
-    return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != job.strategy.spacing)
+        return wall_comparison.compare(wall, of.strategy)
+    return tuple(Refused(method, _REASONS[method]) for method in METHODS if method != of.strategy.spacing)
 
 
 def rows(
-    found: Sequence[Compared | Refused], job: Job, toolpath: Toolpath, distances: Sequence[Array]
+    found: Sequence[Compared | Refused], of: Job | JobFeature, toolpath: Toolpath, distances: Sequence[Array]
 ) -> list[dict[str, Any]]:
     """The rows of report.json without motion; that of the method planned comes first."""
     if not found:
         return []
     known = {one.method: _row(one) for one in found}
-    own = job.strategy.spacing
+    own = of.strategy.spacing
     if own not in known:  # a wall cut by this method alone
         spread = report.spread(distances)
         known[own] = _empty(own) | {

@@ -55,14 +55,16 @@ def deposit(source: Source, rows: Rows) -> tuple[Chart, ...]:
     )
 
 
-def distances(values: Array, asked: float, band: float | None = None) -> Chart:
-    """How the local distances (n,) mm between layers are spread about the layer height, and the band they may lie in."""
+def distances(values: Array, asked: float, band: float | None = None, name: str = "") -> Chart:
+    """How the local distances (n,) mm between layers are spread about the layer height, and the band they may lie in. name:
+    of the feature, where there are several."""
     low, high = float(values.min(initial=asked)), float(values.max(initial=asked))
     pad = max(0.15 * (high - low), 0.002 * asked)
     edges = np.linspace(low - pad, high + pad, BINS + 1)
     share = np.histogram(values, edges)[0] * (100.0 / max(len(values), 1))
+    title = f"{name}: distance" if name else "Distance"
     return Chart(
-        f"Distance to the layer before (asked: {asked:g} mm)", Quantity("local distance", "mm"),
+        f"{title} to the layer before (asked: {asked:g} mm)", Quantity("local distance", "mm"),
         Quantity("share of the points", "%"), bars=Bars("share", edges, share),
         band=None if band is None else (asked * (1.0 - band), asked * (1.0 + band)),
         upright=((asked, "layer height"),),

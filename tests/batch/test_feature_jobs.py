@@ -244,3 +244,44 @@ def test_a_wall_in_the_middle_lies_on_its_part(workshop):
         "process: {bead_width: 6 mm}\n", tube=tube)
     assert done.status == 0, done.err
     assert np.abs(np.hypot(*of(rows, "x_mm", "y_mm").T) - 27.0).max() < 1e-6 and report["on_part"]["worst_mm"] < 1e-6
+
+
+FIGURES = """\
+strategy: {layer_height: 8 mm, chord_error: 0.3 mm}
+build_direction: {clearance: none}
+features:
+"""
+BLOCK = """\
+  - name: block
+    part: {file: block.step}
+    strategy: {kind: solid, bead_spacing: 8 mm}
+    process: {bead_model: csw, bead_width: 9.5 mm}
+"""
+ELBOW = "  - {name: elbow, part: {file: elbow.step}, strategy: {kind: surface}MORE}\n"
+
+
+def test_each_feature_has_the_figures_of_a_job_of_its_own(workshop):
+    """What a bead model predicts, and how else a wall may be cut, were told of jobs of one feature alone."""
+    Part.makeBox(50, 40, 24, Vector(0, -20, -24)).exportStep(str(workshop.folder / "block.step"))
+    shell = Part.makeTorus(30.0, 8.0, Vector(-5, 0, 0), Vector(0, -1, 0), -180, 180, 50)
+    shell.rotate(Vector(), Vector(0, 1, 0), -90)
+    (face,) = (face for face in shell.Faces if isinstance(face.Surface, Part.Toroid))
+    face.exportStep(str(workshop.folder / "elbow.step"))
+
+    def report(*features, page="--no-page"):
+        (workshop.folder / "job.yaml").write_text(FIGURES + "".join(features), encoding="utf-8")
+        done = workshop.run("plan", "job.yaml", "-o", "out", *([page] if page else []))
+        assert done.status == 0, done.err
+        return json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+
+    block = report(BLOCK)
+    elbow = report(ELBOW.replace("MORE", ", substrate: {file: block.step}"))
+    both = report(BLOCK, ELBOW.replace("MORE", ""), page="")
+    first, second = both["features"]
+    assert first["beads"] == block["beads"] and len(first["beads"]["layers"]) == 3 and first["spacing_comparison"] == []
+    assert second["spacing_comparison"] == elbow["spacing_comparison"] and second["beads"] is None
+    assert sum(row["layers"] is not None for row in second["spacing_comparison"]) > 2
+    assert both["spacing_comparison"] == [] and both["beads"] is None
+    page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
+    for title in ("What spacing costs: elbow", "block: distance to the layer before", "elbow: distance to the layer before"):
+        assert title in page

@@ -109,7 +109,10 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
 
 
 def test_parts_of_revolution_are_not_compared():
-    job, content = SimpleNamespace(strategy=RevolutionParameters(), features=(object(),)), {}
-    assert run._compare_spacings(job, None, content, None, (), None, None, None) == ()
-    assert content == {"spacing_comparison": []}
+    job = SimpleNamespace(strategy=RevolutionParameters(), name="cup")
+    of_job, made = SimpleNamespace(features=(job,)), SimpleNamespace(features=(None,))
+    toolpath = Toolpath((), np.eye(4), 2.0, 0.1, family="revolution")
+    (shown,) = run._compared_walls(of_job, made, toolpath, ())
+    assert (shown.name, shown.compared, shown.rows, shown.band) == ("", (), (), None)
+    assert run._with_motion(of_job, made, shown, object(), None, None) == []
     assert spacing_comparison.rows((), job, None, []) == []

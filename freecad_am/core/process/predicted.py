@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..issues import NOTE, WARNING, Issue
 from ..parameters.process import ProcessParameters
@@ -46,8 +47,9 @@ def segments(beads: Sequence[Bead]) -> Segments:
     )
 
 
-def beads(toolpath: Toolpath) -> dict[str, Any] | None:
-    """The key `beads` of a report; None without a bead model, and for several features.
+def beads(toolpath: Toolpath, numbers: Sequence[int] | NDArray[np.intp] | None = None) -> dict[str, Any] | None:
+    """The key `beads` of a report; None without a bead model, and for several features. numbers: of the layers of one of
+    several, in the whole.
 
     Of each layer `drift_mm` is by how much the layers of its solid up to it, as high in the mean as predicted, are off the
     layer heights.
@@ -63,7 +65,7 @@ def beads(toolpath: Toolpath) -> dict[str, Any] | None:
             continue
         height = _spread(some.height, some.length)
         drift = (0.0 if layer.first else drift) + height["mean"] - toolpath.layer_height
-        rows.append({"layer": number, "height_mm": height, "drift_mm": drift})
+        rows.append({"layer": number if numbers is None else int(numbers[number]), "height_mm": height, "drift_mm": drift})
     return {
         "travel_speed_mm_min": _spread(whole.speed, whole.length),
         "width_mm": _spread(whole.width, whole.length),
