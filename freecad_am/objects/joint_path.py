@@ -19,7 +19,7 @@ from ..core.parameters.process import ProcessParameters
 from ..core.planning.joint_path import JointPath as JointsOfBeads
 from ..core.planning.motion import assemble
 from ..core.planning.plan import plan_joints
-from ..core.planning.remedies import Tried, remedies
+from ..core.planning.remedies import Fixed, Tried, remedies
 from ..core.planning.speeds import SLOWED
 from ..core.process import bead_table, predicted
 from ..core.simulation.timeline import timeline
@@ -43,15 +43,16 @@ class Planned:
 
 @dataclass(frozen=True)
 class Job:
-    """What a joint path is planned of, away from the document. toolpath: reads it. fixed: makes it with one build direction,
-    None where it has it, or cannot."""
+    """What a joint path is planned of, away from the document. toolpath: reads it. fixed: it with one build direction,
+    None where it has it, or cannot. own_speed: of several features, whether each has a travel speed of its own."""
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
     folders: tuple[str, ...]
     process: ProcessParameters
     parameters: JointParameters
-    fixed: Callable[[], Toolpath] | None = None
+    fixed: Fixed | None = None
+    own_speed: tuple[bool, ...] = ()
 
 
 def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters]:
@@ -108,7 +109,7 @@ class JointPath(Stage):
         return Job(
             toolpath.Proxy.reader(toolpath), cell.Proxy.value(cell), tuple(user_machines.folders()),
             toolpath.Proxy.parameters(toolpath, ProcessParameters), self.parameters(obj, JointParameters),
-            toolpath.Proxy.fixed(toolpath),
+            toolpath.Proxy.fixed(toolpath), toolpath.Proxy.own_speeds(toolpath),
         )
 
     def prepare(self, obj: Any) -> Work:
@@ -126,7 +127,9 @@ class JointPath(Stage):
                 joint_path, cell, process, toolpath.surroundings, job.parameters, toolpath.layer_height
             )
             issues = (*joint_path.issues, *rapid_issues, *_heights_as_run(joint_path, toolpath, process))
-            asked = Tried(lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed)
+            asked = Tried(
+                lambda: toolpath, job.settings, job.folders, process, job.parameters, job.fixed, own_speed=job.own_speed
+            )
             issues = (*remedies(asked, joint_path, issues, lambda _, text: progress.report(TRYING, text)), *issues)
             condition = np.concatenate([bead.condition for bead in joint_path.beads])
             smallest = float(np.nanmin(condition)) if np.isfinite(condition).any() else 0.0

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
@@ -20,6 +19,9 @@ from .in_sequence import member, planned_in_sequence
 from .planned import Given, looked_at, planned
 from .shapes import taken
 from .stage import Link, Outcome, Section, Stage, Work, stage_of
+
+if TYPE_CHECKING:
+    from ..core.planning.remedies import Fixed
 
 FIXED = "fixed"
 
@@ -99,20 +101,44 @@ class Toolpath(Stage):
             found.append(rows.build(ProcessParameters, {**rows.flat(process), **own}) if own else process)
         return found
 
-    def fixed(self, obj: Any) -> Callable[[], CoreToolpath] | None:
-        """What makes the toolpath anew with one build direction, the axis of the part, without the document; None where it
-        has that, and of features other than a single part of revolution."""
-        feature = obj.Feature
-        shape = stage_of(feature)
-        if shape is None or strategy_of(shape) is not RevolutionParameters or obj.Further:
+    def fixed(self, obj: Any) -> Fixed | None:
+        """The toolpath with one build direction, the axis of the part, made anew without the document; None where it has
+        that, and without parts of revolution. Of several features those parts alone are changed."""
+        from ..core.planning.remedies import Fixed
+
+        features = features_of(obj)
+        shapes = [stage_of(one) for one in features]
+        if not features or None in shapes:
             return None
-        build = shape.parameters(feature, BuildDirectionParameters)
-        if build.mode == FIXED:
+        turned = [
+            strategy_of(shape) is RevolutionParameters and shape.parameters(one, BuildDirectionParameters).mode != FIXED
+            for one, shape in zip(features, shapes, strict=True)
+        ]
+        if not any(turned):
             return None
-        wall, strategy = shape.reader(feature), shape.parameters(feature, RevolutionParameters)
         process = self.parameters(obj, ProcessParameters)
         carried = None if obj.Cell is None else obj.Cell.Proxy.value(obj.Cell)
-        return lambda: planned(Given(wall(), strategy, dataclasses.replace(build, mode=FIXED), process, carried))
+        if len(features) > 1:
+            made = [_given(one, own, carried) for one, own in zip(features, self.processes(obj), strict=True)]
+            made = [_upright(one) if turn else one for one, turn in zip(made, turned, strict=True)]
+            members = [member(one, given, features) for one, given in zip(features, made, strict=True)]
+            names, order = [tuple(one.Name for one in _sources(feature)) for feature in features], obj.Sequence
+            told = " and ".join(f"`features[{k}].build_direction.mode: fixed`" for k, turn in enumerate(turned) if turn)
+            return Fixed(told, lambda: planned_in_sequence(members, order, names))
+        shape, feature = shapes[0], features[0]
+        wall, strategy = shape.reader(feature), shape.parameters(feature, RevolutionParameters)
+        build = shape.parameters(feature, BuildDirectionParameters)
+        return Fixed(
+            "`build_direction.mode: fixed`",
+            lambda: planned(_upright(Given(wall(), strategy, build, process, carried))),
+        )
+
+    def own_speeds(self, obj: Any) -> tuple[bool, ...]:
+        """Of several features, whether each has a travel speed of its own; of one nothing."""
+        if not obj.Further:
+            return ()
+        speed = self.parameters(obj, ProcessParameters).travel_speed
+        return tuple(one.travel_speed != speed for one in self.processes(obj))
 
     def further_inputs(self, obj: Any) -> list[str]:
         processes = self.processes(obj)
@@ -155,6 +181,11 @@ def _given(feature: Any, process: ProcessParameters, cell: Any) -> Given:
     assert shape is not None
     strategy, build = shape.parameters(feature, strategy_of(shape)), shape.parameters(feature, BuildDirectionParameters)
     return Given(shape.value(feature), strategy, build, process, cell)
+
+
+def _upright(given: Given) -> Given:
+    """The same with the axis of the part as its one build direction."""
+    return dataclasses.replace(given, build=dataclasses.replace(given.build, mode=FIXED))
 
 
 def _outcome(toolpath: CoreToolpath) -> Outcome:

@@ -95,11 +95,38 @@ def test_own_speeds(doc, features):
     speeds = [{float(speed) for bead in layer.beads for speed in bead.speed} for layer in api.result(toolpath).layers]
     usual = ProcessParameters().travel_speed
     assert speeds == [{usual}] * 2 + [{9.0}] * 2 + [{usual}] * 4
+    assert toolpath.Proxy.own_speeds(toolpath) == (False, True, False)  # slowing the job down leaves that one
     with pytest.raises(InputError, match="whole program"):
         api.make_toolpath(doc, features, processes=[ProcessParameters(), ProcessParameters(rapid_speed=1.0), own[2]])
     toolpath.FeatureProcess = ["", "nonsense", ""]
     with pytest.raises(InputError, match="JSON"):
         api.recompute(toolpath)
+
+
+def test_with_fixed_build_directions_parts_of_revolution_alone_change(doc):
+    """What is tried where a job of several features is infeasible, and told by the keys that make it so."""
+    plate = box(doc, "Plate", 40, 40, 10, -20, -20, -10)
+    cone = doc.addObject("Part::Cone", "Cone")
+    cone.Radius1, cone.Radius2, cone.Height = 15, 8, 20
+    doc.recompute()
+    features = [
+        api.make_solid_feature(doc, plate, **COARSE),
+        api.make_feature(doc, cone, layer_height=5, chord_error=0.2, wall="outer"),
+    ]
+    toolpath = api.make_toolpath(doc, features)
+    told, make = toolpath.Proxy.fixed(toolpath)
+    assert told == "`features[1].build_direction.mode: fixed`"
+    tried = make()
+    as_was = api.result(toolpath)
+    features[1].Mode = "fixed"
+    api.recompute(toolpath)
+    asked = api.result(toolpath)
+    for one, other in zip(tried, asked, strict=True):
+        assert one[:2] == other[:2]
+        for name in ("points", "build", "tool", "speed"):
+            assert np.array_equal(getattr(one[2], name), getattr(other[2], name))
+    assert any(not np.array_equal(one[2].build, other[2].build) for one, other in zip(as_was, asked, strict=True))
+    assert toolpath.Proxy.fixed(toolpath) is None
 
 
 def test_all_stages_of_several_at_once(doc):

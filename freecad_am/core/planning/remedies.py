@@ -12,6 +12,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,18 +40,27 @@ SHIFTS = ((0.0, -150.0), (0.0, 150.0), (-150.0, 0.0), (150.0, 0.0))  # of the de
 FULL_TURN = (-math.pi, math.pi)
 
 
+class Fixed(NamedTuple):
+    """A toolpath with fixed build directions where they were not: the keys that say so, and what makes it."""
+
+    told: str
+    make: Callable[[], Toolpath]
+
+
 @dataclass(frozen=True)
 class Tried:
-    """A job to plan: that which is infeasible, or it with a change, told as keys of a job file. fixed: makes the toolpath
-    with the build direction of the part's axis; None where it has it, or cannot."""
+    """A job to plan: that which is infeasible, or it with a change, told as keys of a job file. fixed: the toolpath with the
+    build direction of the part's axis; None where it has it, or cannot. own_speed: of several features, whether each has a
+    travel speed of its own."""
 
     toolpath: Callable[[], Toolpath]
     settings: CellParameters
     folders: tuple[str, ...]
     process: ProcessParameters
     joints: JointParameters
-    fixed: Callable[[], Toolpath] | None = None
+    fixed: Fixed | None = None
     told: str = field(default="")
+    own_speed: tuple[bool, ...] = ()
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """What is wrong with it; rapids only of a whole one."""
@@ -119,7 +129,7 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         yield from _branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
-        fixed = dataclasses.replace(job, toolpath=job.fixed, told="`build_direction.mode: fixed`")
+        fixed = dataclasses.replace(job, toolpath=job.fixed.make, told=job.fixed.told)
         yield fixed
         if job.settings.setup != ROTARY_TABLE and job.settings.branch != "auto":
             yield _with_cell(fixed, f"{fixed.told} and `cell.branch: auto`", branch="auto")
@@ -132,7 +142,7 @@ def _with_cell(job: Tried, told: str, **values: object) -> Tried:
 
 
 def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
-    """As fast as the axes can where they have most to do."""
+    """As fast as the axes can where they have most to do; features with a speed of their own keep that."""
     toolpath = job.toolpath()
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
     speed = job.process.travel_speed * share_of_speed(cell, path.beads)
@@ -142,6 +152,7 @@ def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
     speed = math.floor(0.99 * speed / step) * step  # two digits
     share = speed / job.process.travel_speed
     layers = tuple(
+        layer if job.own_speed and job.own_speed[layer.feature] else
         dataclasses.replace(layer, beads=tuple(dataclasses.replace(bead, speed=share * bead.speed) for bead in layer.beads))
         for layer in toolpath.layers
     )
