@@ -11897,6 +11897,11 @@
         <translation>{0} : controller.matrix</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/plots/process.py"/>
+        <source>{0}: distance to the layer before (asked: {1} mm)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>{0}: give source, and any of {1}</source>
         <translation>{0} : donnez source, et au besoin {1}</translation>
