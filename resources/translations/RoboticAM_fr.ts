@@ -11899,7 +11899,7 @@
     <message>
         <location filename="../../freecad_am/plots/process.py"/>
         <source>{0}: distance to the layer before (asked: {1} mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>{0} : distance à la couche précédente (demandée : {1} mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/api.py"/>
