@@ -67,8 +67,9 @@ def run(words):
     if demo:
         example = os.path.join(ROOT, "resources", "examples", "hemisphere.yaml")
         words = ["plan", example, "-o", os.path.join("out", "hemisphere"), *words[1:]]
-    from freecad_am.batch import cli
+    from freecad_am.batch import allocation, cli
 
+    allocation.keep_freed()
     status = cli.main(words)
     if demo and status == 0:
         folder = words[3]

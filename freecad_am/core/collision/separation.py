@@ -13,6 +13,15 @@ import numpy as np
 from .frustum import Array, Frustum, Index, Mask
 from .tolerances import CONVERGED, ROUNDING
 
+# of the edges from the newest point of a simplex of four: each, the sides of the simplex that they are, and its faces, by
+# the two edges that they lie between
+_EACH, _SIDE, _FACE = np.arange(3), np.arange(1, 4), np.arange(4, 7)
+_FIRST, _SECOND = np.array([0, 0, 1]), np.array([1, 2, 2])
+# of four points, by which of them have a share (the sum of their codes), three: those that have first, and then one of them
+_CODE = np.array([1, 2, 4, 8])
+_KEPT = np.array([(*having, *having[:1] * 3, 0, 0, 0)[:3] for having in (
+    tuple(k for k in range(4) if code >> k & 1) for code in range(16)
+)])
 MOST = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
 
 
@@ -73,10 +82,10 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     found: Mask = (gap < deep) | (gap == 0.0)
     met = np.zeros(query.max(initial=-1) + 1, dtype=bool)
     met[query[found]] = True
-    # no point of a hull is farther from its middle than a corner
-    spread = points - middle[:, None]
-    spread = np.sqrt(largest(np.einsum("kcj,kcj->kc", spread, spread)))
-    left = np.flatnonzero(~met[query] & (gap - spread < deep + ROUNDING))
+    # where the point nearest to a middle is, a plane touches the solid: the hull is no nearer than its corners are to that
+    away = points - middle[:, None]
+    nearer = largest(np.einsum("kcj,kj->kc", away, place)) / np.where(gap > 0.0, gap, 1.0)
+    left = np.flatnonzero(~met[query] & (gap - nearer < np.maximum(deep, CONVERGED) + ROUNDING))
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
     first = np.diff(query[left], prepend=-1) != 0
     for some in (left[first], left[~first]):
@@ -106,6 +115,15 @@ def _dot(one: Array, other: Array) -> Array:
     return product
 
 
+def _cross(one: Array, other: Array) -> Array:
+    """As np.cross of rows (k, 3), which takes four times as long for a few."""
+    product = np.empty_like(one)
+    product[:, 0] = one[:, 1] * other[:, 2] - one[:, 2] * other[:, 1]
+    product[:, 1] = one[:, 2] * other[:, 0] - one[:, 0] * other[:, 2]
+    product[:, 2] = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    return product
+
+
 def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
     """As `_nearest`, of the segments from points (k, 3) to the newest ones."""
     edge = one - newest
@@ -120,45 +138,37 @@ def _of_two(one: Array, newest: Array) -> tuple[Array, Array]:
 def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     """The point (k, 3) nearest to the origin of the hulls of three points (k, 3, 3), of which some may be one, and a fourth
     (k, 3) that has a share in it; and the up to three points (k, 3, 3) that have."""
-    edge = [simplex[:, i] - newest for i in range(3)]
-    square = {(i, j): _dot(edge[i], edge[j]) for i in range(3) for j in range(i, 3)}
-    pull = [-_dot(newest, each) for each in edge]
+    edge = simplex - newest[:, None]
+    square, pull = np.einsum("kim,kim->ik", edge, edge), -np.einsum("km,kim->ik", newest, edge)
     own = _dot(newest, newest)
-    k = len(newest)
-    best, share = own, np.zeros((k, 3))
-
-    def better(value: Array, shares: dict[int, Array], holds: Mask | None = None) -> None:
-        nonlocal best
-        rows = np.flatnonzero((value < best) if holds is None else (holds & (value < best)))
-        best = np.where(value < best, value, best) if holds is None else np.where(holds & (value < best), value, best)
-        share[rows] = 0.0
-        for i, part in shares.items():
-            share[rows, i] = part[rows]
-
+    # of all corners, sides and faces that hold the newest point at once: most calls are about a handful of simplices
+    shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
+    value[0] = own
     with np.errstate(divide="ignore", invalid="ignore"):
-        for i in range(3):
-            part = np.clip(np.where(square[i, i] > 0.0, pull[i] / square[i, i], 0.0), 0.0, 1.0)
-            better(own - 2.0 * part * pull[i] + part * part * square[i, i], {i: part})
-        for i, j in ((0, 1), (0, 2), (1, 2)):
-            a, b, c = square[i, i], square[i, j], square[j, j]
-            wide = a * c - b * b
-            one, two = (pull[i] * c - pull[j] * b) / wide, (pull[j] * a - pull[i] * b) / wide
-            holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)
-            better(own - one * pull[i] - two * pull[j], {i: one, j: two}, holds)
-        normal = np.cross(edge[1], edge[2])
-        volume = _dot(edge[0], normal)
+        part = np.clip(np.where(square > 0.0, pull / square, 0.0), 0.0, 1.0)
+        shares[_SIDE, _EACH] = part
+        value[_SIDE] = own - 2.0 * part * pull + part * part * square
+        a, c = square[_FIRST], square[_SECOND]
+        b = np.stack([_dot(edge[:, i], edge[:, j]) for i, j in zip(_FIRST, _SECOND)])
+        wide = a * c - b * b
+        one, two = (pull[_FIRST] * c - pull[_SECOND] * b) / wide, (pull[_SECOND] * a - pull[_FIRST] * b) / wide
+        holds = (wide > 1e-12 * a * c) & (one > 0.0) & (two > 0.0) & (one + two < 1.0)
+        shares[_FACE, _FIRST], shares[_FACE, _SECOND] = one, two
+        value[_FACE] = np.where(holds, own - one * pull[_FIRST] - two * pull[_SECOND], np.inf)
+        normal = _cross(edge[:, 1], edge[:, 2])
+        volume = _dot(edge[:, 0], normal)
         parts = [
-            -_dot(newest, normal) / volume, -_dot(newest, np.cross(edge[2], edge[0])) / volume,
-            -_dot(newest, np.cross(edge[0], edge[1])) / volume,
+            -_dot(newest, normal) / volume, -_dot(newest, _cross(edge[:, 2], edge[:, 0])) / volume,
+            -_dot(newest, _cross(edge[:, 0], edge[:, 1])) / volume,
         ]
-        inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0, 0] * square[1, 1] * square[2, 2])) & (sum(parts) < 1.0)
-        for part in parts:
-            inside &= part > 0.0
-    place = newest + np.einsum("ki,kij->kj", share, np.stack(edge, axis=1))
+        inside = (np.abs(volume) > 1e-12 * np.sqrt(square[0] * square[1] * square[2])) & (sum(parts) < 1.0)
+        for each in parts:
+            inside &= each > 0.0
+    rows = np.arange(len(newest))
+    share = shares[value.argmin(axis=0), :, rows]
+    place = newest + np.einsum("ki,kij->kj", share, edge)
     place[inside] = 0.0
     kept = np.concatenate([simplex, newest[:, None]], axis=1)
     weight = np.concatenate([share, 1.0 - share.sum(axis=1, keepdims=True)], axis=1)
-    # what has a share comes first, what has none becomes another of those that have
-    order = np.argsort(weight <= 0.0, axis=1, kind="stable")[:, :3]
-    order = np.where(np.take_along_axis(weight, order, axis=1) > 0.0, order, order[:, :1])
-    return place, np.take_along_axis(kept, order[:, :, None], axis=1)
+    order = _KEPT[(weight > 0.0) @ _CODE]
+    return place, kept.reshape(-1, 3).take(4 * rows[:, None] + order, axis=0)

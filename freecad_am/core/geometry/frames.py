@@ -111,7 +111,10 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
     start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
     bisector = start + end
     length = np.linalg.norm(bisector, axis=-1, keepdims=True)
-    bisector = np.where(length > 1e-14, bisector / np.where(length > 1e-14, length, 1.0), _normal_to(start))
+    opposite = length[..., 0] <= 1e-14
+    bisector = bisector / np.where(length > 1e-14, length, 1.0)
+    if opposite.any():
+        bisector[opposite] = _normal_to(start[opposite])
     # of nearly opposite vectors the sum has lost the digits of what it has along them, which is half its length
     along = (bisector * start).sum(axis=-1, keepdims=True)
     bisector = bisector + (0.5 * length - along) * start
@@ -129,5 +132,11 @@ def _normal_to(vectors: Array) -> Array:
 
 def _reflection(normals: Array) -> Array:
     """The reflection (..., 3, 3) in the planes through the origin with the unit normals (..., 3)."""
-    result: Array = np.eye(3) - 2.0 * normals[..., :, None] * normals[..., None, :]
+    twice = 2.0 * normals
+    result = np.empty((*normals.shape, 3))
+    # entry by entry: many times as fast as along axes of three
+    for row in range(3):
+        for column in range(row, 3):
+            entry = (1.0 if row == column else 0.0) - twice[..., row] * normals[..., column]
+            result[..., row, column] = result[..., column, row] = entry
     return result

@@ -132,9 +132,14 @@ class Cell:
         in_part: Array = tip @ into[:3, :3].T + into[:3, 3]
         return in_part
 
+    @property
+    def torch_stands(self) -> bool:
+        """Whether the machine moves the part alone, under a torch that stands still."""
+        return self.setup != TOOL_ON_ROBOT
+
     def deposition_point(self, flange: Array) -> Array:
         """(n, 3) mm, the point of deposit in base_link for the flange poses (n, 4, 4)."""
-        if self.setup != TOOL_ON_ROBOT:
+        if self.torch_stands:
             return np.broadcast_to(self.station[:3, 3], (len(flange), 3))
         tip: Array = (flange @ self.carried)[:, :3, 3]
         return tip

@@ -71,7 +71,7 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
     """
     if not all(path.reachable for path in paths):
         return dict.fromkeys(OBJECTIVES)
-    points = gather([path.bead for path in paths], task.cell)
+    points = gather([path.bead for path in paths], task.cell, posed=not task.cell.torch_stands)
     joints = np.concatenate([path.joints for path in paths])
     phi, condition = (np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "condition"))
     manipulability = np.empty(len(points))

@@ -15,6 +15,7 @@ from ..toolpath import Bead
 
 Array = NDArray[np.float64]
 TURN = 2.0 * np.pi
+UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 
 
 @dataclass(frozen=True)
@@ -95,8 +96,9 @@ class Points:
         return total
 
 
-def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None) -> Points:
-    """The points of the beads, thinned to `most` per bead and turn about the axis, both ends kept."""
+def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None, posed: bool = True) -> Points:
+    """The points of the beads, thinned to `most` per bead and turn about the axis, both ends kept; with frames of none where
+    they are not posed."""
     chosen = [_thinned(bead, most) for bead in beads]
     counts = np.array([len(index) for index in chosen])
     position = np.concatenate([bead.points[index] for bead, index in zip(beads, chosen)])
@@ -111,7 +113,7 @@ def gather(beads: Sequence[Bead], cell: Cell, most: int | None = None) -> Points
         first=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64),
         bead=np.repeat(np.arange(len(beads)), counts),
         closed=np.array([bead.closed for bead in beads], dtype=bool),
-        frames=cell.pose_frames(position, tool, external),
+        frames=cell.pose_frames(position, tool, external) if posed else UNPOSED,
         external=external,
     )
 
@@ -130,7 +132,9 @@ def steps(joints: Array, starts: NDArray[np.bool_]) -> Array:
     """(..., T, axes) motion from the point before, each axis the short way round; 0 at the first point of a bead."""
     step = np.zeros_like(joints)
     np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
-    step -= TURN * np.round(step / TURN)
+    long = np.abs(step) > 0.25 * TURN  # others are the short way, and most are
+    if long.any():
+        step[long] -= TURN * np.round(step[long] / TURN)
     step[..., starts, :] = 0.0
     return step
 

@@ -200,7 +200,10 @@ class Task:
         """The robot's Jacobians (k, 6, 6) at the deposition point of pieces of the points, phi (T,) and joints (T, axes),
         with which of them these are: together they would take much memory."""
         for some in in_pieces(len(points)):
-            yield some, self.jacobian_at(points.frames.of(some).at(phi[some]), joints[some])
+            if self.cell.torch_stands:  # and the point of deposit is known without the poses
+                yield some, jac.jacobian(self.cell.robot.chain, self._own(joints[some]), self.cell.station[:3, 3])
+            else:
+                yield some, self.jacobian_at(points.frames.of(some).at(phi[some]), joints[some])
 
     def jacobian_at(self, flange: Array, joints: Array) -> Array:
         """(N, 6, 6) Jacobian of the robot at the deposition point for flange poses (N, 4, 4) and joints (N, axes)."""

@@ -62,8 +62,9 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
     limits = task.cell.limits
     half = np.where(task.endless, 0.0, 0.5 * (limits.upper - limits.lower))
     kept = 0.0 if path.margin < 0.0 else (path.margin - 1e-9) * half
-    lowest = np.ceil((limits.lower + kept - path.joints.min(axis=0)) / TURN - 1e-12)
-    highest = np.floor((limits.upper - kept - path.joints.max(axis=0)) / TURN + 1e-12)
+    by_axis = np.ascontiguousarray(path.joints.T)
+    lowest = np.ceil((limits.lower + kept - by_axis.min(axis=1)) / TURN - 1e-12)
+    highest = np.floor((limits.upper - kept - by_axis.max(axis=1)) / TURN + 1e-12)
     wanted = np.round((before - path.joints[0]) / TURN)
     return np.where(lowest <= highest, np.clip(wanted, lowest, highest), 0.0)
 
