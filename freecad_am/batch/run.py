@@ -51,7 +51,9 @@ class Stages:
         name = stage.replace("_", " ")
         session.progress(f"{name} ...")
         started = time.perf_counter()
-        with told_to(lambda fraction, text: session.progress(f"{name}: {text} {fraction:.0%}")):
+        with told_to(
+            lambda fraction, text: session.progress(f"{name}: {text} {fraction:.0%}"), lambda issue: session.issues([issue])
+        ):
             yield
         session.check()
         self.timing[stage] = time.perf_counter() - started

@@ -252,7 +252,7 @@ def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], fea
 
 def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     """On a hub the machine turns them, so that no vertical bounds the tool axes."""
-    from ..core.strategies import wall_clearance
+    from ..core.strategies import size, wall_clearance
     from ..core.strategies.solids import plan as solids_plan
 
     if not solids_plan.on_planes(of.wall):
@@ -260,7 +260,12 @@ def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], f
         return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature)
     if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
         return toolpath
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature)
+
+    def told(points: int) -> None:
+        for issue in size.of_tilting(points):
+            progress.tell(issue)
+
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, told)
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Who is told how far a long computation is: nobody, a terminal, or a progress bar; and how it ends when cancelled."""
+"""Who is told how far a long computation is, and what is found on the way: nobody, a terminal, or a progress bar; and how it
+ends when cancelled."""
 
 from __future__ import annotations
 
@@ -7,7 +8,10 @@ import contextlib
 import threading
 from collections.abc import Callable, Iterator
 
+from ..core.issues import Issue
+
 Listener = Callable[[float, str], None]
+Findings = Callable[[Issue], None]
 
 
 class Cancelled(BaseException):
@@ -18,7 +22,7 @@ class _Listeners(threading.local):
     """Each thread has its own: works in two threads do not tell each other's listeners."""
 
     def __init__(self) -> None:
-        self.stack: list[Listener] = []
+        self.stack: list[tuple[Listener, Findings | None]] = []
 
 
 _listeners = _Listeners()
@@ -27,13 +31,21 @@ _listeners = _Listeners()
 def report(fraction: float, text: str) -> None:
     """Tell the innermost listener of this thread; it may raise to cancel."""
     if _listeners.stack:
-        _listeners.stack[-1](fraction, text)
+        _listeners.stack[-1][0](fraction, text)
+
+
+def tell(issue: Issue) -> None:
+    """Tell the innermost listener of this thread of something that is better known before the work is done."""
+    findings = _listeners.stack[-1][1] if _listeners.stack else None
+    if findings is not None:
+        findings(issue)
 
 
 @contextlib.contextmanager
-def told_to(listener: Listener) -> Iterator[None]:
-    """Within it `listener(fraction, text)` is told of what this thread computes."""
-    _listeners.stack.append(listener)
+def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[None]:
+    """Within it `listener(fraction, text)` is told of what this thread computes, and `findings(issue)` of what is found on
+    the way."""
+    _listeners.stack.append((listener, findings))
     try:
         yield
     finally:

@@ -10497,6 +10497,11 @@
         <translation>avec la pièce sur le robot, les mouvements linéaires de KRL ont un outil fixe ($IPO_MODE #TCP), et que les points soient alors la buse vue de la pièce ou la pièce vue de la buse n&apos;a pas été confirmé ; prenez `setup: tool-on-robot`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <source>with the tool axes asked for the nozzle touches beads of {0} points; finding tilts that keep it clear takes about {1} min of the processor, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, saves it</source>
+        <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points ; trouver des inclinaisons qui la dégagent prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, l&apos;évitent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/names.py"/>
         <source>with the {0} digits of its parts it has more than {1} characters</source>
         <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>

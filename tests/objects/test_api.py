@@ -11,10 +11,11 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.core.issues import InputError
+from freecad_am.core.issues import InputError, Issue
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.objects import progress
 
 LABEL = "Hémisphère n° 1"
 
@@ -125,6 +126,16 @@ def test_progress_is_told_and_may_cancel(job):
     assert job.joint_path.Status == "failed"
     api.recompute(job.doc)
     assert job.joint_path.Status == "up to date"
+
+
+def test_what_is_found_on_the_way_is_told():
+    issue, told = Issue("note", "LARGE", "it takes long"), []
+    progress.tell(issue)
+    with api.told_to(lambda fraction, text: None, told.append):
+        progress.tell(issue)
+        with api.told_to(lambda fraction, text: None):
+            progress.tell(issue)
+    assert told == [issue]
 
 
 def test_export_writes_the_files(job, tmp_path):

@@ -42,6 +42,7 @@ GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
+SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
 # s of the processor that a point takes through all stages, measured; walls on parts march from layer to layer
 _SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 7e-5, SurfaceParameters: 2e-3, FilledParameters: 2.5e-4}
 
@@ -132,6 +133,18 @@ def judged(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
         NOTE, LARGE, f"about {count(size.points)} points in {count(size.layers)} layers are planned, which takes about "
         f"{at_least(seconds / 60.0):g} min of the processor and {at_least(gigabytes):g} GB of memory; a larger "
         "strategy.layer_height or strategy.chord_error makes them fewer",
+    ),)
+
+
+def of_tilting(points: int) -> tuple[Issue, ...]:
+    """A note LARGE where tilts of the nozzle are searched for at so many points of solids that it takes long."""
+    seconds = points * SECONDS_A_TILT
+    if seconds < LARGE_SECONDS:
+        return ()
+    return (Issue(
+        NOTE, LARGE, f"with the tool axes asked for the nozzle touches beads of {count(points)} points; finding tilts that "
+        f"keep it clear takes about {at_least(seconds / 60.0):g} min of the processor, several times that where the tool "
+        "would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, saves it",
     ),)
 
 

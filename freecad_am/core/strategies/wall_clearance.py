@@ -13,7 +13,7 @@ Halfway between points that are clear the nozzle is looked at too; where it touc
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,17 +41,18 @@ HALVINGS = 3  # of a segment halfway on which the nozzle touches
 
 def kept_clear(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None = None, feature: int | None = None,
+    plane: Array | None = None, feature: int | None = None, told: Callable[[int], None] | None = None,
 ) -> Toolpath:
     """The toolpath with tool axes tilted where the nozzle would touch bodies or deposit, and issues that say so.
 
     bodies: all that counts, the platform too. plane: unit normal (3,) of the plane that the tool must stay in. Where no
     tilt of up to 90 deg helps, the axes stay as they come, with an issue CLEARANCE. Beads get points halfway between
     those that are clear where the nozzle would touch there. feature: of several features, the one whose beads are kept
-    clear, of what is deposited of the others by then too.
+    clear, of what is deposited of the others by then too. told: once, before tilts are searched for, of how many points.
     """
+    untold = [] if told is None else [told]
     for last in (False,) * HALVINGS + (True,):
-        found, between = _tilted(toolpath, bodies, nozzle, build, plane, feature, last)
+        found, between = _tilted(toolpath, bodies, nozzle, build, plane, feature, last, untold)
         if not between.any():
             break
         toolpath = halved(toolpath, between)
@@ -60,7 +61,7 @@ def kept_clear(
 
 def _tilted(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters, build: BuildDirectionParameters,
-    plane: Array | None, feature: int | None, last: bool,
+    plane: Array | None, feature: int | None, last: bool, untold: list[Callable[[int], None]],
 ) -> tuple[Toolpath, Mask]:
     """The toolpath tilted clear at its points, and the points (n,) after which the nozzle touches halfway to the next; none
     at the `last` try, where an issue says so. Where it touches with the axes asked for, nothing is tilted yet."""
@@ -79,6 +80,8 @@ def _tilted(
         return toolpath, between
     rows = [np.arange(begin[k], begin[k + 1]) for k in blocked]
     closed = np.array([beads[k].closed for k in blocked])
+    while untold:
+        untold.pop()(sum(map(len, rows)))
     tool, tilt, stuck = _cleared(room, rows, closed, asked, plane, free)
     lost = np.zeros(len(asked), dtype=bool)
     lost[stuck] = True

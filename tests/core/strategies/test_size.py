@@ -163,3 +163,10 @@ def test_large_jobs_are_told(family, points, told):
 def test_what_is_absurd_is_refused_and_not_told():
     with pytest.raises(InputError, match="points"):
         size.judged(size.Size(180.0, 2.0 * size.MOST_POINTS), RevolutionParameters())
+
+
+def test_tilts_that_take_long_to_find_are_told():
+    assert size.of_tilting(3_000) == ()
+    (issue,) = size.of_tilting(6_812)  # 60 s of the processor for the first tilts, 174 s in all
+    assert (issue.level, issue.code) == ("note", "LARGE") and "6,800 points" in issue.message
+    assert "takes about 1.1 min of the processor" in issue.message

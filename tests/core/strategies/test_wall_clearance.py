@@ -154,7 +154,9 @@ def test_a_fat_nozzle_on_the_pipe(mode):
 def test_beside_a_tall_face_the_tilt_is_the_least_that_clears_it():
     path = toolpath(bead(np.stack([np.zeros(41), np.linspace(0, 80, 41), np.zeros(41)], axis=1)))
     face = box([10, -200, -50], [30, 300, 150])
-    found = kept_clear(path, [face], NOZZLE, LOCAL)
+    told: list[int] = []
+    found = kept_clear(path, [face], NOZZLE, LOCAL, told=told.append)
+    assert told == [41]  # before the work, which may be long
     slope = np.tan(NOZZLE.half_angle)
     needed = brentq(lambda e: (0.5 + 60 * slope) * np.cos(e) - 60 * np.sin(e) - 10.0, 0.0, 1.0)
     tool = found.layers[0].beads[0].tool
@@ -216,7 +218,8 @@ def test_only_what_is_laid_already_counts():
 
 def test_what_is_clear_stays_as_it_is_to_the_bit():
     path = toolpath(bead([[0, 0, 0], [5, 0, 0]]), bead([[0, 0, 1], [5, 0, 1]]))
-    assert kept_clear(path, [box([40, 40, 0], [50, 50, 50])], NOZZLE, LOCAL) is path
+    told: list[int] = []
+    assert kept_clear(path, [box([40, 40, 0], [50, 50, 50])], NOZZLE, LOCAL, told=told.append) is path and told == []
     flat = box([-100, -100, -10], [100, 100, 0])
     assert kept_clear(path, [flat], NOZZLE, LOCAL) is path
 
