@@ -21,7 +21,8 @@ USAGE = """usage: freecad-am COMMAND
   batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys
   inspect JOB.yaml|DOC.FCStd --measured FILE ...    compare measured points with what is planned; -o DIR,
                                                     --set tolerance=0.3 ..., of a document --object NAME
-  machines [NAME --urdf | --dh | --modified-dh]     list the machines known, or write one as URDF or as a table
+  machines [NAME --urdf | --dh | --modified-dh]     list the machines known, or write one as URDF or as a table;
+                                                    list some: --maker KUKA --reach '2 m' --payload '20 kg' --post kuka
   demo | test | bench                               see the README
 """
 
@@ -123,6 +124,10 @@ def _parser(command: str) -> Any:
         forms.add_argument("--dh", action="store_const", const="dh", dest="form",
                            help="write its table of Denavit and Hartenberg, in mm and degrees")
         forms.add_argument("--modified-dh", action="store_const", const="modified-dh", dest="form", help="the same by Craig")
+        parser.add_argument("--maker", metavar="NAME", help="list those of this maker")
+        parser.add_argument("--reach", metavar="LENGTH", help="list those that reach so far at least")
+        parser.add_argument("--payload", metavar="MASS", help="list those that are known to carry so much at least")
+        parser.add_argument("--post", metavar="NAME", help="list those whose controllers read the programs of this post")
         return parser
     parser.add_argument("-o", "--output", metavar="DIR", help="folder of the outputs")
     if command == "plan":
@@ -202,7 +207,15 @@ def _machines(options: Any, session: Any) -> int:
         raise InputError("USAGE", "freecad-am machines", told)
     if options.form is not None and options.machine is None:
         raise InputError("USAGE", "freecad-am machines", f"--{options.form} of what machine? Give its name")
-    session.out(machines.listing() if options.machine is None else machines.written(options.machine, options.form))
+    wanted = (options.maker, options.reach, options.payload, options.post)
+    filtered = any(one is not None for one in wanted)
+    if filtered and options.machine is not None:
+        raise InputError("USAGE", "freecad-am machines", f"--maker, --reach, --payload and --post choose from the list; "
+                         f"leave {options.machine!r} out, or them")
+    if options.machine is not None:
+        session.out(machines.written(options.machine, options.form))
+    else:
+        session.out(machines.chosen(*wanted) if filtered else machines.listing())
     return DONE
 
 

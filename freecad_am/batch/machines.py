@@ -7,9 +7,10 @@ import math
 from typing import Any
 
 from freecad_am.core.geometry import frames
+from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import machine
 
-from . import paths
+from . import paths, quantity
 
 
 def listing() -> str:
@@ -17,9 +18,48 @@ def listing() -> str:
     paths.require_freecad()
     from freecad_am.objects import user_machines
 
-    known = machine.known(user_machines.folders())
+    return _lines(machine.known(user_machines.folders()))
+
+
+def chosen(maker: str | None, reach: str | None, payload: str | None, post: str | None) -> str:
+    """The lines of `listing` of those machines that `machine_catalogue.chosen` finds, each with reach, payload and posts as
+    far as its file tells them. `reach` is a length and `payload` a mass as users write them; InputError for others."""
+    paths.require_freecad()
+    from freecad_am.core.kinematics import machine_catalogue
+    from freecad_am.core.parameters import field
+    from freecad_am.objects import user_machines
+    from freecad_am.posts import catalogue
+
+    if post is not None:
+        catalogue.load(post)
+    least = 0.0 if reach is None else quantity.read(reach, field.LENGTH, "--reach")
+    found = machine_catalogue.chosen(
+        machine_catalogue.entries(user_machines.folders()), maker, least, 0.0 if payload is None else _mass(payload), post
+    )
+    return _lines([(entry.id, f"{entry.title}{_figures(entry)}") for entry in found])
+
+
+def _lines(known: list[tuple[str, str]]) -> str:
     width = max((len(identity) for identity, _ in known), default=0)
     return "".join(f"{identity:<{width}}  {title}\n" for identity, title in known)
+
+
+def _figures(entry: Any) -> str:
+    told = [f"reach {entry.reach:g} mm"] if entry.reach is not None else []
+    told += [f"payload {entry.payload:g} kg"] if entry.payload is not None else []
+    told += [f"post {' '.join(entry.posts)}"] if entry.posts else []
+    return "".join(f", {figure}" for figure in told)
+
+
+def _mass(text: str) -> float:
+    number = text.strip().removesuffix("kg").strip()
+    try:
+        mass = float(number)
+    except ValueError:
+        mass = math.nan
+    if not 0.0 <= mass < math.inf:
+        raise InputError("BAD_VALUE", "--payload", f"{text!r} is not a mass; give kilograms such as 20 kg")
+    return mass
 
 
 def written(name: str, form: str) -> str:

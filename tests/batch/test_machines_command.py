@@ -36,7 +36,25 @@ def test_a_table_from_the_command_line_is_the_machine(workshop, form):
     np.testing.assert_allclose(dh.chain_of(table).forward(Q), KdlArm(machine.load("staubli-tx60")).forward(Q), atol=1e-7)
 
 
+@pytest.mark.parametrize("words,listed", [
+    (["--maker", "kuka", "--reach", "3.2 m"], {"kuka-kr240-r3330", "kuka-kr210-r3300-2-k"}),
+    (["--payload", "700 kg"], {"kuka-kr800-r2800-2"}),
+    (["--post", "staubli", "--reach", "1.3 m", "--maker", "Stäubli"],
+     {"staubli-tx2-90xl", "staubli-tx90xl", "staubli-rx160", "staubli-rx160l"}),
+    (["--maker", "yaskawa", "--reach", "3100"], {"motoman-gp20hl", "motoman-gp200r"}),
+    (["--maker", "universal robots", "--reach", "1.4 m"], {"ur-ur20"}), (["--payload", "2000"], set()),
+])
+def test_the_list_is_of_those_asked_for(workshop, words, listed):
+    lines = workshop.run("machines", *words).out.splitlines()
+    assert {line.split()[0] for line in lines} == listed
+    assert all(", reach " in line for line in lines)
+
+
 @pytest.mark.parametrize("words,told", [
+    (["--maker", "kukka"], "no machine known is of 'kukka'; titles begin with ABB, FANUC"),
+    (["--payload", "heavy"], "'heavy' is not a mass"), (["--reach", "3 s"], "--reach"),
+    (["--post", "krl"], "use one of fanuc"),
+    (["kuka-kr16-2", "--urdf", "--reach", "1 m"], "leave 'kuka-kr16-2' out"),
     (["kuka-kr16-2"], "in what form is 'kuka-kr16-2' to be written"), (["--urdf"], "--urdf of what machine"),
     (["kuka-kr16", "--dh"], "did you mean kuka-kr16-2"), (["kuka-kr16-2", "--dh", "--urdf"], "not allowed with"),
 ])

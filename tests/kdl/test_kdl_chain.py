@@ -7,11 +7,12 @@ import pytest
 from freecad_am.core.kinematics import machine
 from freecad_am.core.kinematics.jacobian import jacobian
 from freecad_am.kdl.chain import SOLVERS, KdlArm, available
+from tests.core.kinematics.arms import EXAMPLES
 
 pytestmark = pytest.mark.skipif(not available(), reason="PyKDL is not installed")
 
 
-@pytest.fixture(params=[name for name, _ in machine.known()])
+@pytest.fixture(params=EXAMPLES)
 def arm(request):
     return machine.load(request.param)
 

@@ -35,8 +35,8 @@ NOT_TOLD = "a URDF does not tell what the controller shows"
 SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
 REFUSED = "BAD_MACHINE: "  # begins what stands in place of the title of a file that is no machine file
 KEYS = (
-    "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "verified",
-    "check_poses", "shapes",
+    "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
+    "verified", "check_poses", "shapes",
 )
 # what rounding of the check poses may leave: mm, and entries of a rotation
 POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9

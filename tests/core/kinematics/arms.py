@@ -9,6 +9,16 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.chain import Chain
 from freecad_am.kdl.chain import KdlArm
 
+# built-in machines of every maker, wrist and size for tests that are dear; test_machine_library looks at all of them
+EXAMPLES = (
+    "abb-irb140", "abb-irb1600-6-12", "abb-irb1600-8-145", "abb-irb2400-12-155", "abb-irb4600-20-250",
+    "abb-irb4600-60-205", "fanuc-arcmate120ic", "fanuc-arcmate120ic-10l", "fanuc-crx10ia", "fanuc-crx10ia-l",
+    "head-table-xyzbc", "head-xyzab", "kuka-kr16-2", "kuka-kr16-r2010-2", "kuka-kr210-r2700-2", "kuka-kr6-r900-2",
+    "kuka-kr6-r900-sixx", "kuka-kr8-r2100-2-arc-hw", "motoman-ar1440", "motoman-ar2010", "motoman-ma2010",
+    "motoman-mh12", "staubli-rx160", "staubli-rx160l", "staubli-rx60b", "staubli-rx60bl", "staubli-tx2-60l",
+    "staubli-tx60", "staubli-tx60l", "table-xyzac", "table-xyzbc", "ur-ur10e",
+)
+
 # joints: origin mm, rpy deg, axis; then the flange
 UR5E = (
     ((0, 0, 162.5), (0, 0, 0), (0, 0, 1)), ((0, 0, 0), (90, 0, 0), (0, 0, 1)), ((-425, 0, 0), (0, 0, 0), (0, 0, 1)),

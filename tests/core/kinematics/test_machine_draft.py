@@ -12,6 +12,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import machine, machine_draft, opw_recognition, pendant, pose_figures, urdf, urdf_text
 from freecad_am.core.kinematics.pendant import Shown
 from freecad_am.kdl.chain import KdlArm
+from tests.core.kinematics.arms import EXAMPLES
 
 FANUC = machine.load("fanuc-arcmate120ic")
 TRUE = Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
@@ -140,7 +141,7 @@ def test_a_draft_makes_a_machine_file_that_loads(tmp_path):
     assert made.posts == ("fanuc",) and made.remarks == ("hall 3",) and made.sources[0] == "URDF arm.urdf"
 
 
-@pytest.mark.parametrize("name", [name for name, _ in machine.known()])
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_every_machine_can_be_copied(name, tmp_path):
     copy = machine_draft.of_machine(name)
     (tmp_path / f"{copy.id}.json").write_text(machine_draft.text(copy), encoding="utf-8")

@@ -12,8 +12,9 @@ from freecad_am.core.kinematics import machine, opw_recognition, urdf, urdf_text
 from freecad_am.core.kinematics.chain import Chain
 from freecad_am.core.kinematics.opw import OpwArm
 from freecad_am.kdl.chain import KdlArm
+from tests.core.kinematics.arms import EXAMPLES
 
-NAMES = [name for name, _ in machine.known()]
+NAMES = EXAMPLES
 ROBOTS = [name for name in NAMES if machine.load(name).opw is not None]
 Q6 = np.random.default_rng(8).uniform(-3.0, 3.0, (20, 6))
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.kinematics import machine, opw, opw_inverse
+from tests.core.kinematics.arms import EXAMPLES
 
-MACHINES = [name for name, _ in machine.known() if machine.load(name).opw is not None]
+MACHINES = [name for name in EXAMPLES if machine.load(name).opw is not None]
 
 
 @pytest.fixture(params=MACHINES)

@@ -10,8 +10,9 @@ from freecad_am.core.kinematics import opw
 from freecad_am.core.kinematics.cell import resolve
 from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed
 from freecad_am.core.parameters.cell import CellParameters
+from tests.core.kinematics.arms import EXAMPLES
 
-ROBOTS = [name for name, _ in machines.known() if machines.load(name).opw is not None]
+ROBOTS = [name for name in EXAMPLES if machines.load(name).opw is not None]
 
 
 @pytest.mark.parametrize("name", ROBOTS)

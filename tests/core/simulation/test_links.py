@@ -6,8 +6,9 @@ import pytest
 
 from freecad_am.core.kinematics import machine
 from freecad_am.core.simulation import link_rods, robot_links, solids, table_links
+from tests.core.kinematics.arms import EXAMPLES
 
-NAMES = [name for name, _ in machine.known()]
+NAMES = EXAMPLES
 ROBOTS = [name for name in NAMES if not machine.load(name).is_table]
 TABLES = [name for name in NAMES if name not in ROBOTS]
 
