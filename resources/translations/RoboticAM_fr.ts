@@ -6777,6 +6777,11 @@
         <translation>suivi des cordons</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machine_catalogue.py"/>
+        <source>freecad-am machines</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/tilt.py"/>
         <source>from layer {0} on, directions are tilted back to keep the nozzle clear, by up to {1} deg in layer {2}</source>
         <translation>à partir de la couche {0}, les directions sont redressées pour tenir la buse éloignée, jusqu&apos;à {1} deg dans la couche {2}</translation>
@@ -8300,6 +8305,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
         <source>no link is carried by {}</source>
         <translation>aucun corps n&apos;est porté par {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine_catalogue.py"/>
+        <source>no machine known is of {0}; titles begin with {1}</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/gcode.py"/>
