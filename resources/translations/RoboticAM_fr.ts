@@ -6779,7 +6779,7 @@
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_catalogue.py"/>
         <source>freecad-am machines</source>
-        <translation type="unfinished"></translation>
+        <translation>freecad-am machines</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/tilt.py"/>
@@ -8309,7 +8309,7 @@
     <message>
         <location filename="../../freecad_am/core/kinematics/machine_catalogue.py"/>
         <source>no machine known is of {0}; titles begin with {1}</source>
-        <translation type="unfinished"></translation>
+        <translation>aucune machine connue n’est de {0} ; les titres commencent par {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/gcode.py"/>
