@@ -28,12 +28,17 @@ GUI = ROOT / "tests" / "gui"
 WINDOW_TIMEOUT = 3000  # s for all tests of the window; one that hangs ends much sooner (tests/gui_runner.py)
 HEADLESS_TIMEOUT = 2400  # s for a part without a window
 LONG_TIMEOUT = 8 * 3600  # with long tests, and where tests are named
-# folders and files of parts of their own, and one more part has all the rest: parts of a few minutes, which fill the cores
-# to the end. First the BESIDE ones that only compute, beside the windows; then what looks at the clock, longest first
+# folders and files of parts of their own, and one more part has all the rest: first the BESIDE ones that only compute,
+# beside the windows; then what looks at the clock, longest first and down to a minute, so that both cores end together
 FOLDERS = (
     ("core/strategies",), ("core/filling", "core/slicing"), ("core/planning", "core/kinematics"),
-    ("batch",), ("brep", "objects"),
-    ("batch/test_wall_examples.py", "batch/test_thruster.py", "batch/test_deflected_thruster.py"), ("robust", "posts"),
+    ("batch/test_wall_examples.py",), ("objects", "interop"), ("batch",), ("robust",),
+    tuple(f"batch/test_{name}.py" for name in ("plan_command", "batch_command", "export_command", "interruption")),
+    ("brep",),
+    tuple(f"batch/test_{name}.py" for name in (
+        "examples", "thruster", "deflected_thruster", "staubli_example", "table_example",
+    )),
+    ("posts", "core/geometry"),
 )
 BESIDE = 3
 WINDOWS = (
@@ -74,7 +79,8 @@ PREFERENCES = """<?xml version="1.0" encoding="UTF-8" standalone="no" ?>
 <FCParameters><FCParamGroup Name="Root"><FCParamGroup Name="BaseApp"><FCParamGroup Name="Preferences">
 <FCParamGroup Name="General"><FCText Name="AutoloadModule">RoboticAMWorkbench</FCText>
 <FCBool Name="ShowSplasher" Value="0"/><FCText Name="Language">English</FCText></FCParamGroup>
-<FCParamGroup Name="View"><FCBool Name="UseNavigationAnimations" Value="0"/></FCParamGroup>
+<FCParamGroup Name="View"><FCBool Name="UseNavigationAnimations" Value="0"/><FCBool Name="ShowNaviCube" Value="0"/>
+<FCBool Name="CornerCoordSystem" Value="0"/></FCParamGroup>
 <FCParamGroup Name="Document"><FCBool Name="RecoveryEnabled" Value="0"/><FCBool Name="AutoSaveEnabled" Value="0"/>
 </FCParamGroup><FCParamGroup Name="Mod"><FCParamGroup Name="Start"><FCBool Name="ShowOnStartup" Value="0"/>
 <FCBool Name="FirstStart2024" Value="0"/></FCParamGroup></FCParamGroup></FCParamGroup>
@@ -94,7 +100,7 @@ def private_home(folder: Path) -> dict[str, str]:
     return {
         **os.environ, **places, "XDG_RUNTIME_DIR": str(runtime), "FREECAD_USER_HOME": str(folder),
         # the start page's browser will not run as root otherwise
-        "QTWEBENGINE_DISABLE_SANDBOX": "1", "LIBGL_ALWAYS_SOFTWARE": "1", "QT_QPA_PLATFORM": "xcb",
+        "QTWEBENGINE_DISABLE_SANDBOX": "1", "LIBGL_ALWAYS_SOFTWARE": "1", "LP_NUM_THREADS": "0", "QT_QPA_PLATFORM": "xcb",
         "PYTHONDONTWRITEBYTECODE": "1", "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
         # parts run at the same time, and threads of two would wait for one another's cores
         "OPENBLAS_NUM_THREADS": os.environ.get("OPENBLAS_NUM_THREADS", "1"),

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-MORE = 0.25  # of a core, that parts at the same time may ask for beyond those that are there
+MORE = 0.45  # of a core, that parts at the same time may ask for beyond those that are there
 TIMES = "freecad-am: what the parts took, and s of processor"
 SLOWEST = 10  # tests told of with what they took
 EXPLAINED = 10  # tests that failed told of with why, and all the others by their names

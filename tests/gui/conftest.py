@@ -10,6 +10,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
+from tests import plans
 from tests.gui.hand import Hand
 
 PATIENCE = 2.0  # s a dialog may stand there before it counts as stray
@@ -257,6 +258,16 @@ class Person:
         view = self.window.findChild(self.widgets.QTextEdit, "Report view")
         assert view is not None, "there is no report view to watch"
         return view.toPlainText()
+
+
+@pytest.fixture(autouse=True)
+def planned_once(request):
+    """Jobs that several tests make are planned for the first of them, but where a test looks at the planning itself."""
+    if request.node.get_closest_marker("planned_anew"):
+        yield
+    else:
+        with plans.kept():
+            yield
 
 
 @pytest.fixture

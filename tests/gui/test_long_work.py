@@ -20,6 +20,8 @@ from freecad_am.objects.progress import Cancelled
 from freecad_am.objects.toolpath import Toolpath
 from tests.gui.long_jobs import JOBS
 
+pytestmark = pytest.mark.planned_anew
+
 HANGING = 5.0  # s; what takes longer than that does not react, however busy the machine: `bench long_work` measures it
 LONG = 60.0  # s that none of the works below may be seen to the end in
 

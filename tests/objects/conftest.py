@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from freecad_am import api
+from tests import plans
 
 LABEL = "Hémisphère n° 1"
 
@@ -26,12 +27,13 @@ def part(doc):
 
 @pytest.fixture
 def job(doc, part):
-    """All stages, few layers."""
-    cell = api.make_cell(doc, limits="paper")
-    feature = api.make_feature(doc, part, layer_height=10)
-    toolpath = api.make_toolpath(doc, feature, cell)
-    joint_path = api.make_joint_path(doc, toolpath, cell)
-    program = api.make_program(doc, joint_path, name="CUP")
+    """All stages, few layers; planned for the first test that asks for it."""
+    with plans.kept():
+        cell = api.make_cell(doc, limits="paper")
+        feature = api.make_feature(doc, part, layer_height=10)
+        toolpath = api.make_toolpath(doc, feature, cell)
+        joint_path = api.make_joint_path(doc, toolpath, cell)
+        program = api.make_program(doc, joint_path, name="CUP")
     return SimpleNamespace(
         doc=doc, part=part, cell=cell, feature=feature, toolpath=toolpath, joint_path=joint_path, program=program,
         stages=(cell, feature, toolpath, joint_path, program),
