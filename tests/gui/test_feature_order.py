@@ -40,6 +40,11 @@ def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     person.click("RoboticAM_Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
     assert listed(panel, person) == ["C feature"]
+    place = panel
+    while place.objectName() != "qt_scrollarea_viewport":
+        place = place.parentWidget()
+    # four buttons in a row made it wider
+    person.until(lambda: panel.mapTo(place, panel.rect().topRight()).x() < place.width(), "a panel that is not cut off")
     press(person, panel, "AddFeature")  # what is selected is there; nothing more
     FreeCADGui.Selection.clearSelection()
     press(person, panel, "AddFeature")
