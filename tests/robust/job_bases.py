@@ -41,6 +41,17 @@ FAMILIES = {
     "solid": {
         "part": {"file": "bracket.step"}, "strategy": {"kind": "solid", "layer_height": "10 mm", "bead_spacing": "10 mm"},
     },
+    "cladding": {
+        "part": {"file": "hub.step", "faces": ["Face1"]},
+        "strategy": {"kind": "cladding", "layer_height": "3 mm", "bead_spacing": "14 mm", "layers": 2},
+    },
+    "features": {
+        "strategy": {"layer_height": "10 mm"},
+        "features": [
+            {"name": "bracket", "part": {"file": "bracket.step"}, "strategy": {"kind": "solid", "bead_spacing": "10 mm"}},
+            {"name": "post", "part": {"file": "post.step"}, "strategy": {"kind": "revolution"}},
+        ],
+    },
 }
 
 
@@ -55,6 +66,7 @@ def write_parts(folder):
     Part.makeBox(40, 40, 10, FreeCAD.Vector(-20, -20, -10)).exportStep(str(folder / "block.step"))
     angle = Part.makeBox(50, 40, 15).fuse(Part.makeBox(15, 40, 40))
     angle.cut(Part.makeCylinder(8, 60, FreeCAD.Vector(32, 20, -5))).exportStep(str(folder / "bracket.step"))
+    Part.makeCylinder(6, 20, FreeCAD.Vector(7.5, 20, 40)).exportStep(str(folder / "post.step"))
     (folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n30,20,0,1\n0,6,0,2\n20,6,0,2\n", encoding="utf-8")
     hub = Part.makeCylinder(25.0, 80.0)
     hub.exportStep(str(folder / "hub.step"))
@@ -79,9 +91,10 @@ def bases(folder):
         machine = json.loads(path.read_text(encoding="utf-8"))
         for family, sections in FAMILIES.items():
             job = copy.deepcopy(sections)
-            for key in ("part", "substrate"):
-                if key in job:
-                    job[key]["file"] = str(Path(folder) / job[key]["file"])
+            for where in (job, *job.get("features", ())):
+                for key in ("part", "substrate"):
+                    if key in where:
+                        where[key]["file"] = str(Path(folder) / where[key]["file"])
             job["strategy"]["chord_error"] = "0.5 mm"
             job["cell"] = _cell(machine)
             posts = written_by(machines.load(machine["id"], ())) or ()

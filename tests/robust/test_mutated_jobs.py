@@ -69,6 +69,8 @@ def _excess(folder, job, points, build):
         away = np.where(np.any(inside, axis=0), 0.0, away)
         widest = max(length(strategy.get("bead_spacing", 5.0)), length(process.get("bead_width", 8.0)))
         return away - (0.5 * widest + length(strategy.get("margin", 0.0)) + chord + DEFLECTION + 0.02)
+    if strategy.get("kind") == "cladding":  # along the normals of its faces
+        return away - (strategy.get("layers", 1) * length(strategy.get("layer_height", 1.0)) + chord + DEFLECTION + 0.02)
     if strategy.get("wall") == "middle":  # halfway between two walls of the part
         return away - 10.0
     return away - (chord + DEFLECTION + 0.02)
