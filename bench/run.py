@@ -51,9 +51,10 @@ def environment_python() -> Path | None:
 def main(names: list[str]) -> int:
     """Print a line per comparison, and how busy the machine is before each benchmark: medians forgive some of that."""
     sys.path[:0] = [str(HERE.parent), str(HERE)]
-    from freecad_am.batch import host
+    from freecad_am.batch import allocation, host
 
     host.find_freecad()
+    allocation.keep_freed()  # as commands do
     short = False
     for name in names or BENCHMARKS:
         if name not in BENCHMARKS:

@@ -15,7 +15,8 @@ from freecad_am.core.toolpath import Toolpath
 from freecad_am.plots.source import Source
 
 from . import hub_figures, view, wall_figures
-from .pictures import MISSING, OfFeature, Pictures
+from .of_feature import OfFeature
+from .pictures import MISSING, Pictures
 
 _MOST_ISSUES = 200
 _WHOLE = (

@@ -6,12 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from types import ModuleType
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from freecad_am.core.strategies.wall_comparison import Compared, Refused
-from freecad_am.core.toolpath import Array, Toolpath
 from freecad_am.plots import joints, process
 from freecad_am.plots.chart import Chart, together
 from freecad_am.plots.fit import fit
@@ -19,20 +16,10 @@ from freecad_am.plots.look import PAGE
 from freecad_am.plots.rows import Rows, rows
 from freecad_am.plots.source import Source
 
+from .of_feature import OfFeature
+
 HALF, WHOLE, TALL = 460, 940, 230  # pixels
 MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
-
-
-class OfFeature(NamedTuple):
-    """What is shown of each feature. name: empty of a single one. spacing: (points,) mm from each of its layers to what lies
-    below it; band: share of the layer height by which that may differ. compared, rows: how else its wall may be cut."""
-
-    name: str
-    toolpath: Toolpath
-    spacing: Sequence[Array]
-    band: float | None = None
-    compared: Sequence[Compared | Refused] = ()
-    rows: Sequence[dict[str, Any]] = ()
 
 
 class Pictures:

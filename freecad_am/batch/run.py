@@ -256,14 +256,15 @@ def _compared_walls(job: Job, stages: Stages, toolpath: Any, distances: Any) -> 
     from freecad_am import api
     from freecad_am.core.process import spacing
 
-    from . import spacing_comparison
-    from .pictures import OfFeature
+    from .of_feature import OfFeature
 
     found = []
     for feature, one, (part, _) in zip(stages.features, job.features, toolpath.parts, strict=True):
         apart = spacing.between_layers(part) if toolpath.features else distances
         shown = OfFeature(one.name if toolpath.features else "", part, apart, getattr(one.strategy, "band", None))
         if family_of(one.strategy).kind == "surface":
+            from . import spacing_comparison  # slow to import, and only walls need it
+
             compared = spacing_comparison.compare(api.result(feature), one)
             shown = shown._replace(compared=compared, rows=spacing_comparison.rows(compared, one, part, apart))
         found.append(shown)
@@ -274,10 +275,10 @@ def _with_motion(job: Job, stages: Stages, wall: Any, planned: Any, cell: Any, s
     """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
     from freecad_am import api
 
-    from . import spacing_comparison
-
     rows: list[dict[str, Any]] = list(wall.rows)
     if rows and planned is not None:
+        from . import spacing_comparison
+
         rows[0]["motion"] = spacing_comparison.motion_of(planned.joint_path, planned.motion, cell, job.joints)
         others = spacing_comparison.motions(api.result(stages.features[0]), job, session)
         for row in rows[1:]:

@@ -9,7 +9,7 @@ solid is inside the triangle, so one point of the section decides.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,9 @@ class Frustum:
 
     def rows(self, index: Index) -> Frustum:
         """The solids of some of the rows."""
-        return self if np.ndim(self.low) == 0 else replace(self, low=np.asarray(self.low)[index])
+        if np.ndim(self.low) == 0:
+            return self
+        return Frustum(self.radius, self.slope, np.asarray(self.low)[index], self.high)
 
     def near_box(self, offset: Array, axis: Array, half: Array, rounding: Array) -> Mask:
         """False where boxes about points, of half sizes (k, 3), with a rounding (k,) mm about them, surely miss the solid:

@@ -22,6 +22,7 @@ _CODE = np.array([1, 2, 4, 8])
 _KEPT = np.array([(*having, *having[:1] * 3, 0, 0, 0)[:3] for having in (
     tuple(k for k in range(4) if code >> k & 1) for code in range(16)
 )])
+FEW = 500  # pairs that are done as soon together as in two parts
 MOST = 64  # steps of a pair; what is not settled then is near to grazing and keeps its bounds
 
 
@@ -49,9 +50,13 @@ def bounds(
         size = high[rows]
         low[rows] = np.maximum(low[rows], _dot(place, newest) / size)
         going = np.flatnonzero(low[rows] < np.minimum(farther[rows], size - CONVERGED))
-        rows, newest, size = rows[going], newest[going], size[going]
-        solid, axis, points = solid.rows(going), axis[going], points[going]
-        place, simplex = _of_two(place[going], newest) if simplex is None else _nearest(simplex[going], newest)
+        if len(going) < len(rows):
+            if not len(going):
+                break
+            rows, newest, size, place = rows[going], newest[going], size[going], place[going]
+            solid, axis, points = solid.rows(going), axis[going], points[going]
+            simplex = None if simplex is None else simplex[going]
+        place, simplex = _of_two(place, newest) if simplex is None else _nearest(simplex, newest)
         now = np.sqrt(_dot(place, place))
         # no nearer than before: rounding has the last word
         high[rows] = np.minimum(now, size)
@@ -74,7 +79,7 @@ def within(solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
 
 def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius: Array) -> Mask:
     """(k,) as `within`, but of the hulls asked for by one query (k,) no more than needed to know whether any does: those
-    with the nearest middle are looked at first, and the others where that does not."""
+    with the nearest middle are looked at first, and the others where that does not, unless there are few."""
     deep = np.maximum(radius - CONVERGED, 0.0)
     middle = middles(points)
     place = solid.nearest(middle, axis) - middle
@@ -88,7 +93,7 @@ def any_within(query: Index, solid: Frustum, axis: Array, points: Array, radius:
     left = np.flatnonzero(~met[query] & (gap - nearer < np.maximum(deep, CONVERGED) + ROUNDING))
     left = left[np.lexsort(((gap - deep)[left], query[left]))]
     first = np.diff(query[left], prepend=-1) != 0
-    for some in (left[first], left[~first]):
+    for some in (left[first], left[~first]) if len(left) > FEW else (left,):
         now = some[~met[query[some]]]
         found[now] = within(solid.rows(now), axis[now], points[now], radius[now])
         met[query[now[found[now]]]] = True

@@ -347,14 +347,23 @@ def _predicted(task: Task, points: Points, joints: Array, rates: Array, powers: 
     gradient = (gradient[:, None] @ free)[:, 0]
     if task.parameters.objective != "displacement":
         return np.asarray(np.linalg.norm(gradient, axis=1))
-    spread = rates[:, :, None] * powers[:, None, :]
-    change = np.zeros_like(spread)
-    change[1:] = spread[1:] - spread[:-1]
-    change[points.starts] = 0.0
-    curvature = 2.0 * points.total(np.einsum("a,iaj,iak->jki", task.weights, change, change)).transpose(2, 0, 1)
+    change = [_between(rates * power[:, None], points) for power in powers.T]
+    curvature = np.empty((points.beads, len(change), len(change)))
+    for j, one in enumerate(change):
+        weighed = one * task.weights
+        for k, other in enumerate(change[: j + 1]):
+            curvature[:, j, k] = curvature[:, k, j] = 2.0 * points.total(np.einsum("ia,ia->i", weighed, other))
     curvature = np.swapaxes(free, 1, 2) @ curvature @ free
     inverse = np.linalg.pinv(curvature, rcond=1e-10, hermitian=True)
     fall: Array = 0.5 * np.einsum("bj,bjk,bk->b", gradient, inverse, gradient)
     return fall
+
+
+def _between(values: Array, points: Points) -> Array:
+    """What values (T, axes) change by from the point before; 0 at the first point of a bead."""
+    change = np.zeros_like(values)
+    np.subtract(values[1:], values[:-1], out=change[1:])
+    change[points.starts] = 0.0
+    return change
 
 

@@ -22,7 +22,7 @@ from .offset_wrist_search import Curves, Zeros
 
 Mask = NDArray[np.bool_]
 
-CHUNK = 2048
+CHUNK = 1024  # poses worked on together: twice as many take new memory time and again
 MOST = 16  # solutions of six revolute joints
 TURN = 2.0 * math.pi
 STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
