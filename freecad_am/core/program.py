@@ -174,6 +174,9 @@ class Program:
     origin on the table's face: the work offset with the rotary axes at zero.
     axis_names: how the controller writes each axis, such as X Y Z A C; axis_kinds: 'linear' or 'rotary', one each. Both are
     empty for robots, whose axes go by number. nc: for five-axis machines alone.
+    external_kinds: 'linear' or 'rotary' of each axis beside the robot, which are the last ones of all; the part is then on
+    the last mechanism, and station is the program's origin on its face. unit: what the controller calls that mechanism;
+    first_external: the number there of the first of these axes, from 1.
     """
 
     name: str
@@ -197,6 +200,14 @@ class Program:
     axis_names: tuple[str, ...] = ()
     axis_kinds: tuple[str, ...] = ()
     nc: NcOptions = NcOptions()
+    external_kinds: tuple[str, ...] = ()
+    unit: str = ""
+    first_external: int = 1
+
+    @property
+    def own_axes(self) -> int:
+        """How many axes the machine has without those beside it."""
+        return len(self.endless) - len(self.external_kinds)
 
     @property
     def moves(self) -> tuple[Moves, ...]:
@@ -273,6 +284,8 @@ class ReadMoves:
     events: what happens between the moves, in order. configuration: of positions of robots.
     user_frame, tool_frame: (n,) numbers of the frame and the tool that a text selects, NaN where it selects none; the frame
     of moves of bare axes, which count on none, is left out.
+    unit: what a text calls the mechanism that carries the part, and that its positions are seen from; first_external: the
+    number of the first axis beside the robot. Both as in `Program`.
     """
 
     joints: Array | None
@@ -311,3 +324,5 @@ class ReadMoves:
     configuration: Configuration | None = None
     user_frame: Array | None = None
     tool_frame: Array | None = None
+    unit: str = ""
+    first_external: int = 1

@@ -34,6 +34,7 @@ from .refusals import (
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
+    refuse_external,
     refuse_incomplete,
     refuse_wire,
     refuse_without_positions,
@@ -115,7 +116,8 @@ def refuse_setup(motion: str, setup: str) -> None:
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    refuse_incomplete(program, "abb", AXES)
+    refuse_incomplete(program, "abb", AXES + len(program.external_kinds))
+    refuse_external(program, text.MOST_AXES, r"[A-Za-z]\w{0,31}", "the name of its mechanical unit, such as STN1")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_endless(program)
@@ -128,6 +130,8 @@ def _refuse(program: Program) -> None:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
+    if program.external_kinds:
+        yield f"{text.WORK_OBJECT} is on the face of {program.unit}, and seen from its user frame"
     if program.setup == "part-on-robot":
         yield f"{text.TOOL} is the nozzle, which stands; {text.WORK_OBJECT} is what the robot holds"
     yield f"set the load of {text.TOOL}: mass and centre of gravity of what the robot carries"
@@ -159,25 +163,26 @@ def _module(
 ) -> bytes:
     held = program.setup == "part-on-robot"
     station, carried = numbers.pose(program.station), numbers.pose(program.carried)
-    lines = ["    ConfL\\Off;", "    SingArea\\Off;"]
+    lines = ["    ConfL\\Off;", "    SingArea\\Off;", *text.activated(program.unit)]
     used: set[str] = set()
     for piece in pieces:
         if isinstance(piece, Run):
-            lines += _motion(piece)
+            lines += _motion(piece, program.first_external)
             used.update(word.rpartition(",")[2] for word in piece.words[piece.start : piece.stop])
         else:
             lines += piece
     zones = [(zone, size_mm) for size_mm, zone in words.zones.items() if zone in used]
     tool, work_object = (station, carried) if held else (carried, station)
-    return text.module(name, routine, remarks, text.data(tool, work_object, held, zones), lines)
+    return text.module(name, routine, remarks, text.data(tool, work_object, held, zones, program.unit), lines)
 
 
-def _motion(run: Run) -> list[str]:
-    """Lines through all points of a run."""
+def _motion(run: Run, first: int) -> list[str]:
+    """Lines through all points of a run. first: the number of the first axis beside the robot."""
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation != LINEAR_MOVE:
-        return text.joint_moves(numbers.degrees(moves.joints[rows]), run.words[rows])
+        return text.joint_moves(numbers.degrees(moves.joints[rows]), run.words[rows], first)
     assert moves.position is not None and moves.rotation is not None
     return text.linear_moves(
-        numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]), run.words[rows]
+        numbers.positions(moves.position[rows]), numbers.quaternions(moves.rotation[rows]),
+        numbers.degrees(moves.joints[rows, AXES:]), run.words[rows], first,
     )

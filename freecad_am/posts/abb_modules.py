@@ -24,16 +24,17 @@ _TURNING = 500.0
 @dataclass(frozen=True)
 class Frames:
     """A tool and a work object, (4, 4) in the world or on the flange: held says that it is the work object that the robot
-    carries, and that the tool stands."""
+    carries, and that the tool stands. unit: the mechanical unit that the work object is seen from, '' where it stands."""
 
     tool: Array
     work_object: Array
     held: bool
+    unit: str = ""
 
     def same(self, other: Frames) -> bool:
         """Whether they are those of another module, number by number."""
         alike = np.array_equal(self.tool, other.tool) and np.array_equal(self.work_object, other.work_object)
-        return alike and self.held == other.held
+        return alike and (self.held, self.unit) == (other.held, other.unit)
 
 
 @dataclass
@@ -48,6 +49,7 @@ class Module:
     objects: dict[str, tuple[bool, Array]] = field(default_factory=dict)
     speeds: set[str] = field(default_factory=set)
     zones: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     _paired: dict[tuple[str, str], Frames] = field(default_factory=dict)
 
     def tool_and_object(self, tool: str, work_object: str, where: str) -> Frames:
@@ -58,7 +60,7 @@ class Module:
             (on_robot, at), (held, seen) = self.tools[tool], self.objects[work_object]
             if on_robot == held:
                 raise unreadable(where, "the robot has to carry either the tool or the work object")
-            self._paired[tool, work_object] = Frames(at, seen, held)
+            self._paired[tool, work_object] = Frames(at, seen, held, self.units[work_object])
         return self._paired[tool, work_object]
 
 
@@ -107,9 +109,11 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
         module.tools[name] = _truth(held), _pose(at)
     elif kind == "wobjdata":
         held, fixed, unit, user, inside = value
-        if fixed is not True or unit != "":
+        moved = _truth(fixed) is False  # by the unit, whose own frame goes before what is written for the user's
+        written = moved and not np.array_equal(_pose(user), np.eye(4))
+        if moved != bool(unit) or not isinstance(unit, str) or written:
             raise ValueError
-        module.objects[name] = _truth(held), _pose(user) @ _pose(inside)
+        module.objects[name], module.units[name] = (_truth(held), _pose(user) @ _pose(inside)), unit
     elif kind == "speeddata":
         _, turning, _, _ = map(float, value)
         if turning < _TURNING:

@@ -21,11 +21,11 @@ from .abb_modules import Frames, Module, modules, turned, unreadable
 Array = NDArray[np.float64]
 
 _N = r"-?\d+\.\d+"
-_NO_AXES = r"\[9E9,9E9,9E9,9E9,9E9,9E9\]"
+_AXES = rf"\[((?:(?:9E9|{_N}),){{5}}(?:9E9|{_N}))\]"
 _TAIL = r",(\w+)\\([TV]):=(\d+\.(\d+)),(\w+),(\w+)\\WObj:=(\w+);$"
-_JOINT = re.compile(rf"MoveAbsJ \[\[({','.join([_N] * 6)})\],{_NO_AXES}\]\\NoEOffs{_TAIL}")
+_JOINT = re.compile(rf"MoveAbsJ \[\[({','.join([_N] * 6)})\],{_AXES}\]\\NoEOffs{_TAIL}")
 _PLACE, _TURN = (f"\\[({','.join([_N] * count)})\\]" for count in (3, 4))
-_LINEAR = re.compile(rf"MoveL \[{_PLACE},{_TURN},\[0,0,0,0\],{_NO_AXES}\]{_TAIL}")
+_LINEAR = re.compile(rf"MoveL \[{_PLACE},{_TURN},\[0,0,0,0\],{_AXES}\]{_TAIL}")
 _DECIMALS = re.compile(r"\.(\d+)")
 _OUTPUT = re.compile(r"SetDO do(\d+),([01]);$")
 _WAIT = re.compile(r"WaitTime (\d+\.(\d+));$")
@@ -34,6 +34,7 @@ _COOL = re.compile(r"WaitAI ai(\d+),\\LT,(-?\d+(?:\.\d+)?);$")
 _LAYER = re.compile(r"! layer (\d+)$")
 _LOAD = re.compile(r'Load \\Dynamic,"HOME:/(\w+)\.mod";$')
 _RUN = re.compile(r'%"(\w+)"%;$')
+_ACTIVE = re.compile(r"ActUnit (\w+);$")
 _CALL = re.compile(r"([A-Za-z]\w*);$")
 _ROUTINE = "main"
 
@@ -44,7 +45,8 @@ def _floats() -> array[float]:
 
 @dataclass
 class _Run:
-    """What happened so far while the routines are followed, column by column.
+    """What happened so far while the routines are followed, column by column. beside: axes beside the robot as they stand,
+    of which those `used` have values; active: the mechanical unit that the module has activated.
 
     told: s of joint moves, mm/s of linear ones, half: of its last digit. rounding: mm, NaN of moves that stop. joints,
     places, turns: the numbers of a move as they stand. nearest: ConfL is off, and positions are taken as the arm reaches
@@ -63,6 +65,9 @@ class _Run:
     events: list[Event] = field(default_factory=list)
     followed: list[str] = field(default_factory=list)
     frames: Frames | None = None
+    beside: list[str] = field(default_factory=list)
+    used: tuple[int, ...] | None = None
+    active: str = ""
     output: str = ""
     on: bool = False
     nearest: bool = False
@@ -100,7 +105,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _follow(module: Module, run: _Run) -> None:
     """Carry out the statements of a routine in order, and of those of the parts that it loads."""
     run.followed.append(module.name)
-    run.nearest = False  # each says it for itself: it may be run alone
+    run.nearest, run.active = False, ""  # each says it for itself: it may be run alone
     lines = iter(module.statements)
     for number, line in lines:
         where = f"{module.file} line {number}"
@@ -111,6 +116,8 @@ def _follow(module: Module, run: _Run) -> None:
             run.happens("layer", float(layer[1]))
         elif line == r"ConfL\Off;":
             run.nearest = True
+        elif (active := _ACTIVE.match(line)) and not run.moving and not run.active:
+            run.active = active[1]
         elif line.startswith("!") or line == r"SingArea\Off;":
             continue
         elif run.moving:
@@ -166,6 +173,7 @@ def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
         run.frames = frames
     elif frames is not run.frames and not frames.same(run.frames):
         raise unreadable(where, "moves of more than one tool or work object are mixed")
+    _beside(values.pop().split(","), frames, run, where)
     for column, value in zip((*((run.places, run.turns) if linear else (run.joints,)),), values, strict=True):
         column.append(value)
     run.linear.append(linear)
@@ -175,15 +183,32 @@ def _move(module: Module, move: re.Match[str], run: _Run, where: str) -> None:
     run.rounding.append(np.nan if zone == "fine" else module.zones[zone])
 
 
+def _beside(texts: list[str], frames: Frames, run: _Run, where: str) -> None:
+    """Keep the values of the axes beside the robot: of the same ones in all moves, those of the unit that the work object is
+    on, which is active."""
+    used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
+    if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or run.used not in (None, used):
+        raise unreadable(where, "other axes beside the robot have values than in moves before, or not all in a row")
+    if bool(used) != bool(frames.unit) or run.active != frames.unit:
+        raise unreadable(where, "axes beside the robot have no value, or their unit is not active, or not the object's")
+    run.used = used
+    run.beside += [",".join(texts[number - 1] for number in used)] if used else []
+
+
 def _moves(run: _Run) -> ReadMoves:
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     told, half, rounding = np.array(run.told), np.array(run.half), np.array(run.rounding)
-    joints = np.full((len(told), 6), np.nan)
-    joints[~linear] = np.radians(_numbers(run.joints, 6))
+    used = run.used or ()
+    joints = np.full((len(told), 6 + len(used)), np.nan)
+    joints[~linear, :6] = np.radians(_numbers(run.joints, 6))
+    if used:
+        joints[:, 6:] = np.radians(_numbers(run.beside, len(used)))
     read_moves = ReadMoves(
-        None if linear.all() else joints, float(np.radians(_half_digit(run.joints))), np.where(linear, np.nan, told),
+        None if np.isnan(joints).all() else joints, float(np.radians(_half_digit(run.joints + run.beside))),
+        np.where(linear, np.nan, told),
         deposit, linear, np.isnan(rounding), tuple(run.events), speed=np.where(linear, told, np.nan),
         speed_digits=float(half[linear].max(initial=0.0)), duration_digits=half, rounding=rounding,
+        unit=run.frames.unit if run.frames else "", first_external=used[0] if used else 1,
     )
     return _seen(read_moves, run) if linear.any() else read_moves
 

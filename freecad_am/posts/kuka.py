@@ -32,6 +32,7 @@ from .refusals import (
     refuse_calls_of_own,
     refuse_cooling,
     refuse_endless,
+    refuse_external,
     refuse_incomplete,
     refuse_wire,
     refuse_without_positions,
@@ -50,7 +51,7 @@ ON_CONTROLLER = on_controller(
     "The override is 100 %",
 )
 AXES = 6
-LAST_TOOL, LAST_BASE = 16, 32
+LAST_TOOL, LAST_BASE, LAST_EXTERNAL = 16, 32, 6
 
 _RESERVED = frozenset(
     ("AND", "ANIN", "ANOUT", "BAS", "BOOL", "BRAKE", "CASE", "CHANNEL", "CHAR", "CIRC", "CONFIRM", "CONST", "CONTINUE")
@@ -119,7 +120,9 @@ def refuse_setup(motion: str, setup: str) -> None:
 
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    refuse_incomplete(program, "kuka", AXES)
+    axes = AXES + len(program.external_kinds)
+    refuse_incomplete(program, "kuka", axes)
+    refuse_external(program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     for what, number, last in (("tool_frame", program.tool_frame, LAST_TOOL), ("user_frame", program.user_frame, LAST_BASE)):
@@ -129,7 +132,7 @@ def _refuse(program: Program) -> None:
                 f"the controller has numbers up to {last}, not {number}; use one of these",
             )
     refuse_endless(program)
-    refuse_without_speeds(program, AXES)
+    refuse_without_speeds(program, axes)
     refuse_without_positions(program, straight=True)
     for block in program.blocks:
         if isinstance(block, Call):
@@ -139,7 +142,9 @@ def _refuse(program: Program) -> None:
 
 
 def _own_remarks(program: Program) -> Iterator[str]:
-    yield f"BASE_DATA[{program.user_frame}] is the program origin, TOOL_DATA[{program.tool_frame}] the tip of the nozzle:"
+    seen = f", seen from the face of MACHINE_DEF[{program.unit}]" if program.external_kinds else ""
+    yield (f"BASE_DATA[{program.user_frame}] is the program origin{seen}, TOOL_DATA[{program.tool_frame}] the tip of the"
+           " nozzle:")
     for what, six in (("BASE", program.station), ("TOOL", program.carried)):
         if six is not None:
             values = text.frames(np.array([six[:3]]), text.turned(six[3:])[None])[0]
@@ -170,9 +175,11 @@ _STAND = "WAIT SEC 0"
 
 
 def _body(program: Program, pieces: Sequence[Piece]) -> list[str]:
+    unit, base = f"MACHINE_DEF[{program.unit}]", f"BASE_DATA[{program.user_frame}]"
+    coupled = [f"$BASE=EK({unit}.ROOT,{unit}.MECH_TYPE,{base})"] if program.external_kinds else []
     lines = [
-        "BAS(#INITMOV,0)", f"BAS(#BASE,{program.user_frame})", f"BAS(#TOOL,{program.tool_frame})", "$IPO_MODE=#BASE",
-        "$ORI_TYPE=#VAR",
+        "BAS(#INITMOV,0)", f"BAS(#BASE,{program.user_frame})", *coupled, f"BAS(#TOOL,{program.tool_frame})",
+        "$IPO_MODE=#BASE", "$ORI_TYPE=#VAR",
     ]
     said: dict[str, str] = {}
     for piece in pieces:

@@ -21,7 +21,11 @@ Array = NDArray[np.float64]
 
 _N = r"(-?\d+\.\d+)"
 _AXES, _PLACES = (",".join(f"{name} {_N}" for name in names.split()) for names in ("A1 A2 A3 A4 A5 A6", "X Y Z A B C"))
-_TO_AXES, _STRAIGHT = re.compile(rf"PTP \{{{_AXES}\}}$"), re.compile(rf"LIN \{{{_PLACES}\}}( C_DIS)?$")
+_BESIDE = rf"((?:,E[1-6] {_N[1:-1]})*)"  # axes beside the robot
+_TO_AXES = re.compile(rf"PTP \{{{_AXES}{_BESIDE}\}}$")
+_STRAIGHT = re.compile(rf"LIN \{{{_PLACES}{_BESIDE}\}}( C_DIS)?$")
+_EXTERNAL, _SHARED = re.compile(rf",E(\d) {_N}"), re.compile(r"\$VEL_EXTAX\[([1-6])\]=(\d+)$")
+_COUPLED = re.compile(r"\$BASE=EK\(MACHINE_DEF\[(\d+)\]\.ROOT,MACHINE_DEF\[(\d+)\]\.MECH_TYPE,BASE_DATA\[(\d+)\]\)$")
 _PERCENT = re.compile(r"BAS\(#VEL_PTP,(\d+)\)$")
 _METRES, _ROUNDING = re.compile(r"\$VEL\.CP=(\d+\.(\d+))$"), re.compile(r"\$APO\.CDIS=(\d+\.\d+)$")
 _SELECTED = re.compile(r"BAS\(#(BASE|TOOL),(\d+)\)$")
@@ -40,7 +44,8 @@ class _Run:
     """What happened so far while the modules are followed, column by column.
 
     state: what was set last, by its name; a module counts on nothing that another one has set. standing: nothing moves, for
-    the program has waited.
+    the program has waited. beside: values of the axes beside the robot at each move; unit: the mechanism that BASE
+    is coupled to, and numbers of its axes.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -56,6 +61,9 @@ class _Run:
     followed: list[str] = field(default_factory=list)
     state: dict[str, float] = field(default_factory=dict)
     half_digits: dict[str, float] = field(default_factory=dict)
+    beside: list[Array] = field(default_factory=list)
+    unit: str | None = None
+    numbers: tuple[int, ...] = ()
     output: str = ""
     on: bool = False
     standing: bool = True
@@ -113,6 +121,14 @@ def _go(name: str, run: _Run) -> None:
             run.state["rounding"] = float(setting[1])
         elif setting := _SELECTED.match(line):
             run.state[setting[1]] = float(setting[2])
+            if setting[1] == "BASE":
+                run.state.pop("EK", None)
+        elif coupled := _COUPLED.match(line):
+            if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
+                raise _not_read(where, "root and type are of two mechanisms, or the base is not the one selected")
+            run.state["EK"] = float(coupled[1])
+        elif setting := _SHARED.match(line):
+            run.state[f"E{setting[1]}"] = float(setting[2])
         elif line in (_INITIAL, _ON_FLANGE, _TURNING):
             if line == _INITIAL:
                 run.state = {}  # what was set before counts no more
@@ -161,7 +177,7 @@ def _stopped(run: _Run, where: str) -> bool:
 def _moved(line: str, run: _Run, where: str) -> None:
     straight, state = _STRAIGHT.match(line), run.state
     needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | ({"speed"} if straight else {"percent"})
-    if straight and straight[7]:
+    if straight and straight[8]:
         needed |= {"rounding"}
     if not needed <= set(state):
         raise _not_read(where, "the module does not set all that the move counts on")
@@ -171,6 +187,11 @@ def _moved(line: str, run: _Run, where: str) -> None:
     assert match is not None
     texts = match.groups()[:6]
     run.values.append(np.array(texts, dtype=np.float64))
+    beside = _EXTERNAL.findall(match[7])
+    _beside(tuple(int(number) for number, _ in beside), 100.0 if straight else state["percent"], run, where)
+    run.beside.append(np.array([value for _, value in beside], dtype=np.float64))
+    if beside:
+        run.counted("joints", tuple(value for _, value in beside))
     if straight:
         run.counted("places", texts[:3])
         run.counted("turns", texts[3:])
@@ -180,10 +201,23 @@ def _moved(line: str, run: _Run, where: str) -> None:
     run.deposit.append(run.on)
     run.speed.append(state["speed"] if straight else np.nan)
     run.share.append(np.nan if straight else 0.01 * state["percent"])
-    run.rounding.append(state["rounding"] if straight and straight[7] else np.nan)
+    run.rounding.append(state["rounding"] if straight and straight[8] else np.nan)
     run.base.append(state["BASE"])
     run.tool.append(state["TOOL"])
     run.standing = False
+
+
+def _beside(numbers: tuple[int, ...], share: float, run: _Run, where: str) -> None:
+    """Look at the axes beside the robot of a move: the same ones in all of them, coupled, and as fast as the move needs, in
+    percent: a linear one goes at its own speed only where they may be as fast as they can."""
+    unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
+    if numbers != tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ()) or bool(numbers) != bool(unit):
+        raise _not_read(where, "the axes beside the robot are not told in order, or BASE is not coupled to what they move")
+    if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
+        raise _not_read(where, "moves with other axes beside the robot are mixed")
+    if any(run.state.get(f"E{number}") != share for number in numbers):
+        raise _not_read(where, f"axes beside the robot do not run at {share:.0f} % of their speeds")
+    run.unit, run.numbers = unit, numbers
 
 
 def _told(run: _Run) -> ReadMoves:
@@ -192,14 +226,17 @@ def _told(run: _Run) -> ReadMoves:
     half, seen = run.half_digits, linear[:, None]
     a, b, c = np.radians(np.where(seen, values[:, 3:], np.nan)).T
     any_line = bool(linear.any())
+    beside = np.array(run.beside)
+    joints = np.radians(np.hstack((np.where(seen, np.nan, values), beside)))
     return ReadMoves(
-        None if linear.all() else np.radians(np.where(seen, np.nan, values)), float(np.radians(half.get("joints", 0.0))),
+        None if np.isnan(joints).all() else joints, float(np.radians(half.get("joints", 0.0))),
         np.full(len(linear), np.nan), deposit, linear, np.isnan(rounding), tuple(run.events),
         position=np.where(seen, values[:, :3], np.nan) if any_line else None,
         rotation=_about(2, a) @ _about(1, b) @ _about(0, c) if any_line else None,
         position_digits=half.get("places", 0.0), rotation_digits=float(np.radians(half.get("turns", 0.0))),
         speed=np.array(run.speed), speed_digits=half.get("speed", 0.0), share=np.array(run.share), share_digits=0.005,
         rounding=rounding, user_frame=np.array(run.base), tool_frame=np.array(run.tool),
+        unit=run.unit or "", first_external=run.numbers[0] if run.numbers else 1,
     )
 
 

@@ -25,9 +25,8 @@ ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
 SPEEDS = (0.01, 3000.0)
 # percent: the least share of the axes' speeds that a controller is told, in whole numbers; half of that is rounded up to it
 LEAST_PERCENT = 1
-_PTP = "PTP {" + ",".join(f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)) + "}"
-_LIN = "LIN {" + ",".join(
-    [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"]) + "}"
+_AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
+_PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"]
 # of how a move is approached: it stops, or the corner is rounded
 _STOPS, _ROUNDED = "", " C_DIS"
 
@@ -86,6 +85,14 @@ class Lines:
         self._blend = program.blend
         self._nominal = np.degrees(np.array(program.max_speed))
         self._before: Array | None = None
+        self._own = program.own_axes
+        numbers = [program.first_external + k for k in range(len(program.external_kinds))]
+        beside = [f"E{number} %.{ANGLE_DECIMALS}f" for number in numbers]
+        self._ptp, self._lin = (f"{word} {{{','.join([*values, *beside])}}}" for word, values in (
+            ("PTP", _AXES), ("LIN", _PLACE)))
+        # shares of the speeds of axes beside the robot hold for linear moves too, which they must not slow down
+        self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
+        self._unhindered = self._beside(100)
 
     def __call__(self, moves: Moves) -> Sequence[str]:
         """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
@@ -95,15 +102,21 @@ class Lines:
             size = self._rounding(moves)
             corners = [_STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()]
             speeds = [f"$VEL.CP={0.001 * speed:.6f}" for speed in speeds_within(moves, *SPEEDS).tolist()]
-            rows = frames(moves.position, moves.rotation).tolist()
-            told = [f"$APO.CDIS={size:.3f}|{speed}|{_LIN % tuple(row)}{corner}" if corner else f"{speed}|{_LIN % tuple(row)}"
-                    for speed, row, corner in zip(speeds, rows, corners, strict=True)]
+            rows = np.hstack((frames(moves.position, moves.rotation), shown[:, self._own :])).tolist()
+            lines = [f"{self._unhindered}{speed}|{self._lin % tuple(row)}{corner}"
+                     for speed, row, corner in zip(speeds, rows, corners, strict=True)]
+            told = [f"$APO.CDIS={size:.3f}|{line}" if corner else line for line, corner in zip(lines, corners, strict=True)]
         else:
             percent = self._percent(moves, shown)
             rows = shown.tolist()
-            told = [f"BAS(#VEL_PTP,{share:d})|{_PTP % tuple(row)}" for share, row in zip(percent, rows, strict=True)]
+            told = [f"BAS(#VEL_PTP,{share:d})|{self._beside(share)}{self._ptp % tuple(row)}"
+                    for share, row in zip(percent, rows, strict=True)]
         self._before = shown[-1]
         return told
+
+    def _beside(self, share: int) -> str:
+        """Settings of a share, percent, of the speeds of the axes beside the robot; none where there are none."""
+        return self._shares % ((share,) * self._shares.count("%"))
 
     def _percent(self, moves: Moves, shown: Array) -> list[int]:
         """Whole percents of the largest joint speeds: the fastest axis gets through its step in the time of the move."""
@@ -135,7 +148,7 @@ def spoken(words: Sequence[str], said: dict[str, str]) -> list[str]:
     for word in words:
         *settings, move = word.split("|")
         for setting in settings:
-            key = setting[:8]
+            key = setting[: max(setting.find("="), 8)]
             if said.get(key) != setting:
                 said[key] = setting
                 lines.append(setting)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -53,6 +54,23 @@ def refuse_incomplete(program: Program, post: str, axes: int) -> None:
         raise InputError("UNSUPPORTED_AXES", "program.post", f"the post {post} writes {axes} axes; use another post")
     if not all(np.isfinite(run.joints).all() for run in moves):
         raise InputError("UNREACHABLE", "program", "some points have no joint values; a program needs all of them")
+
+
+def refuse_external(program: Program, last: int, unit: str, form: str) -> None:
+    """Raises InputError UNSUPPORTED_AXES where a controller has no axes beside the robot beyond the `last` one, or no
+    positioner is called so: the pattern `unit` says how they are, in words `form`."""
+    if not program.external_kinds:
+        return
+    end = program.first_external + len(program.external_kinds) - 1
+    if end > last:
+        raise InputError(
+            "UNSUPPORTED_AXES", "program.axes.first",
+            f"the axes beside the robot would end with number {end}, and the controller has {last}; use a smaller first one",
+        )
+    if not re.fullmatch(unit, program.unit):
+        raise InputError(
+            "UNSUPPORTED_AXES", "program.axes.unit", f"{program.unit!r} is no positioner of this controller; give {form}"
+        )
 
 
 def refuse_endless(program: Program) -> None:

@@ -41,10 +41,11 @@ class Joints:
 
 
 def told_by_position(cell: Cell, joints: Array) -> Mask:
-    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: all in a row,
-    and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
+    """(n, axes) the axis values that a text may leave to the controller to find from a Cartesian position: a robot's own
+    ones, and those that slide of a machine with rotary axes. The rotary ones show in the direction of its tool."""
     slides = cell.machine.chain.sliding & (cell.setup == ROTARY_TABLE)
-    return np.asarray(slides | np.isnan(joints).all(axis=1, keepdims=True), dtype=np.bool_)
+    own = np.arange(joints.shape[1]) < cell.robot.chain.axes  # a position says nothing of the axes beside the robot
+    return np.asarray(slides | np.isnan(joints[:, own]).all(axis=1, keepdims=True) & own, dtype=np.bool_)
 
 
 def shorter_way(cell: Cell, program: Program, read: ReadMoves) -> Mask:

@@ -99,7 +99,13 @@ def _frame_issues(cell: Cell, planned: Planned, program: Program, read: ReadMove
     if read.tool_frame is not None:
         wrong |= read.tool_frame != program.tool_frame
     message = f"the text selects another frame or tool than {program.user_frame} and {program.tool_frame}"
-    return planned.issue("VERIFY_FRAME", wrong, message)
+    issues = planned.issue("VERIFY_FRAME", wrong, message)
+    if program.external_kinds and (read.unit, read.first_external) != (program.unit, program.first_external):
+        issues.append(Issue(
+            ERROR, "VERIFY_FRAME", f"the text moves {read.unit or 'no positioner'} from axis {read.first_external} on, the"
+            f" program {program.unit} from axis {program.first_external} on",
+        ))
+    return issues
 
 
 def _near_issues(cell: Cell, planned: Planned, read: ReadMoves) -> list[Issue]:

@@ -4,6 +4,7 @@
 import csv
 import json
 import math
+import re
 import shutil
 
 import numpy as np
@@ -62,6 +63,26 @@ def test_rows_and_report_say_where_the_positioner_is(workshop, written):
     )
     assert external["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
     assert len(told["joints"]["min_deg"]) == 8 and told["machine"]["axes"][-2:] == ["e1", "e2"]
+
+
+def test_the_program_takes_the_positioner_along(workshop, written):
+    """What the text says of the positioner is what the rows say, and what the robot is told is seen from its face."""
+    written()
+    done = workshop.run("plan", "dome.yaml", "-o", "out")
+    assert done.status == 0, done.err
+    (program,) = (workshop.folder / "out" / "program").iterdir()
+    text = program.read_text(encoding="ascii")
+    with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    told = re.findall(r"LIN \{X ([-.\d]+),Y ([-.\d]+),Z ([-.\d]+),.*,E1 ([-.\d]+),E2 ([-.\d]+)\}", text)
+    # a bead begins where the rapid before it ended
+    alike = ("kind", "layer", "bead")
+    deposit = [row for one, row in zip(rows, rows[1:]) if row["kind"] == "deposit" and all(one[k] == row[k] for k in alike)]
+    due = np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm", "e1_deg", "e2_deg")] for row in deposit])
+    apart = np.array(told, dtype=float) - due
+    assert np.ptp(apart[:, :3], axis=0).max() <= 1.1e-3  # the part's file may have its zero elsewhere
+    assert np.abs(apart[:, 3:]).max() <= 5.1e-5 and np.ptp(due[:, 4]) > 300.0
+    assert text.count("$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])") == 1
 
 
 @pytest.mark.parametrize(("change", "code", "where"), [

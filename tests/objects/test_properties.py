@@ -24,7 +24,7 @@ CLASSES = (
     (ProcessParameters, "process"), (JointParameters, "joints"), (ProgramParameters, "program"),
 )
 TEXTS = {"machine": "staubli-rx60bl", "limits": "paper", "call": "CLEAN", "gas": "argon 4.6", "bead_model": "csw",
-         "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0",
+         "post": "siemens", "plane": "0.6 0 -0.8", "deposit_on": "M7", "deposit_off": "H2=0", "unit": "STN1",
          "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part", "world_up": "0 0.1 1"}
 
 

@@ -46,6 +46,8 @@ class Drive:
                 found = machine.from_controller(shown)
                 endless = self.cell.limits.endless
                 found[endless] += 2.0 * np.pi * np.round((rows[-1] - found)[endless] / (2.0 * np.pi))
+            elif shown is not None and self.cell.external is not None and self.poses is not None:
+                found = self._beside(row, shown, rows[-1])
             elif self.poses is not None and read.configuration is not None:
                 found = self._by_configuration(row)
             elif self.poses is not None:
@@ -56,6 +58,15 @@ class Drive:
             assert np.isfinite(found).all(), row
             rows.append(found)
         return np.array(rows[1:])
+
+    def _beside(self, row, shown, near):
+        """The joints of a position with the values of the axes beside the robot as told; the robot's own from those near."""
+        cell, own = self.cell, len(self.cell.robot.axes)
+        values = cell.machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[own:]
+        face = KdlArm(cell.machine).forward(np.r_[np.zeros(own), values][None])[0] @ np.linalg.inv(
+            KdlArm(cell.robot).forward(np.zeros((1, own)))[0])
+        pose = np.linalg.inv(face) @ self.poses[row]  # seen from the robot
+        return np.r_[KdlArm(cell.robot).inverse(pose[None], near[None, :own], "nr", 1e-7)[0], values]
 
     def _by_configuration(self, row):
         """The joints of a position with the arm and the turns that the text names; no other joints enter."""

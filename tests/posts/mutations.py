@@ -477,6 +477,7 @@ _SETDO, _WAITTIME, _WAITDI, _CLEAN_ABB = (
 _AXIS_ABB = rf"^    MoveAbsJ \[\[(?:{NUMBER},){{0,5}}?({NUMBER})"
 _PLACE_ABB = rf"^    MoveL \[\[(?:{NUMBER},){{0,2}}?({NUMBER})"
 _TURN_ABB = rf"^    MoveL \[\[[^]]*\],\[(?:{NUMBER},){{0,3}}?({NUMBER})"
+_BESIDE_ABB = rf"\[(?:{NUMBER},)?({NUMBER})(?:,{NUMBER})?,9E9,9E9"
 _IN_USE = r"(?=[\s\S]*MoveL )"  # frames: of joint moves they do not tell where these lead
 _PART_ABB = r"    Load [^\n]*\n    %[^\n]*\n    UnLoad [^\n]*\n"
 ABB: dict[str, tuple[str, Change]] = {
@@ -496,6 +497,17 @@ ABB: dict[str, tuple[str, Change]] = {
     "another zone": (r"(?<=,)z_am(\d+)(?=,t_am)", lambda match, rng: f"z{match[1]}"),
     "a move's kind changed": (r"^    Move(AbsJ|L) ", other("AbsJ", "L")),
     "external axes": (r"\[9E9,9E9", "[0,9E9"),
+    "an external axis moved": (_BESIDE_ABB, moved(0.05)),
+    "an external axis a turn on": (_BESIDE_ABB, moved(360.0)),
+    "an external axis of another letter": (rf"\[({NUMBER},{NUMBER}),9E9", r"[9E9,\1"),
+    "an external axis left out": (rf"\[({NUMBER}),{NUMBER},9E9", r"[\1,9E9,9E9"),
+    "external axes exchanged": (rf"\[({NUMBER}),({NUMBER}),9E9", r"[\2,\1,9E9"),
+    "another unit": (r"FALSE,\"(STN1)\"", other("STN2")),
+    "another unit altogether": (r"STN1(\"[\s\S]*ActUnit )STN1", r"STN2\1STN2"),
+    "a unit that is not active": (r"^    ActUnit STN1;\r\n", DROP),
+    "a frame of the user on a unit": (r"(?<=\"STN1\",)\[\[0,0,0\]", "[[0,0,5]"),
+    "a work object on a unit moved": (rf"STN1\",\[\[0,0,0\],\[1,0,0,0\]\],\[\[({NUMBER}){_IN_USE}", moved(0.5)),
+    "a work object that no unit moves": (r"FALSE,\"STN1\"", 'TRUE,""'),
     "a configuration": (r"\[0,0,0,0\]", "[-1,0,0,1]"),
     "an offset of axes": (r"\\NoEOffs", ""),
     "configurations supervised": (rf"^    ConfL\\Off;\r\n{_IN_USE}", DROP),
@@ -549,6 +561,7 @@ _K_MOVE = r"^(?:PTP|LIN) [^\n]*\n"
 _K_OUT, _K_SEC, _K_IN, _K_CLEAN = (
     rf"^{line}\r\n" for line in (r"\$OUT\[\d+\]=\w+", r"WAIT SEC \d+\.\d+", r"WAIT FOR [^\r]*", r"clean\(\)"))
 _K_AXIS = rf"(?<=A\d )({NUMBER})"
+_K_BESIDE = rf"(?<=E\d )({NUMBER})"
 _K_PLACE, _K_ANGLE = (rf"(?<=[{letters}] )({NUMBER})(?=[^\n]*\}})" for letters in ("XYZ", "ABC"))
 KUKA: dict[str, tuple[str, Change]] = {
     "a point moved": (_K_AXIS, moved(0.05)),
@@ -567,6 +580,18 @@ KUKA: dict[str, tuple[str, Change]] = {
     "a move's kind changed": (r"^(PTP|LIN)", other("PTP", "LIN", "SLIN", "PTP_REL")),
     "an axis left out": (r",A6 [-.\d]+", DROP),
     "an external axis": (r"(?<=\d)\}", ",E1 5.0}"),
+    "an external axis moved": (_K_BESIDE, moved(0.05)),
+    "an external axis a turn on": (_K_BESIDE, moved(360.0)),
+    "an external axis left out": (r",E2 [-.\d]+", DROP),
+    "another external axis": (r",E(2) ", one_more),
+    "external axes exchanged": (rf"E1 ({NUMBER}),E2 ({NUMBER})", r"E1 \2,E2 \1"),
+    "another mechanism": (r"MACHINE_DEF\[(2)\]", one_more),
+    "another mechanism altogether": (r"MACHINE_DEF\[2\]([^\n]*)MACHINE_DEF\[2\]", r"MACHINE_DEF[3]\1MACHINE_DEF[3]"),
+    "another base of the mechanism": (r"MECH_TYPE,BASE_DATA\[(1)\]", one_more),
+    "no mechanism": (r"^\$BASE=EK[^\n]*\n", DROP),
+    "a mechanism that is let go": (r"^(\$BASE=EK[^\n]*\n)", r"\1BAS(#BASE,1)\r\n"),
+    "a slower external axis": (r"VEL_EXTAX\[[12]\]=(\d+)", other("1", "50")),
+    "an external axis as slow as before": (r"^\$VEL_EXTAX\[2\]=100\r\n", DROP),
     "an output dropped": (_K_OUT, DROP),
     "an output switched the other way": (r"^\$OUT\[1\]=(TRUE|FALSE)", other("TRUE", "FALSE")),
     "another output": (r"^\$OUT\[(1)", one_more),
@@ -627,11 +652,13 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
         "blend": (r"leave=\"((?!0\.000)[.\d]+)\"", 1), "wait": (r"delay\(([.\d]+)\)", 1),
     },
     "kuka": {
-        "joint": (_K_AXIS, 1), "position": (_K_PLACE, 2), "angle": (_K_ANGLE, 4), "speed": (r"CP=([.\d]+)", 1),
+        "joint": (_K_AXIS, 1), "external axis": (_K_BESIDE, 1), "position": (_K_PLACE, 2),
+        "angle": (_K_ANGLE, 4), "speed": (r"CP=([.\d]+)", 1),
         "blend": (r"CDIS=([.\d]+)", 2), "wait": (r"WAIT SEC (\d+\.\d+)", 1),
     },
     "abb": {
-        "joint": (_AXIS_ABB, 1), "position": (_PLACE_ABB, 4), "orientation": (_TURN_ABB, 16), "time": (r"\\T:=([.\d]+)", 1),
+        "external axis": (_BESIDE_ABB, 1), "joint": (_AXIS_ABB, 1), "position": (_PLACE_ABB, 4),
+        "orientation": (_TURN_ABB, 16), "time": (r"\\T:=([.\d]+)", 1),
         "frame": (rf"(?:data t_am:=\[\w+|w_am:=\[\w+,TRUE,\"\"),\[\[({NUMBER}){_IN_USE}", 6), "speed": (r"\\V:=([.\d]+)", 1),
         "wait": (r"WaitTime ([.\d]+)", 1), "blend": (r"z_am\d+:=\[FALSE,([.\d]+)", 1),
     },

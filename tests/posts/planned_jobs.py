@@ -40,6 +40,7 @@ class Setup:
     cell: CellParameters
     hub: Developable
     top: float
+    most: float = math.pi  # rad, from the vertical
 
 
 SETUPS = {
@@ -84,6 +85,16 @@ SETUPS = {
         machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform_diameter=100.0,
         deposition_point=(1050.0, 0.0, 200.0, 0.0, 0.0, 0.0), nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
     ), FLAT, 50.0),
+    "kuka positioner": Setup(CellParameters(
+        machine="kuka-kr16-2", setup="tool-on-robot", mount="part", platform=10.0, platform_diameter=100.0,
+        external="motoman-motopos-d500 at 1100 60 -100 0 0 20 carries part", branch="auto",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
+    "abb positioner": Setup(CellParameters(
+        machine="abb-irb1600-6-12", setup="tool-on-robot", mount="part", platform=10.0, platform_diameter=100.0,
+        external="motoman-motopos-d500 at 850 60 -100 0 0 20 carries part", branch="auto",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 150.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
     "table": Setup(CellParameters(
         machine="table-xyzac", setup="rotary-table", platform=(10.0, -4.0, 30.0, 0.0, 0.0, 0.4), mount="part",
     ), STEEP, 90.0),
@@ -101,10 +112,10 @@ WAYS = (
     ("ur", "joint", "time", "ur part-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),
     ("ur", "cartesian", "time", "ur tool-on-robot"),
     *(("abb", motion, "time", f"abb {setup}") for motion in ("joint", "cartesian")
-      for setup in ("part-on-robot", "tool-on-robot")),
+      for setup in ("part-on-robot", "tool-on-robot", "positioner")),
     ("yaskawa", "joint", "time", "yaskawa part-on-robot"), ("yaskawa", "joint", "time", "yaskawa tool-on-robot"),
     ("yaskawa", "cartesian", "time", "yaskawa tool-on-robot"),
-    ("kuka", "cartesian", "time", "kuka tool-on-robot"),
+    ("kuka", "cartesian", "time", "kuka tool-on-robot"), ("kuka", "cartesian", "time", "kuka positioner"),
     *(("siemens", motion, feed, setup) for setup in ("table", "head")
       for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
     *(("linuxcnc", motion, feed, "table") for motion, feed in (("joint", "time"), ("joint", "path"), ("cartesian", "time"))),
@@ -148,8 +159,8 @@ def planned(name, lift=LIFT):
             cell.machine, pulses_per_degree=(1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75), speed_unit="mm/s"))
     sides = range(SIDES if lift else 1)
     layers = tuple(Layer(tuple(_bead(setup.hub, side, k) for side in sides)) for k in range(2))
-    path = plan_joints(
-        Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable"), cell, JointParameters(degree=1))
+    toolpath = Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", max_from_vertical=setup.most)
+    path = plan_joints(toolpath, cell, JointParameters(degree=1))
     assert path.feasible, [issue.message for issue in path.issues]
     process = dataclasses.replace(PROCESS, between_layers=dataclasses.replace(PROCESS.between_layers, lift=lift))
     motion, issues = assemble(path, cell, process, [body(setup)], layer_height=HEIGHT)

@@ -78,7 +78,9 @@ def assert_modules(files):
         assert text.startswith(f"MODULE {file.removesuffix('.mod')}\r\n") and text.count("PROC ") == 1
         tools, objects, speeds, zones = (declared(files, file, f"{kind}data") for kind in ("tool", "wobj", "speed", "zone"))
         for (on_robot, (_, turn), load), (held, fixed, unit, (_, seen), inside) in zip(tools.values(), objects.values()):
-            assert on_robot is not held and fixed is True and unit == "" and inside == [[0, 0, 0], [1, 0, 0, 0]]
+            assert on_robot is not held and fixed is (unit == "") and (inside if fixed else seen) == (
+                [[0, 0, 0], [1, 0, 0, 0]] if fixed else [1, 0, 0, 0])
+            assert (f"ActUnit {unit};" in lines(files, file)) is not fixed
             assert load[0] > 0.0 and [len(load[1]), len(load[2]), len(load)] == [3, 4, 6]
             assert np.linalg.norm(turn) == pytest.approx(1.0, abs=1e-6) == pytest.approx(np.linalg.norm(seen), abs=1e-6)
         assert all(len(value) == 4 for value in speeds.values()) and all(len(value) == 7 for value in zones.values())
@@ -87,7 +89,8 @@ def assert_modules(files):
             if line.startswith("Move"):
                 target = values(line)
                 joint = line.startswith("MoveAbsJ ")
-                assert [len(part) for part in target] == ([6, 6] if joint else [3, 4, 4, 6]) and target[-1] == NO_AXES
+                assert [len(part) for part in target] == ([6, 6] if joint else [3, 4, 4, 6]) and (
+                    target[-1] if fixed else [NO_AXES[0], *target[-1][3:], *NO_AXES[:2]]) == NO_AXES
                 assert joint or abs(np.linalg.norm(target[1]) - 1.0) < 1e-6
                 speed, zone, tool, work_object = re.fullmatch(
                     r".*\],?(?:\\NoEOffs,)?(\w+)\\[TV]:=[\d.]+,(\w+),(\w+)\\WObj:=(\w+);", line).groups()
@@ -95,7 +98,7 @@ def assert_modules(files):
                 used.add(zone)
             else:
                 assert re.fullmatch(
-                    r"!.*|Conf[LJ]\\Off;|SingArea\\Off;|SetDO do\d+,[01];|WaitTime \d+\.\d{3};|WaitDI di\d+,1;|"
+                    r"!.*|Conf[LJ]\\Off;|SingArea\\Off;|ActUnit \w+;|SetDO do\d+,[01];|WaitTime \d+\.\d{3};|WaitDI di\d+,1;|"
                     r'WaitAI ai\d+,\\LT,-?\d+\.\d+;|Load \\Dynamic,"HOME:/\w+\.mod";|%"\w+_p"%;|UnLoad "HOME:/\w+\.mod";|'
                     r"[A-Za-z]\w*;", line), line
         assert used - {"fine"} == set(zones)
@@ -132,7 +135,21 @@ def straight_bead(layer):
 
 
 HELD = program(*straight_bead(0), *straight_bead(1), name="held", motion="cartesian", max_points=8, blend=50)
-GOLDENS = {"joint": JOINT, "held": HELD}
+
+
+def beside(of, **more):
+    """The same with the tool on the robot and two axes beside it: they tilt by 30 deg, and turn on with every move."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
+            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "dome", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
+        "unit": "STN1", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
+
+GOLDENS = {"joint": JOINT, "held": HELD, "positioner": beside(HELD)}
 
 
 @pytest.mark.parametrize("name", GOLDENS)
@@ -141,6 +158,24 @@ def test_golden_modules_to_the_byte(root, name):
     folder = root / "tests/golden/abb" / name
     assert files == {path.name: path.read_bytes() for path in folder.iterdir()}
     assert_modules(files)
+
+
+def test_a_part_on_a_positioner_is_a_work_object_that_its_unit_moves():
+    for of in (beside(HELD), beside(JOINT), beside(HELD, max_points=2000)):
+        files, run = abb.write(of), of.moves
+        read, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
+        np.testing.assert_allclose(read.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
+        assert (read.unit, read.first_external) == ("STN1", 2) and np.isnan(read.joints[read.linear, :6]).all()
+        for file in files:
+            if "Move" in files[file].decode():
+                (held, fixed, unit, user, inside), = declared(files, file, "wobjdata").values()
+                assert (held, fixed, unit, user) == (False, False, "STN1", [[0, 0, 0], [1, 0, 0, 0]])
+                assert inside == [[0, 0, 20], [1, 0, 0, 0]]
+                turned = [values(line)[-1] for line in lines(files, file) if line.startswith("Move")]
+                assert all(row[0] == row[3] == 9e9 and row[1] == 30.0 and row[2] < 360.0 for row in turned)
+    refusal(beside(JOINT, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
+    for unit in ("", "1", "my unit"):
+        refusal(beside(JOINT, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands():

@@ -16,9 +16,11 @@ from freecad_am.posts import catalogue, kuka
 
 NOMINAL = tuple(math.radians(value) for value in (156.0, 156.0, 156.0, 330.0, 330.0, 615.0))
 NUMBER = r"-?\d+\.\d{%d}"
+BESIDE = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4})?"
 INSTRUCTIONS = [
-    "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + "}",
-    "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + "}(?: C_DIS)?",
+    "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + BESIDE + "}",
+    "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + BESIDE + "}(?: C_DIS)?",
+    r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[23]\]=\d+",
     r"BAS\(#(?:INITMOV,0|BASE,\d+|TOOL,\d+|VEL_PTP,(?:[1-9]\d?|100))\)", r"\$IPO_MODE=#BASE", r"\$ORI_TYPE=#VAR",
     r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
     r"WAIT FOR \$IN\[\d+\]==TRUE", r"[A-Za-z]\w{0,19}\(\)", r"; [ -~]{1,80}",
@@ -94,7 +96,24 @@ JOB = program(
     moves("rapid", [[0.0, -90.0, 90.0, 0.0, 60.0, 177.4]], 1.0, layer=1), DepositOn(), laid(2, 1, speed=7.5), DepositOff(),
     name="Job", remarks=('A remark ]]> with "marks": Größe',), deposit_output=3, user_frame=2,
 )  # fmt: skip
-GOLDENS = {"whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup")}
+
+
+def beside(of, **more):
+    """The same with two axes beside the robot, told as E2 and E3: they tilt by 30 deg, and turn on with every move."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
+            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "dome", "endless": (False,) * 8, "max_speed": NOMINAL + tuple(np.radians([80.0, 160.0])),
+        "external_kinds": ("rotary", "rotary"), "unit": "3", "first_external": 2, "station": (0, 0, 20, 0, 0, 0), **more})
+
+
+GOLDENS = {
+    "whole": JOB, "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"), "positioner": beside(JOB),
+}
 
 
 @pytest.mark.parametrize("name", GOLDENS)
@@ -208,6 +227,21 @@ def test_what_cannot_be_said_is_refused():
     assert catalogue.load("kuka") is kuka
 
 
+def test_axes_beside_the_robot():
+    read, run = kuka.read(kuka.write(beside(JOB))), beside(JOB).moves
+    joints = np.concatenate([moves.joints for moves in run])
+    np.testing.assert_allclose(read.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
+    assert (read.unit, read.first_external) == ("3", 2) and np.isnan(read.joints[read.linear, :6]).all()
+    told = lines(kuka.write(beside(JOB)), "dome.src")
+    # 10 deg of 160 deg/s in 0.8 s
+    assert [line for line in told if "VEL_PTP" in line] == [f"BAS(#VEL_PTP,{share})" for share in (10, 8, 58)]
+    assert [line for line in told if "EXTAX[3]" in line] == [f"$VEL_EXTAX[3]={share}" for share in (10, 8, 100, 58, 100)]
+    refusal(beside(JOB, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
+    for unit in ("", "1", "STN1", "17"):
+        refusal(beside(JOB, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(dataclasses.replace(beside(JOB), external_kinds=()), code="UNSUPPORTED_AXES", where="program.post")
+
+
 HAND = """&ACCESS RVP
 &REL 1
 DEF hand()
@@ -259,7 +293,7 @@ def test_a_module_by_hand():
     ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),
     ("C 179.5}", "C 179.5} C_DIS", "approximated"), ("$OUT[7]=FALSE", "$OUT[8]=FALSE", "second output"),
     ("gripper_open()", "hand()", "called by none"), ("gripper_open()", "GOTO x", "not understood"),
-    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "not understood"),
+    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "not coupled"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(old, new, why):
     with pytest.raises(InputError) as raised:

@@ -28,7 +28,7 @@ from .machine import MAKER, Machine
 
 Array = NDArray[np.float64]
 
-MOST = 6  # that a controller has
+POSTS = ("abb", "kuka")  # that write axes beside a robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ def _chain(found: Sequence[tuple[External, Machine]]) -> tuple[Chain, Array]:
 
 
 def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machine:
-    """The robot with further axes e1, e2 ...: no post writes for it unless it says that it knows them."""
+    """The robot with further axes e1, e2 ...: of its posts those write for it that know them."""
     count, axes = sum(other.chain.axes for other in others), robot.chain.axes
     matrix = np.eye(axes + count)
     matrix[:axes, :axes] = robot.controller_matrix
@@ -141,7 +141,8 @@ def _together(robot: Machine, others: Sequence[Machine], chain: Chain) -> Machin
     return dataclasses.replace(
         robot, title=" + ".join(one.title for one in (robot, *others)), chain=chain, base=np.eye(4), external=count,
         axes=(*robot.axes, *(f"e{number + 1}" for number in range(count))), controller_matrix=matrix,
-        controller_offset=np.concatenate(offset), posts=(), pulses_per_degree=(), **alike,
+        controller_offset=np.concatenate(offset), pulses_per_degree=(), **alike,
+        posts=tuple(post for post in POSTS if robot.posts is None or post in robot.posts),
     )
 
 

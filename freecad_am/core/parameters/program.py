@@ -53,6 +53,23 @@ class NcParameters:
 
 
 @dataclass(frozen=True)
+class AxesParameters:
+    """What the controller calls the axes beside the robot."""
+
+    unit: str | None = f.parameter(
+        None, f.TEXT, "Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), "
+        "MACHINE_DEF of KUKA (2).", optional=True, advanced=True,
+    )
+    first: int = f.parameter(
+        1, f.COUNT, "Which of the controller's external axes e1 is; the others follow: eax_a, E1 are 1.", low=1, high=6,
+        advanced=True,
+    )
+
+    def __post_init__(self) -> None:
+        f.check(self, "program.axes")
+
+
+@dataclass(frozen=True)
 class ProgramParameters:
     """What is written for the controller."""
 
@@ -75,6 +92,7 @@ class ProgramParameters:
     user_frame: int = f.parameter(1, f.COUNT, "Number of the user frame named in the program.", low=0, high=61)
     tool_frame: int = f.parameter(1, f.COUNT, "Number of the tool frame named in the program.", low=1, high=29)
     deposit_output: int = f.parameter(1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096)
+    axes: AxesParameters = f.group(AxesParameters, "What the controller calls the axes beside the robot.")
 
     def __post_init__(self) -> None:
         if self.origin is None:  # an empty property of a document

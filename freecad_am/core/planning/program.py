@@ -50,6 +50,8 @@ Array = NDArray[np.float64]
 FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
 # posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
 IN_PULSES = frozenset({"yaskawa"})
+# what controllers call the first positioner of a cell: mechanical unit, number of MACHINE_DEF
+UNITS = {"abb": "STN1", "kuka": "2"}
 # what the rows of a motion are for, by its numbers
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
@@ -97,6 +99,10 @@ def build(
             parameters.nc.deposit_on or "", parameters.nc.deposit_off or "", parameters.nc.switch_kinematics,
             parameters.nc.wire_output, parameters.nc.wire_gain,
         ),
+        external_kinds=tuple(
+            LINEAR if slides else ROTARY for slides in cell.machine.chain.sliding[cell.robot.chain.axes :]),
+        unit=(parameters.axes.unit or UNITS.get(parameters.post, "")) if cell.external is not None else "",
+        first_external=parameters.axes.first,
     )
 
 
@@ -270,7 +276,8 @@ def _moves(
         position, rotation = seen[:, :3, 3], seen[:, :3, :3]
         arm = cell.machine.arm
         assert arm is not None
-        configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(motion.joints[rows]))
+        own = motion.joints[rows, : cell.robot.chain.axes]
+        configuration = tuple(opw.branch_name(int(index)) for index in arm.branch_of(own))
     wire = motion.wire[rows]
     told = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())
     return Moves(
@@ -313,6 +320,7 @@ def _remarks(cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]) 
         where, frame = "Work offset" if parameters.motion == "cartesian" else "Platform on the table", carried
     else:
         where = "Deposition point" if cell.setup == PART_ON_ROBOT else "User frame" if moved else "Platform"
+        where += " on the face" if cell.external is not None else ""
         frame = frames.inverse(cell.machine.base) @ station
     return (
         cell.machine.title,
