@@ -509,6 +509,11 @@
         <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2).</source>
+        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2).</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Normal of the plane of symmetry-plane, as x y z in the part&apos;s coordinates; auto: the plane of a bend.</source>
         <translation>Normale du plan de symmetry-plane, en x y z dans les coordonnées de la pièce ; auto : le plan d&apos;un coude.</translation>
@@ -1019,6 +1024,11 @@
         <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Which of the controller&apos;s external axes e1 is; the others follow: eax_a, E1 are 1.</source>
+        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Which set of joint limits of the machine file holds.</source>
         <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
@@ -1350,6 +1360,11 @@
         <location filename="../../freecad_am/gui/spin_map/consequences.py"/>
         <source>As planned</source>
         <translation>Comme planifié</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Axes</source>
+        <translation>Axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/frames_page.py"/>
@@ -2235,6 +2250,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Fill width</source>
         <translation>Largeur de remplissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>First</source>
+        <translation>Premier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -3235,6 +3255,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Name of the program to call between layers, such as nozzle cleaning.</source>
         <translation>Nom du programme à appeler entre les couches, comme le nettoyage de la buse.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2).</source>
+        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
@@ -5162,7 +5187,7 @@
         <translation>URScript règle une sortie quand le robot entre dans le lissage qui précède, et non où le cordon la demande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Unit</source>
         <translation>Unité</translation>
     </message>
@@ -5385,6 +5410,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Which of part and tool the robot carries, or a machine with rotary axes.</source>
         <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Which of the controller&apos;s external axes e1 is; the others follow: eax_a, E1 are 1.</source>
+        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -6130,6 +6160,16 @@
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
         <source>axes are moved in another frame than that of the machine</source>
         <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>axes beside the robot do not run at {0} % of their speeds</source>
+        <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>axes beside the robot have no value, or their unit is not active, or not the object&apos;s</source>
+        <translation>des axes externes n&apos;ont pas de valeur, ou leur unité n&apos;est pas active, ou n&apos;est pas celle de l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -8192,6 +8232,11 @@
         <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>moves with other axes beside the robot are mixed</source>
+        <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/spin_map/picture.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
@@ -8325,6 +8370,11 @@
         <location filename="../../freecad_am/core/slicing/constant_distance.py"/>
         <source>no point of the wall at v = {0} lies {1} mm from the layer below: the layer height must stay below the wall&apos;s smallest radius of curvature</source>
         <translation>aucun point de la paroi en v = {0} n&apos;est à {1} mm de la couche du dessous : la hauteur de couche doit rester au-dessous du plus petit rayon de courbure de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>no positioner</source>
+        <translation>aucun positionneur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -8592,6 +8642,11 @@
         <translation>opw donne</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb_read.py"/>
+        <source>other axes beside the robot have values than in moves before, or not all in a row</source>
+        <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou ils ne se suivent pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>other programs are called than planned</source>
         <translation>d&apos;autres programmes sont appelés que ceux planifiés</translation>
@@ -8805,6 +8860,11 @@
         <location filename="../../freecad_am/core/planning/plan.py"/>
         <source>robots need all their axes; only machines with rotary axes can do with four; use none</source>
         <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>root and type are of two mechanisms, or the base is not the one selected</source>
+        <translation>racine et type sont de deux mécanismes, ou la base n&apos;est pas celle choisie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -9060,6 +9120,16 @@
         <location filename="../../freecad_am/posts/siemens_read.py"/>
         <source>the analogue output stops the machine within a bead, or its compressor</source>
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka_read.py"/>
+        <source>the axes beside the robot are not told in order, or BASE is not coupled to what they move</source>
+        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the axes beside the robot would end with number {0}, and the controller has {1}; use a smaller first one</source>
+        <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/table.py"/>
@@ -9522,6 +9592,11 @@
         <translation>le mouvement {0} n&apos;est pas compris, ou sa position n&apos;existe pas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb.py"/>
+        <source>the name of its mechanical unit, such as STN1</source>
+        <translation>le nom de son unité mécanique, comme STN1</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/texts/touching.py"/>
         <source>the nozzle</source>
         <translation>la buse</translation>
@@ -9540,6 +9615,11 @@
         <location filename="../../freecad_am/core/strategies/clearance_look.py"/>
         <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it is not tilted away from fixtures: move them, or use a slimmer nozzle</source>
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka.py"/>
+        <source>the number of its MACHINE_DEF, 2 to 16</source>
+        <translation>le numéro de son MACHINE_DEF, de 2 à 16</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
@@ -9795,6 +9875,11 @@
         <location filename="../../freecad_am/read_back/ways.py"/>
         <source>the text moves straight in space where straight in the joints was planned, or the other way</source>
         <translation>le texte va droit dans l&apos;espace où il était planifié d&apos;aller droit dans les articulations, ou l&apos;inverse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/ways.py"/>
+        <source>the text moves {0} from axis {1} on, the program {2} from axis {3} on</source>
+        <translation>le texte déplace {0} à partir de l&apos;axe {1}, le programme {2} à partir de l&apos;axe {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/ways.py"/>
@@ -11060,6 +11145,11 @@
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>{0} is no pair of points; give x y z &gt; x y z in mm</source>
         <translation>{0} n&apos;est pas une paire de points ; donnez x y z &gt; x y z en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>{0} is no positioner of this controller; give {1}</source>
+        <translation>{0} n&apos;est pas un positionneur de cette commande ; indiquez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli_read.py"/>
