@@ -266,7 +266,16 @@ def _criteria(report: dict[str, Any]) -> str:
     rows = [("", [entry["method"] for entry in methods])] + [
         (name, [_figure(entry["criteria"][name]) for entry in methods]) for name in report["joints"]["criteria"]
     ]
-    return f"<h2>Criteria</h2><p class=\"sub\">Whichever was optimised; smaller is better.</p>{_table(rows)}"
+    told = f"Whichever was optimised; smaller is better.{_optimality(report)}"
+    return f"<h2>Criteria</h2><p class=\"sub\">{told}</p>{_table(rows)}"
+
+
+def _optimality(report: dict[str, Any]) -> str:
+    known = report["joints"].get("optimality")
+    if known is None:
+        return ""
+    name, value, least = escape(report["joints"]["objective"]), _figure(known["objective"]), _figure(known["bound"])
+    return f" {name}, bead by bead: {value}; no rotation about the tool goes below {least}, a gap of {known['gap']:.1%}."
 
 
 def _comparison(report: dict[str, Any]) -> str:

@@ -101,6 +101,7 @@ def add_joints(report: dict[str, Any], planned: JointPath, cell: Cell, joints: J
         "branch": list(planned.branch),
         "limits": planned.limits,
         "stopped": _reasons(planned),
+        **({} if planned.optimality is None else {"optimality": planned.optimality}),
         **({} if cell.external is None else {"external": level.figures(cell, planned)}),
     }
     report["comparison"] = others

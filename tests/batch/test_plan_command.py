@@ -59,7 +59,7 @@ def test_a_whole_job(workshop):
 
 
 def test_the_page_is_one_file_that_parses(workshop):
-    workshop.change("travel_speed: 6 mm/s", "travel_speed: 6 mm/s\njoints: {compare: [constant]}")
+    workshop.change("travel_speed: 6 mm/s", "travel_speed: 6 mm/s\njoints: {compare: [constant], certificate: true}")
     assert workshop.run("plan", "cup.yaml").status == 0
     page = workshop.files()["report.html"].decode()
     assert not re.search(r"(src|href)\s*=|<script|@import|url\((?!#)", page)
@@ -82,6 +82,9 @@ def test_the_page_is_one_file_that_parses(workshop):
         assert word in page
     assert "NaN" not in page and ">nan" not in page and "inf<" not in page
     report = json.loads(workshop.files()["report.json"])
+    proved = report["joints"]["optimality"]
+    assert proved["gap"] == pytest.approx(1.0 - proved["bound"] / proved["objective"])
+    assert 0.0 <= proved["gap"] < 0.01 and f"a gap of {proved['gap']:.1%}" in page
     (constant,) = report["comparison"]
     assert constant["method"] == "constant" and constant["feasible"] is False
     assert {"min_deg", "limit_margin_deg", "speed_max_deg_s", "acceleration_max_deg_s2", "jerk_max_deg_s3"} <= set(constant)

@@ -79,6 +79,11 @@ class JointParameters:
     compare: tuple[str, ...] = f.parameter(
         (), f.TEXT, "Further methods planned for the comparison of the report.", advanced=True
     )
+    certificate: bool = f.parameter(
+        False, f.FLAG,
+        "Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.",
+        advanced=True,
+    )
 
     def __post_init__(self) -> None:
         f.check(self, "joints", skip=frozenset({"compare", "given"}))

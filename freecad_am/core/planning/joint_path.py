@@ -55,6 +55,7 @@ class JointPath:
     beads: tuple[BeadPath, ...]
     issues: tuple[Issue, ...]
     comparison: tuple[dict[str, object], ...] = ()
+    optimality: dict[str, object] | None = None  # with a certificate: objective, bound and gap
 
     @property
     def feasible(self) -> bool:

@@ -16,6 +16,7 @@ from ..kinematics.cell import Cell
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
 from . import comparison, constant, given, layer_by_layer, point_by_point, search, table, turns
+from .certificate import bound
 from .findings import findings
 from .joint_path import BeadPath, JointPath
 from .level import levelled
@@ -32,7 +33,7 @@ METHODS = {"layer-by-layer": layer_by_layer.plan, "point-by-point": point_by_poi
 # what there is to choose where a robot is free to turn about the tool
 OF_ROBOTS = (
     "method", "rz", "degree", "parameter", "rotation_range", "objective", "min_condition", "characteristic_length",
-    "tolerance", "max_iterations", "compare", "given", "own_branch",
+    "tolerance", "max_iterations", "compare", "given", "own_branch", "certificate",
 )
 BRANCHES = 8
 # with the branch left open: beads looked at in each, and branches planned until one serves
@@ -85,9 +86,13 @@ def plan_joints(
     comparisons = tuple(
         _compared(task, beads, places, method, progress) for method in _compare_order(parameters)
     )
+    optimality = None
+    if parameters.certificate and not has_errors(issues):
+        optimality, notes = bound.summed(task, paths, lambda share: progress(share, "bounding the objective"))
+        issues = [*issues, *notes]
     return JointPath(
         parameters.method, parameters.objective, opw.branch_name(task.branch), cell.limits.name, tuple(paths),
-        tuple(issues), comparisons,
+        tuple(issues), comparisons, optimality,
     )
 
 

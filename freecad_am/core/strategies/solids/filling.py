@@ -14,11 +14,11 @@ from ...filling.adaptive import fitted, shared
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.sparse import Infill
-from ...geometry.curves.plane_curve import nearest
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base
-from ...geometry.regions.region import Region, along
-from ...geometry.regions.strip import Strip
+from ...geometry.plane_curve import nearest
+from ...geometry.region import Region, along
+from ...geometry.strip import Strip
 from ...geometry.told import place
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...layers.margins import ARCS

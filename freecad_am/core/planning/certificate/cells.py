@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What joints do over a cell of rotations about the tool axis at a point: a line and by how much they leave it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kinematics import jacobian as jac
+from ..points import TURN, Points
+from ..task import Task
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+CELLS, PARTS = 36, 3  # in a turn at first, and of a cell when it is divided
+
+
+@dataclass(frozen=True)
+class Cells:
+    """n cells of rotations phi +- half: joints (n, axes) are middle + slope s for |s| <= half, but for `off` (n, axes).
+
+    feasible (n,): whether a rotation in the cell may keep limits and condition. rad.
+    """
+
+    middle: Array
+    slope: Array
+    off: Array
+    feasible: NDArray[np.bool_]
+    half: float
+
+    def of(self, chosen: Index) -> Cells:
+        """Chosen cells, in that order."""
+        return Cells(self.middle[chosen], self.slope[chosen], self.off[chosen], self.feasible[chosen], self.half)
+
+
+def whole_turn() -> tuple[Array, float]:
+    """The middles (CELLS,) of the cells of a whole turn and half the width of each, rad."""
+    half = np.pi / CELLS
+    return -np.pi + half * (2.0 * np.arange(CELLS) + 1.0), half
+
+
+def divided(phi: Array, half: float) -> Array:
+    """(PARTS n,) the middles of the parts of cells phi (n,) +- half, those of one cell side by side."""
+    parts = (2.0 * np.arange(PARTS) - (PARTS - 1)) * half / PARTS
+    return np.asarray((phi[:, None] + parts).ravel())
+
+
+def cells_of(task: Task, points: Points, index: Index, phi: Array, half: float, threshold: Array) -> Cells:
+    """The cells phi (n,) +- half (rad) at points `index` (n,), with the smallest condition allowed there (n,), from their
+    middle and ends."""
+    count = len(phi)
+    sampled = np.concatenate([phi - half, phi, phi + half])
+    three = points.each(np.tile(index, 3))
+    joints = task.raw_joints(three, sampled)
+    before, middle, after = joints.reshape(3, count, -1)
+    ahead, behind = _short(after - middle), _short(middle - before)
+    # a cell at the edge of reach goes on beyond the edge as it does before it
+    lost_ahead, lost_behind = (np.isnan(one).any(axis=1) for one in (ahead, behind))
+    feasible = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
+    ahead, behind = np.where(lost_ahead[:, None], behind, ahead), np.where(lost_behind[:, None], ahead, behind)
+    slope, bend = (ahead + behind) / (2.0 * half), ahead - behind
+    # of a parabola the line through its ends, a quarter of the second difference away, is off by as much: twice that here
+    off = 0.5 * np.abs(bend) + half**3 * np.abs(slope).max(axis=1, keepdims=True)
+    edge = (lost_ahead ^ lost_behind)[:, None]
+    off = np.where(edge, 0.5 * np.abs(ahead), off)
+    reach = np.abs(slope) * half + off + np.abs(bend)
+    feasible &= _within(task, middle, reach)
+    open_ = np.flatnonzero(feasible)
+    rows = np.concatenate([open_, open_ + count, open_ + 2 * count])
+    ratio = _condition(task, three, sampled, joints, rows, np.tile(threshold[open_], 3)).reshape(3, -1)
+    feasible[open_] = 2.0 * ratio.max(axis=0) - ratio.min(axis=0) >= threshold[open_]
+    return Cells(middle + 0.25 * bend, slope, off, feasible, half)
+
+
+def _within(task: Task, joints: Array, reach: Array) -> NDArray[np.bool_]:
+    """Whether joints (n, axes), moved by up to `reach` and by whole turns, can be within the limits of each axis."""
+    limits = task.cell.limits
+    beyond = np.abs(_short(joints - task.middle)) - np.where(task.endless, np.inf, 0.5 * (limits.upper - limits.lower))
+    return np.asarray((beyond <= reach).all(axis=1))
+
+
+def _condition(task: Task, points: Points, phi: Array, joints: Array, rows: Index, threshold: Array) -> Array:
+    """The condition at chosen rows, 0 out of reach; where a bound tells that it is far above the threshold, that bound."""
+    ratio = np.zeros(len(rows))
+    good = np.flatnonzero(np.isfinite(joints[rows]).all(axis=1))
+    matrix = task.jacobian_at(points.frames.of(rows[good]).at(phi[rows[good]]), joints[rows[good]])
+    length = task.parameters.characteristic_length
+    bound = jac.condition_bound(matrix, length)
+    near = bound < 2.0 * threshold[good]
+    bound[near] = jac.condition(matrix[near], length)
+    ratio[good] = bound
+    return ratio
+
+
+def _short(angle: Array) -> Array:
+    shortest: Array = angle - TURN * np.round(angle / TURN)
+    return shortest
