@@ -26,7 +26,7 @@ host.find_freecad()
 
 import FreeCAD  # noqa: E402, F401  first of all
 import ts_file  # noqa: E402
-from sources import ROOT, Code, Module, called, files  # noqa: E402
+from sources import ROOT, Code, Module, called, files, walked  # noqa: E402
 from templates import Templates  # noqa: E402
 
 from freecad_am.core import issues  # noqa: E402
@@ -85,7 +85,7 @@ class Collected:
                 self.window.setdefault(text, place)
                 if called(call) == "marked":
                     self.messages.setdefault(text, place)
-        for table in (node for node in ast.walk(module.tree) if isinstance(node, ast.Dict)):
+        for table in (node for node in walked(module.tree) if isinstance(node, ast.Dict)):
             for key, tool in zip(table.keys, table.values, strict=True):
                 if isinstance(tool, ast.Call) and called(tool) == "Tool" and isinstance(key, ast.Constant):
                     calls = (node for node in ast.walk(tool) if isinstance(node, ast.Call) and called(node) == "marked")
@@ -94,7 +94,7 @@ class Collected:
 
     def _of_properties(self, module: Module, place: str) -> None:
         """Helps beside a type of property: of `addProperty`, of figures, of options of views."""
-        for node in ast.walk(module.tree):
+        for node in walked(module.tree):
             parts = node.args if isinstance(node, ast.Call) else node.elts if isinstance(node, ast.Tuple) else []
             texts = [part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str)]
             if any(text.startswith("App::Property") for text in texts):

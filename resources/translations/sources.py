@@ -6,6 +6,7 @@ from __future__ import annotations
 import ast
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -14,13 +15,19 @@ PACKAGE = ROOT / "freecad_am"
 Function = ast.FunctionDef
 
 
+@cache
+def walked(node: ast.AST) -> tuple[ast.AST, ...]:
+    """All nodes of a tree or function, found once: the same are looked at again and again."""
+    return tuple(ast.walk(node))
+
+
 class Module:
     """A file: its tree, and for each node the function it stands in."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.tree = ast.parse(path.read_text(encoding="utf-8"))
-        self.functions = [node for node in ast.walk(self.tree) if isinstance(node, Function)]
+        self.functions = [node for node in walked(self.tree) if isinstance(node, Function)]
         self.around: dict[int, Function | None] = {}
         self._place(self.tree, None)
 
@@ -31,7 +38,7 @@ class Module:
 
     def calls(self) -> Iterator[ast.Call]:
         """All calls."""
-        return (node for node in ast.walk(self.tree) if isinstance(node, ast.Call))
+        return (node for node in walked(self.tree) if isinstance(node, ast.Call))
 
 
 class Code:

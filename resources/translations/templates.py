@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from itertools import product
 from string import Formatter
 
-from sources import ROOT, Code, Function, Module, assigned, called
+from sources import ROOT, Code, Function, Module, assigned, called, walked
 
 # what of a call is told to the user: positions of its arguments
 MAKERS: dict[str, set[int]] = {
@@ -54,7 +54,7 @@ class Templates:
 
     def _telling(self, module: Module) -> Iterator[tuple[ast.AST, list[ast.expr]]]:
         """The nodes that tell something, calls and settings of a stage's message, with what they tell."""
-        for node in ast.walk(module.tree):
+        for node in walked(module.tree):
             if isinstance(node, ast.Call):
                 yield node, self._told(node)
             elif isinstance(node, ast.Assign) and any(getattr(target, "attr", "") == PROPERTY for target in node.targets):
@@ -140,7 +140,7 @@ class Templates:
                 for argument in node.args:
                     self._collect(argument, module, function, depth - 1)
         for where, made in self.code.functions.get(name, []):
-            for statement in ast.walk(made):
+            for statement in walked(made):
                 if isinstance(statement, (ast.Return, ast.Yield)) and where.around.get(id(statement)) is made:
                     self._collect(statement.value, where, made, depth - 1)
 
@@ -157,7 +157,7 @@ class Templates:
 
     def _filled(self, name: str, function: Function) -> Iterator[tuple[Module, Function, str]]:
         """The functions that get a list to put texts into, and what they call it."""
-        for call in (node for node in ast.walk(function) if isinstance(node, ast.Call)):
+        for call in (node for node in walked(function) if isinstance(node, ast.Call)):
             for at, argument in enumerate(call.args):
                 if getattr(argument, "id", "") == name:
                     for where, other in self.code.functions.get(called(call), []):
@@ -232,9 +232,9 @@ def _formatted(text: str) -> list[Part]:
 
 def _values(name: str, function: Function) -> list[ast.expr]:
     """What a local variable is given."""
-    found = [value for node in ast.walk(function) if isinstance(node, ast.stmt) for given, value in assigned(node)
+    found = [value for node in walked(function) if isinstance(node, ast.stmt) for given, value in assigned(node)
              if given == name]
-    for node in ast.walk(function):
+    for node in walked(function):
         if isinstance(node, (ast.For, ast.comprehension)):
             names = [one.id for one in ast.walk(node.target) if isinstance(one, ast.Name)]
             if name in names:

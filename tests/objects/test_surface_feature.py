@@ -97,7 +97,7 @@ def post(doc, as_mesh):
 @pytest.mark.parametrize("as_mesh", [False, True], ids=["solid", "mesh"])
 def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
     fixture = post(doc, as_mesh)
-    feature = made(doc, tube, clearance="nozzle", fixtures=[fixture])
+    feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[fixture])
     substrate, clamp = api.result(feature).surroundings
     assert (substrate.name, clamp.name) == ("Pipe", "Post")
     assert clamp.vertices.min(axis=0) == pytest.approx([15, -3, 30]) and clamp.vertices[:, 2].max() == pytest.approx(130)

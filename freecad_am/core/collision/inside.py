@@ -37,11 +37,10 @@ class Inside:
         self._levels = [self._boxes(size) for size in tree.sizes(len(corners))]
 
     def _boxes(self, size: int) -> tuple[Array, Array]:
-        """Lowest and highest places (k, 3), as seen along the ray, of so many triangles each."""
+        """Lowest and highest places (3, k), as seen along the ray, of so many triangles each."""
         starts = np.arange(0, len(self._seen), size)
-        return (
-            np.minimum.reduceat(self._seen.min(axis=1), starts), np.maximum.reduceat(self._seen.max(axis=1), starts)
-        )
+        low, high = np.minimum.reduceat(self._seen.min(axis=1), starts), np.maximum.reduceat(self._seen.max(axis=1), starts)
+        return np.ascontiguousarray(low.T), np.ascontiguousarray(high.T)
 
     def holds(self, points: Array) -> Mask:
         """Whether points (n, 3) are inside; on the surface itself it may be either."""
@@ -52,21 +51,28 @@ class Inside:
         return found
 
     def _held(self, seen: Array) -> Mask:
-        top = len(self._levels[-1][0])
+        x, y, z = np.ascontiguousarray(seen.T)
+        top = self._levels[-1][0].shape[1]
         query, node = np.repeat(np.arange(len(seen)), top), np.tile(np.arange(top), len(seen))
         for depth in range(len(self._levels) - 1, -1, -1):
             low, high = self._levels[depth]
-            at = seen[query]
-            near = (at <= high[node]).all(axis=1) & (at[:, :2] >= low[node, :2]).all(axis=1)
-            query, node = query[near], node[near]
+            # one side of the boxes after the other: each leaves fewer to be looked at
+            for at, bounds, before in ((x, high[0], True), (x, low[0], False), (y, high[1], True), (y, low[1], False),
+                                       (z, high[2], True)):
+                near = at[query] <= bounds[node] if before else at[query] >= bounds[node]
+                query, node = query[near], node[near]
             if depth:
-                query, node = tree.below(query, node, len(self._levels[depth - 1][0]))
-        offset = self._seen[node] - seen[query, None]
-        after = np.roll(offset, -1, axis=1)
-        # twice the areas of the ray's end with each edge, against the edge's opposite corner: the shares of the corners
-        area = np.roll(offset[:, :, 0] * after[:, :, 1] - offset[:, :, 1] * after[:, :, 0], -1, axis=1)
-        way = np.where((area >= 0.0).all(axis=1), 1, 0) - np.where((area < 0.0).all(axis=1), 1, 0)
-        crossed = (way != 0) & ((area * offset[:, :, 2]).sum(axis=1) * way > 0.0)
+                query, node = tree.below(query, node, self._levels[depth - 1][0].shape[1])
+        corners = self._seen[node]
+        a, b, c = (
+            (corners[:, k, 0] - x[query], corners[:, k, 1] - y[query], corners[:, k, 2] - z[query]) for k in range(3)
+        )
+        # twice the areas of the ray's end with each edge: the shares of the corners opposite
+        of_a, of_b, of_c = (u[0] * v[1] - u[1] * v[0] for u, v in ((b, c), (c, a), (a, b)))
+        way = np.where((of_a >= 0.0) & (of_b >= 0.0) & (of_c >= 0.0), 1, 0) - np.where(
+            (of_a < 0.0) & (of_b < 0.0) & (of_c < 0.0), 1, 0
+        )
+        crossed = (way != 0) & ((of_a * a[2] + of_b * b[2] + of_c * c[2]) * way > 0.0)
         query, way = query[crossed], way[crossed]
         if self._faces_one_way:
             out: Mask = np.bincount(query, weights=way, minlength=len(seen)) != 0.0
