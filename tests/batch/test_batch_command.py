@@ -46,8 +46,8 @@ def test_a_row_is_what_plan_makes_of_it(workshop):
 @pytest.mark.parametrize(
     ("rows", "statuses", "worst"),
     [
-        (["4 mm,0", "5 mm,9000"], ["0", "3"], 3),
-        (["1 kg,0", "5 mm,9000", "4 mm,0"], ["2", "3", "0"], 2),
+        (["8 mm,0", "10 mm,9000"], ["0", "3"], 3),
+        (["1 kg,0", "10 mm,9000", "8 mm,0"], ["2", "3", "0"], 2),
     ],
 )
 def test_ends_with_the_worst_row(workshop, rows, statuses, worst):

@@ -134,7 +134,7 @@ class Person:
         return self.until(visible, f"the panel {name}", 5)[0]
 
     def field(self, panel, name):
-        found = [widget for widget in panel.findChildren(self.widgets.QWidget) if widget.objectName() == name]
+        found = panel.findChildren(self.widgets.QWidget, name)  # of the others some may be boxes that `press` let go of
         assert len(found) == 1, f"{len(found)} fields are called {name}"
         return found[0]
 

@@ -114,6 +114,7 @@ def test_a_frame_of_a_simulation_is_one_turn_of_the_window_and_moves_no_field(pe
     assert painted <= {"time", "clock", "place", "joints", "doing", "speed", "condition", "form"}
 
 
+@pytest.mark.planned_anew  # its motion is made too fast
 def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path):
     person.look()
     value = api.result(joint_path)
