@@ -233,6 +233,10 @@ class FilledParameters(LayerParameters):
         advanced=True,
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
+    narrowest: float = f.parameter(
+        0.3, f.RATIO, "How narrow, of their usual width, beads in planes may be laid where others leave them less room; all "
+        "of it: none is, and layers get higher there.", low=0.1, high=1.0, advanced=True,
+    )
 
     def __post_init__(self) -> None:
         if self.walls == math.inf:

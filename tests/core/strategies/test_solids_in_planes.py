@@ -159,7 +159,7 @@ def test_what_beads_lay_twice_is_known():
         (box((0, 0, 0), (60, 30, 4)), {"fill": "zigzag"}, 0.05), (box((0, 0, 0), (50, 37, 4)), {"fill": "lines"}, 0.01),
         (box((0, 0, 0), (60, 8, 4)), {"fill": "contours"}, 0.0),
     ):
-        made = planned(part, layer_height=4.0, **values)
+        made = planned(part, layer_height=4.0, narrowest=1.0, **values)
         lines = [bead.points[:, :2] for _, _, bead in made]
         x, y = np.meshgrid(np.arange(-2, 63, 0.2), np.arange(-2, 40, 0.2))
         once = np.zeros(x.shape, dtype=bool)
@@ -174,6 +174,39 @@ def test_what_beads_lay_twice_is_known():
         assert made.twice == pytest.approx(expected, abs=0.01 * volume)
         assert made.twice >= least * volume
     assert planned(box((0, 0, 0), (60, 30, 4)), fill="lines", fill_density=0.5).twice is None
+
+
+@pytest.mark.parametrize("part,fill", [
+    (box((0, 0, 0), (60, 9.6, 4)), "contours"),  # a middle bead with 2 of its 4 mm of room
+    (box((0, 0, 0), (60, 6.4, 4)), "connected"),  # both sides of one contour, 2.4 mm apart
+    (tube([(14.0, 0.0), (24.0, 0.0), (24.0, 4.0), (14.0, 4.0)]), "lines"), (box((0, 0, 0), (50, 37, 4)), "zigzag"),
+])
+def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
+    """What each segment lays, its time at the usual wire feed; its width tells the same. With all beads as wide as ever it
+    would be more than 3 % too much."""
+    process = ProcessParameters(travel_speed=8.0, acceleration=1e4)
+
+    def laid(made):
+        time = sum((np.hypot(*np.diff(bead.points, axis=0)[:, :2].T) / bead.speed[1:]).sum() for _, _, bead in made)
+        wide = sum(
+            (np.hypot(*np.diff(bead.points, axis=0)[:, :2].T)
+             * (4.0 if bead.width is None else 0.5 * (bead.width[1:] + bead.width[:-1]))).sum() for _, _, bead in made
+        )
+        assert wide == pytest.approx(time * 8.0 * 4.0, rel=0.03)
+        return wide * 4.0
+    volume = SolidMesh(part.vertices, part.triangles).volume
+    made = planned(part, fill=fill, process=process)
+    assert laid(made) == pytest.approx(volume, rel=0.03) and made.twice < 0.03 * volume
+    assert min(bead.width.min() for _, _, bead in made if bead.width is not None) >= 0.3 * 4.0 - 1e-9
+    full = planned(part, fill=fill, process=process, narrowest=1.0)
+    assert laid(full) > 1.03 * volume
+    assert [bead.closed for _, _, bead in full] == [bead.closed for _, _, bead in made]
+
+
+def test_where_beads_do_not_crowd_all_are_as_wide_as_ever():
+    for fill in ("contours", "lines", "spiral"):
+        made = planned(box((0, 0, 0), (60, 32, 4)), fill=fill)
+        assert all(bead.width is None and np.ptp(bead.speed) == 0.0 for _, _, bead in made)
 
 
 def test_touching_and_overlapping_solids_are_one():

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...filling.curve import PlaneCurve
 from ...geometry.developable import TURN, Array
 from ...geometry.on_hub import Base
-from ...geometry.region import simplified
+from ...geometry.region import simplified, telling
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
@@ -29,6 +29,7 @@ Mask = NDArray[np.bool_]
 ROLLED = 0.5  # share of the chord error between a bead's chords and the surface
 GRID = 6  # decimals of mm that decide between points
 NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
+SHARES = 0.02  # of a bead's usual width, that points tell
 CLOSE = 2e-3  # mm; points nearer together are one: no controller tells the time of such a move
 
 
@@ -53,7 +54,7 @@ def rolled(
     period = surface.period
     start = period.moved(curve.points[:1], curve.turns) if curve.turns and period is not None else curve.points[:1]
     ended = np.vstack([curve.points, start]) if curve.closed else curve.points
-    flat = dense(ended, surface, ROLLED * strategy.chord_error)
+    flat = dense(ended, surface, ROLLED * strategy.chord_error, _told(curve))
     course = Course(flat, curve.closed, surface.followed(flat, curve.sheet))
     lean = Lean(build.lead, build.tilt) if lean is None else lean
     flat, local, normal, tool, turned = held(course, lean, build, strategy.chord_error)
@@ -83,6 +84,16 @@ def rolled(
     return Rolled(replace(bead, width=width, height=heights), turned=turned)
 
 
+def _told(curve: PlaneCurve) -> Mask | None:
+    """Which points (n,) of a curve, the first of a closed one again at its end, tell how wide it is; None: it is as wide as
+    ever."""
+    if curve.share is None:
+        return None
+    share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
+    line = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
+    return telling(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))], share, SHARES)
+
+
 def _share(curve: PlaneCurve, ended: Array, flat: Array) -> Array:
     """The share (n,) of its usual width that a bead has at the points (n, 2) of it as laid, those of the curve (m, 2) and
     more."""
@@ -97,13 +108,13 @@ def _of_segments(speed: Array) -> Array:
     return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
 
 
-def _needed(flat: Array, tolerance: float) -> Array:
-    """A polyline (n, 2) without the points that it does without within `tolerance` mm."""
+def _needed(flat: Array, tolerance: float, besides: Mask | None) -> Array:
+    """A polyline (n, 2) without the points that it does without within `tolerance` mm, but for those needed besides."""
     grid = np.ascontiguousarray(np.round(flat, GRID) + 0.0)  # of points alike the same wherever the hub stands
     chosen = np.ascontiguousarray(simplified(grid, tolerance))
     kept = np.isin(grid.view(np.complex128).ravel(), chosen.view(np.complex128).ravel())
     kept[[0, -1]] = True
-    return flat[kept]
+    return flat[kept if besides is None else kept | besides]
 
 
 def _apart(flat: Array) -> Array:
@@ -118,9 +129,10 @@ def _apart(flat: Array) -> Array:
     return chosen[~near] if len(chosen) - int(near.sum()) >= 2 else chosen[[0, -1]]
 
 
-def dense(flat: Array, surface: LayerSurface, chord_error: float) -> Array:
-    """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error."""
-    flat = _apart(_needed(flat, NEEDLESS * chord_error))
+def dense(flat: Array, surface: LayerSurface, chord_error: float, kept: Mask | None = None) -> Array:
+    """A polyline (n, 2) on the plane with so many points that its chords, wrapped, keep within the chord error, and with the
+    points (n,) `kept`."""
+    flat = _apart(_needed(flat, NEEDLESS * chord_error, kept))
     edge = np.diff(flat, axis=0)
     count = surface.pieces(flat, chord_error)
     start = np.repeat(np.arange(len(edge)), count)

@@ -13,10 +13,11 @@ import numpy as np
 from ...filling.adaptive import fitted, shared
 from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
+from ...filling.room import thinned
 from ...filling.sparse import Infill
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base
-from ...geometry.plane_curve import nearest
+from ...geometry.plane_curve import nearest, steps
 from ...geometry.region import Region, along
 from ...geometry.strip import Strip
 from ...geometry.told import place
@@ -31,6 +32,8 @@ Same = TypeVar("Same", bound=FilledParameters)
 
 SAME = 1e-6  # mm; regions whose borders are no farther apart are equal
 USUAL = ProcessParameters().bead_width  # mm; a width that is other than that was given
+MUCH = 0.03  # of a region, laid over other beads of it
+EVERY = (1.0, 1.0)  # widths that all beads have
 INSTEAD = {  # round a hub
     "spiral": "contours", "connected": "contours",
     "zigzag": "lines", "grid": "lines", "triangles": "lines", "honeycomb": "lines", "gyroid": "lines",
@@ -141,6 +144,8 @@ class Pictures:
                 return other.curves, other.left, other.cover
         curves, left = self._made(region, beads, angle, infill)
         cover = Cover() if one.surface.period is not None else _covered(region, curves, beads, infill)
+        if infill.density == 1.0 and cover.whole and self._strategy.spacing_range == EVERY:
+            curves = self._thinned(curves, beads, angle, cover)
         known.append(_Picture(beads, angle, infill, region.rings(), curves, left, cover))
         return curves, left, cover
 
@@ -158,6 +163,25 @@ class Pictures:
         if isinstance(region, Region) and infill.density == 1.0:
             curves = tuple(shared(region, curves, beads, share, least, most))
         return curves, left
+
+    def _thinned(
+        self, curves: tuple[PlaneCurve, ...], beads: Beads, angle: float, cover: Cover
+    ) -> tuple[PlaneCurve, ...]:
+        """The beads of a region, no wider than their room where much of them would be laid over others."""
+        once = cover.whole - cover.left + cover.beside
+        twice = beads.spacing * math.fsum(_weighed(curve) for curve in curves) - once
+        if twice <= MUCH * cover.whole or self._strategy.narrowest == 1.0:
+            return curves
+        return tuple(thinned(curves, beads, angle, self._strategy.narrowest))
+
+
+def _weighed(curve: PlaneCurve) -> float:
+    """mm of usual bead that lays as much as a curve."""
+    way = np.hypot(*steps(curve.points, curve.closed).T)
+    if curve.share is None:
+        return float(way.sum())
+    share = np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share
+    return float(0.5 * (share[1:] + share[:-1]) @ way)
 
 
 def spaced(strategy: Same, process: ProcessParameters) -> Same:

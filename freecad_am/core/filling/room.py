@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Beads laid thinner where others leave them less than their usual room, so that layers do not get higher there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..geometry.plane_curve import Array, steps
+from ..geometry.region import telling
+from .curve import Beads, PlaneCurve
+
+STEP = 0.2  # of the spacing, mm between places at which rooms are looked at
+ROUND = 1.6  # arc over chord; a bead comes beside itself where it returns farther round than half a circle
+ALIKE = 0.04  # of the usual width; shares that a straight line tells as well need no point of their own
+FIRST = {"contour": 0, "connected": 0, "spiral": 0, "line": 1, "zigzag": 1}  # who keeps its room; all others come last
+LAST = 2
+ALONG = 0.02  # sine of the angle to the lines of a zigzag; what is turned more is a link
+
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+class _Edges(NamedTuple):
+    """Short edges of all beads: their middles (n, 2), unit ways (n, 2), arc lengths (n,) mm, beads (n,) by their numbers;
+    lengths (m,) mm of the beads that are closed, infinite of the others."""
+
+    middles: Array
+    ways: Array
+    arcs: Array
+    bead: Index
+    around: Array
+
+
+def thinned(curves: Sequence[PlaneCurve], beads: Beads, angle: float, least: float) -> list[PlaneCurve]:
+    """The curves with the share of their usual width that they have room for: halfway to others of their kind, and as far as
+    those that come first reach, contours before lines before beads in the middle. Links of zigzags lay what their lines,
+    which end before the contour, do not. angle: of the lines, rad. least: share that no bead is laid below."""
+    lines, corners = zip(*(_divided(curve, STEP * beads.spacing) for curve in curves))
+    edges = _edges(lines, [curve.closed for curve in curves])
+    rooms = _rooms(edges, np.array([FIRST.get(curve.kind, LAST) for curve in curves], dtype=np.intp), beads.spacing)
+    share = rooms.sum(axis=1) / beads.spacing
+    zigzags = np.array([curve.kind == "zigzag" for curve in curves])[edges.bead]
+    turned = np.abs(edges.ways[:, 0] * np.sin(angle) - edges.ways[:, 1] * np.cos(angle)) > ALONG
+    share = np.where(zigzags & turned, 2.0 * rooms.min(axis=1) / beads.spacing, share)
+    share = np.clip(share, least, 1.0)
+    cuts = np.searchsorted(edges.bead, np.arange(1, len(curves)))
+    return [_with(*one) for one in zip(curves, lines, corners, np.split(share, cuts))]
+
+
+def _divided(curve: PlaneCurve, step: float) -> tuple[Array, Mask]:
+    """The points (n, 2) of a curve, the first of a closed one again at its end, and more, at most `step` mm apart; which of
+    them (n,) are the curve's own."""
+    way = steps(curve.points, curve.closed)
+    count = np.maximum(np.ceil(np.hypot(*way.T) / step), 1.0).astype(np.intp)
+    edge = np.repeat(np.arange(len(way)), count)
+    number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+    last = curve.points[:1] if curve.closed else curve.points[-1:]
+    return np.vstack([curve.points[edge] + (number / count[edge])[:, None] * way[edge], last]), np.r_[number == 0, True]
+
+
+def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:
+    ways = [np.diff(line, axis=0) for line in lines]
+    long = [np.hypot(*way.T) for way in ways]
+    return _Edges(
+        np.vstack([0.5 * (line[1:] + line[:-1]) for line in lines]),
+        np.vstack([way / np.maximum(size, 1e-300)[:, None] for way, size in zip(ways, long)]),
+        np.concatenate([np.cumsum(size) - 0.5 * size for size in long]),
+        np.repeat(np.arange(len(lines)), [len(way) for way in ways]),
+        np.array([size.sum() if is_closed else np.inf for size, is_closed in zip(long, closed)]),
+    )
+
+
+def _rooms(edges: _Edges, rank: Index, spacing: float) -> Array:
+    """Room (n, 2) in mm to the left and to the right of edges, at most half the spacing."""
+    half = 0.5 * spacing
+    room = np.full((len(edges.middles), 2), half)
+    one, other = _neighbours(edges, spacing).T
+    gap = edges.middles[other] - edges.middles[one]
+    aside = edges.ways[one, 0] * gap[:, 1] - edges.ways[one, 1] * gap[:, 0]
+    side = (aside < 0.0).astype(np.intp)
+    radius = (gap**2).sum(axis=1) / np.maximum(2.0 * np.abs(aside), 1e-9 * spacing)  # of the circle that touches both
+    lot = rank[edges.bead]
+    for level in range(LAST + 1):
+        mine = lot[one] == level
+        equal = np.flatnonzero(mine & (lot[other] == level))
+        np.minimum.at(room, (one[equal], side[equal]), radius[equal])
+        before = np.flatnonzero(mine & (lot[other] < level))
+        taken = room[other[before]].mean(axis=1)
+        np.minimum.at(room, (one[before], side[before]), np.maximum(2.0 * radius[before] - taken, 0.0))
+    return room
+
+
+def _neighbours(edges: _Edges, spacing: float) -> Index:
+    """Pairs (m, 2), both ways, of edges nearer to each other than the spacing, but for those that follow one another."""
+    pairs = cKDTree(edges.middles).query_pairs(spacing, output_type="ndarray")
+    one, other = pairs.T
+    chord = np.hypot(*(edges.middles[one] - edges.middles[other]).T)
+    arc = np.abs(edges.arcs[one] - edges.arcs[other])
+    arc = np.minimum(arc, edges.around[edges.bead[one]] - arc)
+    pairs = pairs[(edges.bead[one] != edges.bead[other]) | (arc > ROUND * chord)]
+    return np.asarray(np.vstack([pairs, pairs[:, ::-1]]), dtype=np.intp)
+
+
+def _with(curve: PlaneCurve, line: Array, corners: Mask, share: Array) -> PlaneCurve:
+    """A curve with the shares (n - 1,) of the edges of its points (n, 2), and of these points no more than its corners (n,)
+    and what tells the shares."""
+    if share.min() > 1.0 - ALIKE:
+        return replace(curve, share=None)
+    ends = np.r_[share[-1:], share, share[:1]] if curve.closed else np.r_[share[:1], share, share[-1:]]
+    wide = 0.5 * (ends[1:] + ends[:-1])
+    kept = corners | telling(np.r_[0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T))], wide, ALIKE)
+    if curve.closed:
+        line, wide, kept = line[:-1], wide[:-1], kept[:-1]
+    return replace(curve, points=line[kept], share=wide[kept])
