@@ -329,6 +329,11 @@
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How narrow, of their usual width, beads in planes may be laid where others leave them less room; all of it: none is, and layers get higher there. (%)</source>
+        <translation>À quelle part de leur largeur habituelle les cordons en couches planes peuvent se réduire là où d&apos;autres leur laissent moins de place ; toute la largeur : aucun ne se réduit, et les couches y deviennent plus hautes. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>How the points may be moved onto the part: best fit, shifts alone, a turn about and a shift along the part&apos;s axis, or none.</source>
         <translation>Comment les points peuvent être amenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou pas du tout.</translation>
@@ -2582,6 +2587,11 @@
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How narrow, of their usual width, beads in planes may be laid where others leave them less room; all of it: none is, and layers get higher there.</source>
+        <translation>À quelle part de leur largeur habituelle les cordons en couches planes peuvent se réduire là où d&apos;autres leur laissent moins de place ; toute la largeur : aucun ne se réduit, et les couches y deviennent plus hautes.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>How the part is cut into layers; proposed from the selection</source>
         <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
@@ -3275,6 +3285,11 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2).</source>
         <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2).</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Narrowest</source>
+        <translation>Plus étroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/told.py"/>
