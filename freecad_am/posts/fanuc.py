@@ -35,7 +35,7 @@ from .fanuc_read import read
 from .names import Naming
 from .on_controller import on_controller
 from .parts import Piece, Run, continued, grouped, packed
-from .refusals import CALL, refuse_calls_of_own, refuse_cooling, refuse_incomplete, refuse_wire
+from .refusals import CALL, refuse_calls_of_own, refuse_cooling, refuse_external, refuse_incomplete, refuse_wire
 
 __all__ = ["read", "write"]
 
@@ -84,7 +84,8 @@ def write(program: Program) -> dict[str, bytes]:
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.LS": _file(program, name, "Robotic AM", head + remarks, parts[0])}
     names = NAMING.parts(name, len(parts))
-    files = {f"{name}.LS": text.listing(name, "Robotic AM", head + remarks + [text.call(part) for part in names], "")}
+    calling = head + remarks + [text.call(part) for part in names]
+    files = {f"{name}.LS": text.listing(name, "Robotic AM", calling, "", _group(program))}
     for number, (part_name, pieces) in enumerate(zip(names, parts, strict=True), 1):
         comment = f"part {number} of {len(parts)}"
         files[f"{part_name}.LS"] = _file(program, part_name, comment, head, pieces)
@@ -109,9 +110,22 @@ def refuse_setup(motion: str, setup: str) -> None:
         raise InputError("UNSUPPORTED_SETUP", "cell.setup", f"the post fanuc cannot write {setup}")
 
 
+def refuse_coordinated(motion: str) -> None:
+    """Raises InputError COORDINATED_MOTION for what cannot be said of a part on a positioner."""
+    if motion == "cartesian":
+        raise InputError(
+            "COORDINATED_MOTION", "program.motion",
+            "linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
+            " are then seen from was not confirmed; use `motion: joint`, whose times hold the speed",
+        )
+
+
 def _refuse(program: Program) -> None:
     refuse_setup(program.motion, program.setup)
-    refuse_incomplete(program, "fanuc", AXES)
+    refuse_incomplete(program, "fanuc", AXES + len(program.external_kinds))
+    refuse_external(program, len(program.external_kinds), f"[2-{text.GROUPS}]", f"its motion group, 2 to {text.GROUPS}")
+    if program.external_kinds:
+        refuse_coordinated(program.motion)
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     for block in program.blocks:
@@ -192,7 +206,12 @@ def _file(program: Program, name: str, comment: str, head: list[str], pieces: Se
             point += len(piece)
         else:
             lines += piece
-    return text.listing(name, comment, lines, _record_text(program, runs))
+    return text.listing(name, comment, lines, _record_text(program, runs), _group(program))
+
+
+def _group(program: Program) -> int:
+    """The motion group of the axes beside the robot; the robot's own where there are none."""
+    return int(program.unit) if program.external_kinds else 1
 
 
 def _motion_lines(program: Program, run: Run, points_before: int) -> list[str]:
@@ -212,7 +231,7 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
         joints = np.concatenate([run.moves.joints[run.start : run.stop] for run in runs])
         degrees, endless = np.round(np.degrees(joints), 3), np.array(program.endless)
         degrees[:, endless] = numbers.within_half_turn(degrees[:, endless])
-        return text.joint_records(degrees + 0.0, program.user_frame, program.tool_frame)
+        return text.joint_records(degrees + 0.0, program.user_frame, program.tool_frame, _group(program))
     poses, configuration = [], []
     for run in runs:
         moves, part = run.moves, slice(run.start, run.stop)

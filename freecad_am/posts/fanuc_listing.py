@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 END_OF_LINE = "\r\n"
 REMARK_WIDTH = 32
 COMMENT_WIDTH = 16
+GROUPS = 5  # that the header has room for
 
 # Same job, same bytes: the controller puts the true date when it loads the file. This one is a valid day both
 # for a two-digit year and for the file dates of the controller's memory card, which begin in 1980.
@@ -44,7 +45,7 @@ TCD:  STACK_SIZE\t= 0,
       BUSY_LAMP_OFF\t= 0,
       ABORT_REQUEST\t= 0,
       PAUSE_REQUEST\t= 0;
-DEFAULT_GROUP\t= 1,*,*,*,*;
+DEFAULT_GROUP\t= {groups};
 CONTROL_CODE\t= 00000000 00000000;
 /MN
 """
@@ -64,10 +65,12 @@ _POSE_RECORD = (
 )
 
 
-def listing(name: str, comment: str, instructions: Sequence[str], records: str) -> bytes:
+def listing(name: str, comment: str, instructions: Sequence[str], records: str, group: int = 1) -> bytes:
     """One whole file. instructions: what follows the colon of each line, with its semicolon; records: the text
-    of joint_records or pose_records, '' when there are none."""
-    head = _HEADER.format(name=name, comment=plain(comment)[:COMMENT_WIDTH], date=_DATE, lines=len(instructions))
+    of joint_records or pose_records, '' when there are none. group: the motion group that moves beside the first one."""
+    groups = ",".join("1" if number in (1, group) else "*" for number in range(1, GROUPS + 1))
+    comment = plain(comment)[:COMMENT_WIDTH]
+    head = _HEADER.format(name=name, comment=comment, date=_DATE, lines=len(instructions), groups=groups)
     numbered = [f"{number:4d}:{line}" for number, line in enumerate(instructions, 1)]
     text = head.replace("\n", END_OF_LINE) + END_OF_LINE.join(numbered) + END_OF_LINE
     return (text + "/POS" + END_OF_LINE + records + "/END" + END_OF_LINE).encode("ascii")
@@ -100,9 +103,12 @@ def call(name: str) -> str:
     return f"  CALL {name}    ;"
 
 
-def joint_records(degrees: Array, user_frame: int, tool_frame: int) -> str:
-    """Records P[1].. of joint values (n, 6), degrees already rounded to 3 decimals."""
-    return _records(_JOINT_RECORD, user_frame, tool_frame, list(degrees.T))
+def joint_records(degrees: Array, user_frame: int, tool_frame: int, group: int = 1) -> str:
+    """Records P[1].. of joint values (n, 6 and those of another group), degrees already rounded to 3 decimals."""
+    beside = degrees.shape[1] - 6
+    values = ",".join(f"\tJ{axis}=%10.3f deg" for axis in range(1, beside + 1))
+    more = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if beside else "};"
+    return _records(_JOINT_RECORD.replace("};", more), user_frame, tool_frame, list(degrees.T))
 
 
 def pose_records(pose: Array, configuration: Sequence[str], user_frame: int, tool_frame: int) -> str:

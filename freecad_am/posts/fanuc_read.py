@@ -101,6 +101,7 @@ class _Run:
     cartesian: bool = False
     values: list[Array] = field(default_factory=list)
     configuration: list[tuple[str, ...]] = field(default_factory=list)
+    group: str | None = None
     digits: float = 0.0
     pending: list[Index] = field(default_factory=list)
     duration: array[float] = field(default_factory=_floats)
@@ -126,6 +127,9 @@ class _Run:
         """Take over the records that are pending."""
         if self.pending:
             rows, told = np.concatenate(self.pending), listing.records
+            if self.values and (self.group, self.values[0].shape[1]) != (told.group, told.values.shape[1]):
+                raise unreadable(listing.file, "it moves other groups than those before")
+            self.group = told.group
             self.values.append(told.values[rows])
             self.digits = max(self.digits, told.digits)
             if self.cartesian:
@@ -161,7 +165,7 @@ def _moves(run: _Run) -> ReadMoves:
     told = ReadMoves(
         joints, half_turn, np.array(run.duration), deposit, linear, np.isnan(blend), tuple(run.events),
         speed=np.array(run.speed), share=np.array(run.share), share_digits=0.005, blend=blend,
-        user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame),
+        user_frame=np.array(run.user_frame), tool_frame=np.array(run.tool_frame), unit=run.group or "",
     )
     if not cartesian:
         return told

@@ -32,12 +32,19 @@ _ONE = re.compile(
     r"\s*\n" + (_FRAMES + _values(" ".join([r"J(\d)"] * 6), "deg " * 6)).replace("GP1", r"GP(\d)") + r"\s*"
 )
 _NUMBERED, _GROUP, _NAMES, _VALUES = 1, 2, range(5, 17, 2), range(6, 17, 2)
+# the same with the axes of another motion group, in the same frames
+_TWO = re.compile(
+    _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6)
+    + r"\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+)\s*\};"
+)
+_AXIS = re.compile(r"J(\d) ?= *(-?\d*\.\d+) *deg(,?)")
 _CONFIGURATION = r"CONFIG : '([NF]) ([UD]) ([TB]), *(-?\d), *(-?\d), *(-?\d)',\s*"
 _POSE = re.compile(_FRAMES + _CONFIGURATION + _values("X Y Z W P R", "mm mm mm deg deg deg") + r"\s*\};")
 
 
 class Records(NamedTuple):
-    """Positions of a file by their numbers (n,), values (n, 6), configurations, frames, and half a last digit."""
+    """Positions of a file by their numbers (n,), values (n, 6 and those of another motion group), configurations, frames,
+    half a last digit, and the number of that group."""
 
     point: Index
     values: Array
@@ -45,13 +52,16 @@ class Records(NamedTuple):
     frames: list[tuple[str, str]]
     digits: float
     cartesian: bool
+    group: str = ""
 
 
 def records_of(file: str, lines: list[str], positions: int, end: int) -> Records:
     """The positions that stand between two lines of a file, by number. InputError UNREADABLE_PROGRAM for what is not
     understood, or recorded twice."""
     text = "\n".join(lines[positions + 1 : end])
-    found = _joint_records(text) or _any_records(file, text, lines, positions)
+    several = re.search(r"^ *GP[2-8]:", text, re.MULTILINE)
+    found = _of_two_groups(file, text) if several else _joint_records(text) or _any_records(file, text, lines, positions)
+    _check_groups(file, lines, found)
     order = np.argsort(found.point, kind="stable")
     if (np.diff(found.point[order]) == 0).any():
         raise unreadable(file, "a position is recorded twice")
@@ -60,6 +70,36 @@ def records_of(file: str, lines: list[str], positions: int, end: int) -> Records
         point=found.point[order], values=found.values[order], frames=[found.frames[row] for row in some],
         configuration=[found.configuration[row] for row in some],
     )
+
+
+def _check_groups(file: str, lines: list[str], found: Records) -> None:
+    """The groups that a program moves are those that it has positions of."""
+    told = next((line.partition("=")[2].strip(" ;").split(",") for line in lines if line.startswith("DEFAULT_GROUP")), ["1"])
+    moved = {str(number) for number, word in enumerate(told, 1) if word == "1"}
+    if len(found.point) and moved != {"1", found.group or "1"}:
+        raise unreadable(file, f"it moves groups {', '.join(sorted(moved))}, and has positions of others")
+
+
+def _of_two_groups(file: str, text: str) -> Records:
+    """The joint positions of a text of two motion groups, all alike."""
+    values, frames, groups, decimals, points = [], [], set(), 99, []
+    for record in _TWO.finditer(text):
+        point, user, tool, *own, group, other_user, other_tool, rest = record.groups()
+        beside = _AXIS.findall(rest)
+        count = len(beside)
+        due = [(str(axis), "," if axis < count else "") for axis in range(1, count + 1)]
+        if [(axis, comma) for axis, _, comma in beside] != due or (user, tool) != (other_user, other_tool):
+            raise unreadable(file, f"the second group of P[{point}] is not understood")
+        texts = [*own, *(value for _, value, _ in beside)]
+        points.append(int(point))
+        values.append([float(value) for value in texts])
+        frames.append((user, tool))
+        groups.add((group, count))
+        decimals = min(decimals, *(len(value.partition(".")[2]) for value in texts))
+    if len(points) != len(_RECORD_START.findall(text)) or len(groups) != 1:
+        raise unreadable(file, "its positions are not all of the same motion groups, or one is not understood")
+    number, half = groups.pop()[0], 0.5 * 10.0**-decimals
+    return Records(np.array(points, dtype=np.intp), np.array(values), [()] * len(points), frames, half, False, number)
 
 
 def _joint_records(text: str) -> Records | None:

@@ -117,6 +117,7 @@ _MOVE = _FN + r"[JL] P\[\d+\][^\n]*\n"
 _DO, _WAIT, _IN, _CLEAN = (
     _FN + r"  " + word + r"[^\n]*\n" for word in (r"DO\[", r"WAIT +[.\d]+\(sec\)", r"WAIT DI\[", "CALL CLEAN"))
 _VALUE = r"(?:J[1-6]|[XYZWPR] )=( *-?\d*\.\d{3})"
+_GROUPED = r"(?:GP2:\r\n[^\n]*\n\tJ1=|(?<=deg,)\tJ2=)( *-?\d*\.\d{3})(?=[^\n]*\r\n\};)"
 _RECORD = r"(P\[\d+\]\{)([^}]*)(\};\s*P\[\d+\]\{)([^}]*)"
 FANUC: dict[str, tuple[str, Change]] = {
     "a point moved": (_VALUE, moved(0.05)),
@@ -124,6 +125,14 @@ FANUC: dict[str, tuple[str, Change]] = {
     "a sign changed": (r"(?:J[1-6]|[XYZ] )= *(-?\d*\.\d{3})", negated),
     "a turn more": (r"J[1-5]=( *-?\d*\.\d{3})", moved(360.0)),
     "two points exchanged": (_RECORD, r"\1\4\3\2"),
+    "another group": (r"^   GP(2):", one_more),
+    "another group moved": (r"^(DEFAULT_GROUP\t= 1,)1,\*", r"\1*,1"),
+    "a group that stands": (r"^(DEFAULT_GROUP\t= 1,)1,", r"\1*,"),
+    "a group left out": (r"   GP2:\r\n[^\n]*\n[^\n]*\n", DROP),
+    "an axis of a group moved": (_GROUPED, moved(0.05)),
+    "an axis of a group a turn on": (_GROUPED, moved(360.0)),
+    "an axis of a group left out": (r"(?<=deg),\tJ2=[^\n]*deg(?=\r\n\};)", DROP),
+    "another frame of a group": (r"GP2:\r\n\tUF : (\d+)", one_more),
     "another point named": (_FN + r"[JL] P\[(\d+)\]", one_more),
     "a blend added": (r"FINE(?=    ;)", "CNT100"),
     "a blend of nothing added": (r"FINE(?=    ;)", "CNT0"),
@@ -640,7 +649,8 @@ _TOLD = r"(?=[^\n]*(?:fStation|tCarried\[))"
 _WAIT_NC, _FEED = r"^{}([.\d]+)\n(?!N\d+ ENDWHILE)", r"G1 [^\n]* F(\d+\.\d+)$"
 SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
     "fanuc": {
-        "joint": (r"J[1-6]=( *-?\d*\.\d{3})", 1), "position": (r"[XYZ] =( *-?\d*\.\d{3})", 2),
+        "axis of a group": (_GROUPED, 1), "joint": (r"J[1-6]=( *-?\d*\.\d{3})", 1),
+        "position": (r"[XYZ] =( *-?\d*\.\d{3})", 2),
         "angle": (r"[WPR] =( *-?\d*\.\d{3})", 4), "milliseconds": (r"(\d+)msec", 3),
         "wait": (r"WAIT +([.\d]+)\(sec\)", 1),
     },

@@ -48,6 +48,11 @@ SETUPS = {
         setup="tool-on-robot", mount="part", deposition_point=(1000.0, 0.0, -100.0, 0.0, 0.0, 0.0), limits="maker",
         branch=("front", "up", "flip"), nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
     ), STEEP, 90.0),
+    "fanuc positioner": Setup(CellParameters(
+        setup="tool-on-robot", mount="part", limits="maker", branch="auto", platform=10.0, platform_diameter=100.0,
+        external="motoman-motopos-d500 at 1000 60 -600 0 0 20 carries part",
+        nozzle=NozzleParameters(tool=(0.0, 0.0, 250.0, 0.0, 0.0, 0.0)),
+    ), FLAT, 50.0, math.radians(3.0)),
     "fanuc part-on-robot": Setup(CellParameters(mount="part", limits="paper"), FLAT, 50.0),
     "staubli tool-on-robot": Setup(CellParameters(
         machine="staubli-rx60bl", setup="tool-on-robot", mount="part", platform_diameter=100.0,
@@ -106,7 +111,7 @@ SETUPS = {
 # post, motion, feed, set-up
 WAYS = (
     ("fanuc", "joint", "time", "fanuc part-on-robot"), ("fanuc", "joint", "time", "fanuc tool-on-robot"),
-    ("fanuc", "cartesian", "time", "fanuc tool-on-robot"),
+    ("fanuc", "cartesian", "time", "fanuc tool-on-robot"), ("fanuc", "joint", "time", "fanuc positioner"),
     *(("staubli", motion, "time", f"staubli {setup}") for motion in ("joint", "cartesian")
       for setup in ("part-on-robot", "tool-on-robot")),
     ("ur", "joint", "time", "ur part-on-robot"), ("ur", "joint", "time", "ur tool-on-robot"),

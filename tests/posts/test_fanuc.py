@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Wait, WaitInput
+from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Moves, Wait, WaitInput
 from freecad_am.posts import fanuc
 from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, moves, program, refusal
 
@@ -28,6 +28,36 @@ def test_golden_programs_to_the_byte(root, name, assert_listings):
     golden = {path.name: path.read_bytes() for path in (root / "tests/golden").glob(f"{name.upper()}*.LS")}
     assert files == golden
     assert_listings(files)
+
+
+def two_groups(of, **more):
+    """The same with two axes of another motion group, which tilt by 30 deg and turn on with every move."""
+    count, blocks = 0, []
+    for block in of.blocks:
+        if isinstance(block, Moves):
+            turned = np.radians(np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25])
+            count, block = count + len(block), dataclasses.replace(block, joints=np.hstack([block.joints, turned]))
+        blocks.append(block)
+    return dataclasses.replace(of, blocks=tuple(blocks), **{
+        "name": "groups", "endless": (False,) * 8, "setup": "tool-on-robot", "external_kinds": ("rotary", "rotary"),
+        "unit": "2", **more})
+
+
+def test_a_positioner_is_a_second_motion_group(root):
+    of = two_groups(beads(1, 12, layers=2, max_points=20))
+    files = fanuc.write(of)
+    assert files == {path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("GROUPS*.LS")}
+    read, joints = fanuc.read(files), np.concatenate([moves.joints for moves in of.moves])
+    np.testing.assert_allclose(read.joints, joints, rtol=0.0, atol=np.radians(5.1e-4))
+    assert read.unit == "2" and read.position is None
+    assert all(b"DEFAULT_GROUP\t= 1,1,*,*,*;" in content for content in files.values())
+    text = fanuc.write(two_groups(GOLDEN_JOINT, unit="4"))["GROUPS.LS"].decode()
+    assert "= 1,*,*,1,*;" in text and text.count("   GP4:\r\n\tUF : 1, UT : 1,\t\r\n\tJ1=    30.000 deg,\tJ2=") == len(
+        re.findall(r"^P\[", text, re.MULTILINE))
+    assert "COORD" in refusal(dataclasses.replace(of, motion="cartesian"), code="COORDINATED_MOTION", where="program.motion")
+    refusal(dataclasses.replace(of, first_external=2), code="UNSUPPORTED_AXES", where="program.axes.first")
+    for unit in ("1", "6", "STN1"):
+        refusal(dataclasses.replace(of, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 @pytest.mark.parametrize("seed", range(12))

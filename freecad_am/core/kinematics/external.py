@@ -28,7 +28,7 @@ from .machine import MAKER, Machine
 
 Array = NDArray[np.float64]
 
-POSTS = ("abb", "kuka")  # that write axes beside a robot
+POSTS = ("abb", "fanuc", "kuka")  # that write axes beside a robot
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,7 +58,7 @@ class AxesParameters:
 
     unit: str | None = f.parameter(
         None, f.TEXT, "Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), "
-        "MACHINE_DEF of KUKA (2).", optional=True, advanced=True,
+        "MACHINE_DEF of KUKA (2), motion group of FANUC (2).", optional=True, advanced=True,
     )
     first: int = f.parameter(
         1, f.COUNT, "Which of the controller's external axes e1 is; the others follow: eax_a, E1 are 1.", low=1, high=6,

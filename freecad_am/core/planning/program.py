@@ -50,8 +50,8 @@ Array = NDArray[np.float64]
 FLANGE_TOLD, WITHOUT_CONFIGURATIONS = frozenset({"ur"}), frozenset({"ur"})
 # posts that write positions in pulses of the axes, and Cartesian speeds in the unit of the controller
 IN_PULSES = frozenset({"yaskawa"})
-# what controllers call the first positioner of a cell: mechanical unit, number of MACHINE_DEF
-UNITS = {"abb": "STN1", "kuka": "2"}
+# what controllers call the first positioner of a cell: mechanical unit, motion group, number of MACHINE_DEF
+UNITS = {"abb": "STN1", "fanuc": "2", "kuka": "2"}
 # what the rows of a motion are for, by its numbers
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
