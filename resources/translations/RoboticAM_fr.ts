@@ -520,8 +520,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2).</source>
-        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2).</translation>
+        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2), motion group of FANUC (2).</source>
+        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -3283,8 +3283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2).</source>
-        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2).</translation>
+        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2), motion group of FANUC (2).</source>
+        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -7707,6 +7707,16 @@
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <source>it moves groups {0}, and has positions of others</source>
+        <translation>il déplace les groupes {0}, et a des positions d&apos;autres groupes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_read.py"/>
+        <source>it moves other groups than those before</source>
+        <translation>il déplace d&apos;autres groupes que les précédents</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur_read.py"/>
         <source>it moves without a tool, without the platform, or in joints where positions are told</source>
         <translation>il se déplace sans outil, sans plateau, ou en valeurs articulaires là où des positions sont dites</translation>
@@ -7835,6 +7845,16 @@
         <location filename="../../freecad_am/posts/abb_modules.py"/>
         <source>its module is called {0}, and the file is not, or another one is too</source>
         <translation>son module s&apos;appelle {0}, mais pas le fichier, ou un autre porte ce nom aussi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>its motion group, 2 to {0}</source>
+        <translation>son groupe de mouvement, de 2 à {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <source>its positions are not all of the same motion groups, or one is not understood</source>
+        <translation>ses positions ne sont pas toutes des mêmes groupes de mouvement, ou l&apos;une n&apos;est pas comprise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa_read.py"/>
@@ -8120,6 +8140,11 @@
         <location filename="../../freecad_am/posts/yaskawa.py"/>
         <source>linear moves at the speed of a fixed nozzle over a part on the robot need the controller&apos;s external reference point, whose instruction is not documented well enough to write it; use `motion: joint`</source>
         <translation>les mouvements linéaires à la vitesse d&apos;une buse fixe sur une pièce portée par le robot demandent le point de référence externe de la commande, dont l&apos;instruction n&apos;est pas assez documentée pour l&apos;écrire ; utilisez `motion: joint`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc.py"/>
+        <source>linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions are then seen from was not confirmed; use `motion: joint`, whose times hold the speed</source>
+        <translation>les mouvements linéaires sur une pièce portée par un positionneur sont du mouvement coordonné (COORD), et le repère utilisateur d&apos;où leurs positions sont alors vues n&apos;a pas été confirmé ; utilisez `motion: joint`, dont les durées tiennent la vitesse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -9815,6 +9840,11 @@
         <location filename="../../freecad_am/core/planning/turns.py"/>
         <source>the seams of {0} beads were moved to keep an axis within its limits</source>
         <translation>les coutures de {0} cordons ont été déplacées pour garder un axe dans ses limites</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc_records.py"/>
+        <source>the second group of P[{0}] is not understood</source>
+        <translation>le deuxième groupe de P[{0}] n&apos;est pas compris</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machine.py"/>
