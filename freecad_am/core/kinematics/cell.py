@@ -192,13 +192,18 @@ class PoseFrames:
         """(..., n, 4, 4) flange poses for rotations phi (..., n)."""
         cos, sin = np.cos(phi), self.sign * np.sin(phi)
         spun = np.empty((*phi.shape, 4, 4))
+        # entry by entry: along axes of four it takes twice as long
         if len(self.left) == 1:
-            spun[..., 0, :] = cos[..., None] * self.right[:, 0] - sin[..., None] * self.right[:, 1]
-            spun[..., 1, :] = sin[..., None] * self.right[:, 0] + cos[..., None] * self.right[:, 1]
+            for column in range(4):
+                first, second = np.ascontiguousarray(self.right[:, :2, column].T)
+                spun[..., 0, column] = cos * first - sin * second
+                spun[..., 1, column] = sin * first + cos * second
             spun[..., 2:, :] = self.right[:, 2:]
             return _moved_by(self.left[0], spun)
-        spun[..., :, 0] = cos[..., None] * self.left[:, :, 0] + sin[..., None] * self.left[:, :, 1]
-        spun[..., :, 1] = cos[..., None] * self.left[:, :, 1] - sin[..., None] * self.left[:, :, 0]
+        for row in range(4):
+            first, second = np.ascontiguousarray(self.left[:, row, :2].T)
+            spun[..., row, 0] = cos * first + sin * second
+            spun[..., row, 1] = cos * second - sin * first
         spun[..., :, 2:] = self.left[:, :, 2:]
         turned: Array = (spun.reshape(-1, 4) @ self.right[0]).reshape(spun.shape)
         return turned

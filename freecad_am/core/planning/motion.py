@@ -111,15 +111,17 @@ def _joined(parts: Sequence[_Rows], cell: Cell, process: ProcessParameters) -> M
         for field in fields(_Rows) if field.name not in ("layer", "bead")
     }
     joints, position, duration = columns["joints"], columns["position"], columns["duration"]
-    distance = np.concatenate([[0.0], np.linalg.norm(np.diff(position, axis=0), axis=1)])
-    turned = np.concatenate([np.zeros((1, joints.shape[1])), np.abs(np.diff(joints, axis=0))])
+    speed = columns["speed"]
+    rapid = np.flatnonzero(np.isnan(duration))
+    before = np.maximum(rapid - 1, 0)
+    distance = np.linalg.norm(position[rapid] - position[before], axis=1)
+    turned = np.abs(joints[rapid] - joints[before])
     by_axes = np.nan_to_num(turned / (RAPID_SHARE * cell.machine.max_speed)).max(axis=1)
-    rapid = np.isnan(duration)
     shortest = np.maximum(np.maximum(distance / process.rapid_speed, by_axes), SHORTEST)
-    duration = np.where(rapid, shortest, duration)
+    duration[rapid], speed[rapid] = shortest, distance / np.maximum(shortest, 1e-12)
+    if len(rapid) and rapid[0] == 0:
+        speed[0] = process.rapid_speed
     duration[0] = 0.0
-    speed = np.where(rapid, distance / np.maximum(shortest, 1e-12), columns["speed"])
-    speed[0] = process.rapid_speed if rapid[0] else speed[0]
     number = {name: np.repeat([int(getattr(part, name)) for part in parts], counts) for name in ("layer", "bead")}
     return Motion(
         deposit=columns["role"] == DEPOSIT,
