@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writes the parts of the examples beside this script (Chalvin 2020, eqs. 20 to 22; Chalvin 2019, eq. 1), in `walls`,
 in `thruster` and `rotor` (after Dai 2020), a bracket, a Y, a hub with fins, a bent
-pipe and a rosette.
+pipe, a die and a rosette.
 
 Each wall is a surface, so that the wall deposited has exactly the radius of the equation.
 Run it in any Python that finds FreeCAD: python3 resources/examples/make_examples.py
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import bracket_part
 import curves_parts
+import die_part
 import finned_hub_part
 import parts_of_revolution
 import rotor_parts
@@ -26,7 +27,7 @@ ROTOR = step_files.HERE / "rotor"
 PLAIN = (
     parts_of_revolution.hemisphere, parts_of_revolution.laval_nozzle, parts_of_revolution.intake_funnel,
     tubes_on_pipes.tube_on_pipe, tubes_on_pipes.pipe, bracket_part.bracket,
-    wye_part.wye, finned_hub_part.finned_hub, curves_parts.pipe_bend,
+    wye_part.wye, finned_hub_part.finned_hub, curves_parts.pipe_bend, die_part.die,
 )
 ON_PARTS = {
     "wide-tube-on-pipe": tubes_on_pipes.wide_tube_on_pipe,
