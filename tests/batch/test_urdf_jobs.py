@@ -48,9 +48,9 @@ def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(plan
 
 
 def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, workshop):
-    text = (workshop.folder / "arm.urdf").read_text().replace('xyz="0.1 0.0 0.0"', 'xyz="0.1 0.0 0.02"')
+    text = (workshop.folder / "arm.urdf").read_text().replace('xyz="0.835 0.0 0.0"', 'xyz="0.835 0.0 0.02"')
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
     done = planned("arm.urdf")
     assert done.status == 2 and "error[NO_CLOSED_FORM]" in done.err
-    assert "arm.urdf from base_link to tool0: this cannot be planned for: the wrist is not spherical, and" in done.err
-    assert "axis 2 is 150 mm ahead of axis 1" in done.err
+    assert "arm.urdf from base_link to tool0: this cannot be planned for: neither is the wrist spherical nor do" in done.err
+    assert "axes 4 and 5 meet" in done.err

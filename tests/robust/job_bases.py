@@ -13,6 +13,7 @@ import yaml
 from freecad_am.core.kinematics import machine as machines
 from freecad_am.core.planning.program import written_by
 from freecad_am.posts import catalogue
+from tests.core.kinematics.arms import EXAMPLES as MACHINES
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "resources" / "examples"
@@ -88,7 +89,7 @@ def write_parts(folder):
 def bases(folder):
     """(name, job) of all, the job as values with absolute paths of its parts, of which the small ones are in `folder`."""
     found = [(path.stem, _example(path)) for path in sorted(EXAMPLES.rglob("*.yaml"))]
-    for path in sorted((ROOT / "freecad_am" / "machines").glob("*.json")):
+    for path in sorted(ROOT / "freecad_am" / "machines" / f"{name}.json" for name in MACHINES):
         machine = json.loads(path.read_text(encoding="utf-8"))
         for family, sections in FAMILIES.items():
             job = copy.deepcopy(sections)

@@ -19,7 +19,7 @@ GOOD = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encod
 
 def test_all_built_in_machines_load():
     known = machine.known()
-    assert len(known) == 189
+    assert len(known) == 190
     for name, title in known:
         arm = machine.load(name)
         assert (arm.id, arm.title) == (name, title)

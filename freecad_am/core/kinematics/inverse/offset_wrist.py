@@ -22,7 +22,7 @@ from .offset_wrist_search import Curves, Zeros
 
 Mask = NDArray[np.bool_]
 
-CHUNK = 1024  # poses worked on together: twice as many take new memory time and again
+CHUNK = 2048
 MOST = 16  # solutions of six revolute joints
 TURN = 2.0 * math.pi
 STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
@@ -32,11 +32,11 @@ STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
 class OffsetWristArm:
     """Lengths (mm) and zeros (rad) of the arm of a `chain` seen from a base_link whose Z is axis 1.
 
-    Axis 2 is `above` base_link on axis 1, `upper` and `fore` go from there to axis 3 and to the point where axes 4 and 5
-    meet, in the arm's plane. `turns` are the angles at all q 0 of plane, upper arm and forearm (rad, from X, and from Z
-    towards the plane's front), `signs` those of axes 1 to 3, `lean` turns the way from elbow to that point to axis 4. At
-    q 0 that `point` (3,) is in base_link. `flips` tells for each of the four shoulders and elbows which way of passing zero
-    is that with q5 < 0.
+    Axis 2 is `ahead` of axis 1 and `above` base_link, `upper` and `fore` go from there to axis 3 and to the point where axes
+    4 and 5 meet, in the arm's plane. `turns` are the angles at all q 0 of plane, upper arm and forearm (rad, from X, and
+    from Z towards the plane's front), `signs` those of axes 1 to 3, `lean` turns the way from elbow to that point to axis 4.
+    At q 0 that `point` (3,) is in base_link. `flips` tells for each of the four shoulders and elbows which way of passing
+    zero is that with q5 < 0.
 
     Front, back, up and down are as of a spherical wrist, with the point where axes 4 and 5 meet for the wrist centre. Flip
     and noflip are parted by the singularities of the wrist, which need not be where q5 is 0; mostly q5 < 0 is flip. More
@@ -52,13 +52,14 @@ class OffsetWristArm:
     lean: float
     point: Array
     flips: tuple[bool, bool, bool, bool]
+    ahead: float = 0.0
 
     followed = True
 
     @property
     def shoulder(self) -> tuple[float, float]:
         """How far axis 2 lies ahead of axis 1 and above base_link, mm."""
-        return 0.0, self.above
+        return self.ahead, self.above
 
     @property
     def reach(self) -> float:
@@ -114,7 +115,7 @@ class OffsetWristArm:
     def _sides(self, q: Array) -> tuple[Mask, Mask]:
         """Whether the arm (n,) is at the back, and its elbow on the left of the way to the wrist."""
         two, three = self._plane(q)
-        back = self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
+        back = self.ahead + self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
         return np.asarray(back), np.asarray(np.sin(three - two) >= 0.0)
 
     def _words(self, back: Mask, left: Mask, rising: Mask) -> NDArray[np.intp]:
@@ -141,7 +142,7 @@ class OffsetWristArm:
         square = float(at_rest.directions[3] @ at_rest.directions[4])
         return Curves(
             np.stack(point).transpose(0, 2, 1).copy(), np.stack(five).transpose(0, 2, 1).copy(), self.upper, self.fore,
-            (math.cos(self.lean), math.sin(self.lean)), square,
+            (math.cos(self.lean), math.sin(self.lean)), square, self.ahead,
         )
 
     def _solve_piece(self, poses: Array, out: Array, named: NDArray[np.intp]) -> None:

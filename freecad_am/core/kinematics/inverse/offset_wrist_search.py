@@ -17,14 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.frames import Array
+from . import offset_shoulder_loops
 
 Index = NDArray[np.intp]
 
 SAMPLES = 36
+BESIDE = 0.37  # of a step: no sample where the arm is stretched or folded, at which a zero of it would have either sign
 PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
 FLAT = (0.02, 4e-4)  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
-SWING = 0.9  # cosine of the most that arm or axis 4 may turn in a step
-ROUNDS, PEAKS = 60, 8  # of the search for a zero, and for an extreme
+SWING = 0.96  # cosine of the most that arm or axis 4 may turn in a step
+ROUNDS, PEAKS = 60, 12  # of the search for a zero, and for an extreme
 TOUCHES = 1e-11  # of the cosine between axes 4 and 5: an extreme so near is a zero
 EDGE = 1e-12  # of the cosine of axis 6: by how much rounding may take a stretched arm out of reach
 TINY = 1e-150
@@ -34,8 +36,8 @@ SAME_RAD = 1e-7  # nearer zeros are one: where two meet, rounding parts them by 
 @dataclass(frozen=True)
 class Curves:
     """Of n poses: `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point where axes 4 and 5
-    meet, from the shoulder, and of the direction of axis 5, by components. `lean` is cosine and sine of the turn from the
-    forearm to axis 4, `square` the cosine between axes 4 and 5. mm."""
+    meet, from axis 1 at the shoulder's height, and of the direction of axis 5, by components. `lean` is cosine and sine of
+    the turn from the forearm to axis 4, `square` the cosine between axes 4 and 5; axis 2 is `ahead` of axis 1. mm."""
 
     point: Array
     five: Array
@@ -43,6 +45,7 @@ class Curves:
     fore: float
     lean: tuple[float, float]
     square: float
+    ahead: float = 0.0
 
 
 class Spot(NamedTuple):
@@ -75,7 +78,10 @@ class Zeros(NamedTuple):
 class Loops(NamedTuple):
     """Loops (k,): pose and side; `elbow` 1 or -1 of whole turns, 0 of others. The angle of axis 6 is middle - half cos t, or
     middle + t of whole turns. `near`, `far`: the angles, from where the point is farthest out, at which the arm is stretched
-    and folded; whether it ever is. `mean`, `swing`: mean and half the difference of squared distances from the shoulder."""
+    and folded; whether it ever is. `mean`, `swing`: mean and half the difference of squared distances from the shoulder.
+
+    Of an arm whose axis 2 is ahead of axis 1 `near` and `far` are the angles at both ends, `stretched` and `folded` whether
+    the first is where it is stretched and the last where it is folded, `mean` and `swing` 0."""
 
     pose: Index
     side: Array
@@ -98,7 +104,7 @@ class Loops(NamedTuple):
 def zeros(curves: Curves) -> Zeros:
     """All zeros, in no order."""
     loops = _loops(curves)
-    t = np.arange(-1, SAMPLES + 2) * (2.0 * math.pi / SAMPLES)
+    t = (np.arange(-1, SAMPLES + 2) + BESIDE) * (2.0 * math.pi / SAMPLES)
     loop, low, high = _steps(curves, loops, np.arange(len(loops.pose)), np.broadcast_to(t, (len(loops.pose), len(t))), 0)
     at = loops.of(loop)
     root = _refined(curves, at, low, high)
@@ -122,7 +128,7 @@ def _once(found: Zeros) -> Index:
 
 def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
     """The function (k,) at angles of axis 6 with an elbow 1 or -1."""
-    return geometry(curves, pose, angle, side, _bent(curves, pose, angle, elbow)).value
+    return geometry(curves, pose, angle, side, _bent(curves, pose, angle, side, elbow)).value
 
 
 def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array) -> Spot:
@@ -133,6 +139,7 @@ def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array
     x = x + TINY
     ahead = side * np.sqrt(x * x + y * y)
     cosine, sine = x / ahead, y / ahead
+    ahead = ahead - curves.ahead
     # the forearm from the point: turned from the way to the shoulder by sine and cosine of the triangle
     squared = ahead * ahead + above * above + TINY
     common = (curves.fore + curves.upper * bent[1]) / squared
@@ -146,18 +153,38 @@ def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array
     return Spot(sine, cosine, ahead, above, fore_ahead, fore_above, np.stack(five, axis=-1), value, along)
 
 
-def _bent(curves: Curves, pose: Index, angle: Array, elbow: Array) -> Array:
+def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
     """Sine and cosine (2, k) of the elbow's bend."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    point = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2)]
-    squared = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
+    if curves.ahead:
+        squared = offset_shoulder_loops.squared_distance(curves, pose, angle, side)
+    else:
+        cos, sin = np.cos(angle), np.sin(angle)
+        point = [part[0][pose] + cos * part[1][pose] + sin * part[2][pose] for part in curves.point.transpose(1, 0, 2)]
+        squared = point[0] ** 2 + point[1] ** 2 + point[2] ** 2
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
     cosine = (squared - (curves.upper**2 + curves.fore**2)) * scale
     return np.stack([elbow * np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0)), cosine])
 
 
+def _bent_from_end(curves: Curves, at: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]) -> Array:
+    """Sine and cosine (2, k) of the elbow's bend, exact near the end of a span: its angle, half the way since, and whether
+    the arm is stretched there."""
+    ends, since, stretched = end
+    longest, shortest = (curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2
+    squared = offset_shoulder_loops.squared_distance(curves, at.pose, angle, at.side)
+    nearer = np.abs(offset_shoulder_loops.difference(curves, at.pose, ends, since, at.side))
+    free = at.elbow != 0.0
+    to_stretched = np.where(free | ~stretched, longest - squared, nearer)
+    to_folded = np.where(free | stretched, squared - shortest, nearer)
+    scale = 1.0 / (2.0 * curves.upper * curves.fore)
+    sine = scale * np.sqrt(np.maximum(to_stretched, 0.0) * np.maximum(to_folded, 0.0))
+    return np.stack([elbow * sine, np.where(stretched | free, 1.0 - to_stretched * scale, to_folded * scale - 1.0)])
+
+
 def _loops(curves: Curves) -> Loops:
     """The loops of all poses, on both sides."""
+    if curves.ahead:
+        return _offset_loops(curves)
     constant, cos, sin = curves.point
     radius = 0.5 * ((cos * cos).sum(axis=0) + (sin * sin).sum(axis=0))
     mean = (constant * constant).sum(axis=0) + radius
@@ -185,6 +212,20 @@ def _loops(curves: Curves) -> Loops:
     return Loops(*(np.concatenate(columns) for columns in zip(*loops)))
 
 
+def _offset_loops(curves: Curves) -> Loops:
+    """The loops of all poses, on both sides, of an arm whose axis 2 lies ahead of axis 1."""
+    found = []
+    for side in (1.0, -1.0):
+        pose, begin, end, stretched, folded, whole = offset_shoulder_loops.spans(curves, side)
+        one, zero = np.ones(len(pose)), np.zeros(len(whole))
+        no = zero > 0.0
+        none = 0.0 * one
+        found.append(Loops(pose, side * one, none, 0.5 * (begin + end), 0.5 * (end - begin), begin, end, stretched, folded,
+                           none, none))
+        found += [Loops(whole, zero + side, zero + elbow, *(zero,) * 4, no, no, zero, zero) for elbow in (1.0, -1.0)]
+    return Loops(*(np.concatenate(columns) for columns in zip(*found)))
+
+
 def _angle(curves: Curves, at: Loops, t: Array) -> tuple[Array, Array]:
     """The angle of axis 6 (k,) at t along loops, and sine and cosine (2, k) of the elbow's bend, exact to its last digits
     where the arm is stretched or folded."""
@@ -194,6 +235,14 @@ def _angle(curves: Curves, at: Loops, t: Array) -> tuple[Array, Array]:
     half = np.abs(at.half)
     since = 2.0 * half * course
     angle = np.where(whole, at.middle + t, at.middle - at.half * (1.0 - 2.0 * course))
+    if curves.ahead:
+        elbow = np.where(whole, at.elbow, np.where(begun * left >= 0.0, 1.0, -1.0))
+        # half the way from the nearer end, and whether the arm is stretched there
+        first = course <= 0.5
+        since = np.where(first, at.half * course, -at.half * left * left)
+        ends = np.where(first, at.near, at.far)
+        stretched = np.where(first, at.stretched, ~at.folded)
+        return angle, _bent_from_end(curves, at, angle, elbow, (ends, since, stretched))
     from_out = np.where(whole, t, np.where(at.stretched, at.near + since, since - half))
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
     squared = at.mean + at.swing * np.cos(from_out)
@@ -240,6 +289,7 @@ def _steps(curves: Curves, loops: Loops, which: Index, t: Array, level: int) -> 
         if len(row):
             share = np.arange(-1, PIECES + 2) / PIECES
             finer = t[row, at][:, None] + share * (t[row, at + 1] - t[row, at])[:, None]
+            finer[:, -2] = t[row, at + 1]  # to its last digit, as in the step beside
             found.append(_steps(curves, loops, which[row], finer, level + 1))
     change[:, [0, -1]] = False
     row, at = np.nonzero(change)

@@ -90,8 +90,6 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     ahead = np.cross(normal, (0.0, 0.0, 1.0))
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
     shoulder, elbow, centre = (plane @ at for at in (p[1], p[2], point))
-    if abs(shoulder[0]) > NEAR_MM:
-        raise opw_recognition.refused(f"the wrist is not spherical, and axis 2 is {abs(shoulder[0]):.6g} mm ahead of axis 1")
     beside = float(normal @ point)
     if abs(beside) > NEAR_MM:
         raise opw_recognition.refused(f"the wrist is not spherical, and axis 4 passes {abs(beside):.6g} mm beside axis 1")
@@ -105,6 +103,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
         turns=(math.atan2(ahead[1], ahead[0]), math.atan2(*upper), turn3),
         signs=(_sign(z[0, 2]), _sign(z[1] @ normal), _sign(z[2] @ normal)),
         lean=math.atan2(*(plane @ z[3])) - turn3, point=point, flips=(True,) * 4,
+        ahead=float(shoulder[0]) if abs(shoulder[0]) > NEAR_MM else 0.0,
     )
     arm = replace(arm, flips=_flips(arm))
     if not _agrees(arm, chain):

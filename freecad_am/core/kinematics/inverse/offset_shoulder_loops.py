@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Where axis 6 can turn while the triangle of shoulder, elbow and wrist closes, of an arm whose axis 2 lies ahead of axis 1.
+
+The squared distance of the point of axes 4 and 5 from axis 2 has a root in it; squared once more, the angles at which the
+arm is stretched or folded are the zeros of a trigonometric polynomial of degree 2: eigenvalues of a matrix of four rows.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.frames import Array
+
+Mask = NDArray[np.bool_]
+
+if TYPE_CHECKING:
+    from .offset_wrist_search import Curves, Index
+
+TURN = 2.0 * math.pi
+NEWTON = 3
+LONGEST_STEP_RAD = 1e-3
+ENDS = 1e-12  # of the squared length: what an angle may leave of being stretched or folded to be an end
+SHORTEST_RAD = 1e-12
+TINY = 1e-150
+
+
+def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask, Index]:
+    """Angles of axis 6 at which the arm reaches its point on a side, 1 in front of axis 1 or -1: the pose, begin and end of
+    each span (k,) rad, whether it begins stretched and whether it ends folded, and the poses that reach it at all angles."""
+    lengths: Array = np.array([(curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2])
+    angles = np.concatenate([_angles(curves, squared) for squared in lengths], axis=1)
+    pose = np.arange(len(angles))[:, None]
+    for _ in range(NEWTON):
+        off, slope = _off(curves, pose, angles, side, lengths)
+        angles = angles - np.clip(off / np.where(np.abs(slope) < TINY, TINY, slope), -LONGEST_STEP_RAD, LONGEST_STEP_RAD)
+    angles[np.abs(_off(curves, pose, angles, side, lengths)[0]) > ENDS * lengths[0]] = np.nan
+    angles %= TURN
+    angles = np.sort(angles, axis=1)
+    count = np.isfinite(angles).sum(axis=1)
+    each = np.arange(len(angles))
+    following = np.roll(angles, -1, axis=1)
+    following[each[count > 0], count[count > 0] - 1] = angles[count > 0, 0] + TURN
+    row, at = np.nonzero(np.isfinite(angles))
+    begin, end = angles[row, at], following[row, at]
+    inside = end - begin > SHORTEST_RAD
+    row, begin, end = row[inside], begin[inside], end[inside]
+    kept = _closes(squared_distance(curves, row, 0.5 * (begin + end), side), lengths)
+    none = np.flatnonzero(count == 0)
+    whole = none[_closes(squared_distance(curves, none, np.zeros(len(none)), side), lengths)]
+    row, begin, end = row[kept], begin[kept], end[kept]
+    stretched, straight = (
+        np.abs(distance - lengths[0]) < np.abs(distance - lengths[1])
+        for distance in (squared_distance(curves, row, angle, side) for angle in (begin, end))
+    )
+    return row, begin, end, stretched, ~straight, whole
+
+
+def squared_distance(curves: Curves, pose: Index, angle: Array, side: float | Array) -> Array:
+    """The squared distance (...) of the point from axis 2, in the arm's plane."""
+    x, y, above = (part[0][pose] + np.cos(angle) * part[1][pose] + np.sin(angle) * part[2][pose]
+                   for part in curves.point.transpose(1, 0, 2))
+    result: Array = (side * np.hypot(x, y) - curves.ahead) ** 2 + above**2
+    return result
+
+
+def _off(curves: Curves, pose: Index, angle: Array, side: float, lengths: Array) -> tuple[Array, Array]:
+    """By how much the squared distance (...) differs from the nearer of both squared lengths, and its slope."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    parts = [(part[0][pose], part[1][pose], part[2][pose]) for part in curves.point.transpose(1, 0, 2)]
+    x, y, above = (constant + cos * by_cos + sin * by_sin for constant, by_cos, by_sin in parts)
+    x_slope, y_slope, rise = (cos * by_sin - sin * by_cos for _, by_cos, by_sin in parts)
+    away = np.hypot(x, y) + TINY
+    squared = (side * away - curves.ahead) ** 2 + above**2
+    slope = 2.0 * (side * away - curves.ahead) * side * (x * x_slope + y * y_slope) / away + 2.0 * above * rise
+    both = squared[..., None] - lengths
+    off = np.where(np.abs(both[..., 0]) < np.abs(both[..., 1]), both[..., 0], both[..., 1])
+    return off, slope
+
+
+def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Array) -> Array:
+    """By how much the squared distance (k,) at an angle differs from that twice `half` further on, without the loss of
+    digits of a difference."""
+    there = angle + 2.0 * half
+    constant, cos, sin = (curves.point[part][:, pose] for part in range(3))
+    # of cosine and sine between both angles
+    by_cos, by_sin = (-2.0 * np.sin(half) * np.sin(angle + half), 2.0 * np.sin(half) * np.cos(angle + half))
+    squares = 2.0 * ((constant * cos).sum(axis=0) * by_cos + (constant * sin).sum(axis=0) * by_sin)
+    rise = cos[2] * by_cos + sin[2] * by_sin
+    here, after = (constant + np.cos(at) * cos + np.sin(at) * sin for at in (angle, there))
+    around = squares - rise * (here[2] + after[2])
+    apart = np.hypot(here[0], here[1]) + np.hypot(after[0], after[1])
+    result: Array = squares - 2.0 * side * curves.ahead * around / (apart + TINY)
+    return result
+
+
+def _closes(squared: Array, lengths: Array) -> Mask:
+    return np.asarray((squared < lengths[0]) & (squared > lengths[1]))
+
+
+def _angles(curves: Curves, squared: float) -> Array:
+    """The angles (n, 4) in [0, 2 pi) at which the squared distance may be `squared`, on either side; too many are given."""
+    constant, cos, sin = curves.point
+    mean = (constant**2).sum(axis=0) + 0.5 * ((cos**2).sum(axis=0) + (sin**2).sum(axis=0))
+    # (p p + k)^2 - (2 a)^2 (p p - z z), by constant, cosine, sine, cosine and sine of twice the angle
+    linear = np.stack([2.0 * (constant * cos).sum(axis=0), 2.0 * (constant * sin).sum(axis=0)])
+    shifted, twice = mean + curves.ahead**2 - squared, 4.0 * curves.ahead**2
+    whole = _square(shifted, *linear)
+    height = _square(*curves.point[:, 2])
+    trig = whole + twice * height
+    trig[0] -= twice * mean
+    trig[1] -= twice * linear[0]
+    trig[2] -= twice * linear[1]
+    scale = np.abs(trig).max(axis=0) + TINY
+    trig = trig / scale
+    last = 0.5 * (trig[3] - 1j * trig[4])
+    last = np.where(np.abs(last) < 1e-14, 1e-14, last)
+    first = 0.5 * (trig[1] - 1j * trig[2])
+    companion = np.zeros((len(mean), 4, 4), dtype=complex)
+    companion[:, [1, 2, 3], [0, 1, 2]] = 1.0
+    for row, coefficient in enumerate((np.conj(last), np.conj(first), trig[0], first)):
+        companion[:, row, 3] = -coefficient / last
+    angle = np.angle(np.linalg.eigvals(companion))
+    for _ in range(NEWTON):
+        c, s, c2, s2 = np.cos(angle), np.sin(angle), np.cos(2.0 * angle), np.sin(2.0 * angle)
+        t = trig[:, :, None]
+        value = t[0] + t[1] * c + t[2] * s + t[3] * c2 + t[4] * s2
+        slope = -t[1] * s + t[2] * c - 2.0 * t[3] * s2 + 2.0 * t[4] * c2
+        step = value / np.where(np.abs(slope) < 1e-12, 1e-12, slope)
+        angle = angle - np.clip(step, -0.1, 0.1)
+    result: Array = angle % TURN
+    return result
+
+
+def _square(constant: Array, cos: Array, sin: Array) -> Array:
+    """The square (5, n) of constant + cos c + sin s, by constant, cosine, sine, and those of twice the angle."""
+    return np.stack([
+        constant**2 + 0.5 * (cos**2 + sin**2), 2.0 * constant * cos, 2.0 * constant * sin, 0.5 * (cos**2 - sin**2),
+        cos * sin,
+    ])
