@@ -10108,11 +10108,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>the wrist is not spherical, and axis 2 is {0} mm ahead of axis 1</source>
-        <translation>le poignet n&apos;est pas sphérique, et l&apos;axe 2 est à {0} mm en avant de l&apos;axe 1</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
         <source>the wrist is not spherical, and axis 4 passes {0} mm beside axis 1</source>
         <translation>le poignet n&apos;est pas sphérique, et l&apos;axe 4 passe à {0} mm à côté de l&apos;axe 1</translation>
     </message>
