@@ -198,7 +198,7 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     person.type(panel, "LayerHeight", "-3 mm")
     wrong = person.field(panel, "LayerHeightNote")
     person.until(lambda: wrong.isVisible() and "more than 0 mm" in wrong.text(), "the note", 5)
-    assert person.screen_pixels(ORANGE) == 0
+    person.until(lambda: person.screen_pixels(ORANGE) == 0, "that nothing is previewed", 5)
     for entry, why in (("0.000001 mm", "20,000 cannot be worked with"), ("4 mm", "")):  # of solids that are known by now
         noted_for(person, panel, entry, lambda why=why: why in wrong.text() and wrong.isVisible() == bool(why))
     previewed(person, panel)
