@@ -9,7 +9,7 @@ from time import process_time
 
 import numpy as np
 
-from freecad_am.core.geometry.region import regions, shapely
+from freecad_am.core.geometry.regions.region import regions, shapely
 from freecad_am.core.layers import eikonal
 from freecad_am.core.layers.voxels import voxels
 

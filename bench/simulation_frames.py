@@ -16,8 +16,8 @@ def run_of_points(layer_height: float, points: int, document: str):
     """A hemisphere of many points as a simulation plays it."""
     import numpy as np
 
-    from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-    from freecad_am.core.geometry.sampling import sampled
+    from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+    from freecad_am.core.geometry.curves.sampling import sampled
     from freecad_am.core.kinematics import cell as cells
     from freecad_am.core.parameters.build_direction import BuildDirectionParameters
     from freecad_am.core.parameters.cell import CellParameters, NozzleParameters

@@ -14,7 +14,7 @@ from time import perf_counter
 import numpy as np
 
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing import constant_distance, fronts
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.wall_layer import WallLayer, even_grid

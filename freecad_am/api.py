@@ -28,7 +28,7 @@ from typing import Any
 
 import FreeCAD as App
 
-from .core.geometry.curves import POINT_FILES
+from .core.geometry.curves.bead_curves import POINT_FILES
 from .core.issues import AmError, InputError, Issue
 from .core.kinematics import machine as machines
 from .core.kinematics.proposed_cell import cell_of

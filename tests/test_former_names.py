@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from freecad_am.gui import former_names
+from freecad_am.objects import store
 
 ROOT = Path(__file__).resolve().parent.parent
 SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the window moved into folders
@@ -17,6 +18,20 @@ SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the windo
     "view_hub": {"HubView", "SolidView"}, "view_job": {"JobView"}, "view_joint_path": {"JointPathView"},
     "view_program": {"ProgramView"}, "view_toolpath": {"ToolpathView"}, "inspection.view": {"InspectionView"},
 }
+
+
+RESULTS = {  # in results of documents saved before modules of the geometry moved into folders
+    "clad_faces:CladFaces", "curves:BeadCurve", "curves:Curves", "mesh:Mesh", "mesh_wall:MeshWall", "part_depths:PartDepths",
+    "part_depths:Surface", "patch:Patch", "patch_wall:FirstCurve", "patch_wall:PatchWall", "patch_wall:Rim",
+    "profile:Meridian", "profile:RevolvedWall", "solid_mesh:SolidMesh", "surface:Cone", "surface:Torus",
+    "surface_wall:Placed", "surface_wall:SurfaceWall", "on_hub:SolidsOnHub", "guide:Guide", "surroundings:Body",
+}
+
+
+@pytest.mark.parametrize("name", sorted(RESULTS))
+def test_results_that_documents_hold_are_of_the_classes_of_now(name):
+    kind = store._class(f".core.geometry.{name}")
+    assert kind.__name__ == name.split(":")[1] and kind.__module__.startswith("freecad_am.core.geometry.")
 
 
 @pytest.mark.parametrize("module", SAVED)

@@ -71,7 +71,7 @@ FOREIGN = {
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
-ALONE = {"core/geometry/region": {"shapely"}}
+ALONE = {"core/geometry/regions/region": {"shapely"}}
 MOST_FILES = 17  # in a folder of the window
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.core.geometry.mesh_repair import repaired
+from freecad_am.core.geometry.mesh.repair import repaired
 from freecad_am.core.issues import AmError, Issue
 from freecad_am.core.kinematics import machine
 from freecad_am.core.parameters.process import ProcessParameters

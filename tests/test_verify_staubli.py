@@ -8,8 +8,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from freecad_am import verify as verification
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import sampled
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.sampling import sampled
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters

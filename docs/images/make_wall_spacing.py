@@ -21,8 +21,8 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1]))
 
 from freecad_am.core.geometry.implicit import Round  # noqa: E402
-from freecad_am.core.geometry.surface import Torus  # noqa: E402
-from freecad_am.core.geometry.surface_wall import SurfaceWall  # noqa: E402
+from freecad_am.core.geometry.walls.surface import Torus  # noqa: E402
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall  # noqa: E402
 from freecad_am.core.parameters.strategy import SurfaceParameters  # noqa: E402
 from freecad_am.core.slicing import normal_layers  # noqa: E402
 from freecad_am.core.slicing.first_layer import on_implicit  # noqa: E402

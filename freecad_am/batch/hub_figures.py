@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from freecad_am.core.geometry.guide import Guide
+from freecad_am.core.geometry.curves.guide import Guide
 from freecad_am.core.geometry.on_hub import Group, SolidsOnHub, middle_azimuth
 from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.layers.along_layer import between

@@ -7,8 +7,8 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
-from freecad_am.core.geometry.curves import POINT_FILES
-from freecad_am.core.geometry.file_unit import MESHES
+from freecad_am.core.geometry.curves.bead_curves import POINT_FILES
+from freecad_am.core.geometry.mesh.file_unit import MESHES
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters

@@ -12,7 +12,7 @@ import FreeCAD as App
 from freecad_am import api
 from freecad_am.brep.apart import apart
 from freecad_am.brep.chosen import solids_of
-from freecad_am.core.geometry.file_unit import MESHES
+from freecad_am.core.geometry.mesh.file_unit import MESHES
 from freecad_am.core.issues import InputError
 from freecad_am.objects import document_file
 

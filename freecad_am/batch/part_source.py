@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from freecad_am.core.geometry.file_unit import MESHES, refuse_scale
+from freecad_am.core.geometry.mesh.file_unit import MESHES, refuse_scale
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
 

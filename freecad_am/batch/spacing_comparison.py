@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import AmError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.cell import Cell

@@ -10,7 +10,7 @@ import FreeCAD
 import numpy as np
 import Part
 
-from ..core.geometry.curves import Array, BeadCurve
+from ..core.geometry.curves.bead_curves import Array, BeadCurve
 from ..core.geometry.told import place
 from ..core.issues import InputError
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.profile import Array
-from ..core.geometry.sampling import Curve, sampled
+from ..core.geometry.curves.profile import Array
+from ..core.geometry.curves.sampling import Curve, sampled
 
 
 @dataclass(frozen=True)

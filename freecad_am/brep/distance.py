@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.geometry.solid_mesh import Search, SolidMesh
+from ..core.geometry.mesh.solid import Search, SolidMesh
 from ..core.issues import InputError
 from .kernel_process import beside
 

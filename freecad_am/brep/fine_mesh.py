@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.refined import Edges, quartered
+from ..core.geometry.mesh.refined import Edges, quartered
 from ..core.issues import InputError
 from .sheet_places import Places
 from .surface_patch import patch_of

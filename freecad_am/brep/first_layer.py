@@ -11,9 +11,9 @@ import FreeCAD
 import numpy as np
 import Part
 
-from ..core.geometry.surface import dot
-from ..core.geometry.surface_wall import TABLE, TORUS, Array, Placed, SurfaceWall
 from ..core.geometry.told import deviation
+from ..core.geometry.walls.surface import dot
+from ..core.geometry.walls.surface_wall import TABLE, TORUS, Array, Placed, SurfaceWall
 from ..core.issues import NOTE, InputError, Issue
 from .patch_wall import sound
 from .wall import Tube, tubes

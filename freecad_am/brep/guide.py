@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.patch import Array
+from ..core.geometry.walls.patch import Array
 from ..core.issues import InputError
 from .start_edges import sampled
 

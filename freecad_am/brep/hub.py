@@ -12,9 +12,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..core.geometry.developable import TURN, Developable
-from ..core.geometry.mesh_repair import crossing_told, mended_issues, repaired
+from ..core.geometry.mesh.repair import crossing_told, mended_issues, repaired
+from ..core.geometry.mesh.solid import Array, SolidMesh
 from ..core.geometry.on_hub import Base, Seat, Stretch, downwards, sector, upright
-from ..core.geometry.solid_mesh import Array, SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError, Issue
 from .axis import from_normals

@@ -12,10 +12,10 @@ import numpy as np
 import Part
 from scipy.spatial import cKDTree
 
-from ..core.geometry.mesh import Index
-from ..core.geometry.patch import Array
-from ..core.geometry.surface import dot
+from ..core.geometry.mesh.triangle_mesh import Index
 from ..core.geometry.told import place
+from ..core.geometry.walls.patch import Array
+from ..core.geometry.walls.surface import dot
 from ..core.issues import InputError
 
 # since FreeCAD 1.0 some faults are a plain RuntimeError, the base of these

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.geometry.file_unit import MESHES
+from ..core.geometry.mesh.file_unit import MESHES
 from .apart import apart
 from .read import read_mesh, read_shape
 

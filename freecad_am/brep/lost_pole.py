@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.profile import Array
+from ..core.geometry.curves.profile import Array
 from .cylindrical import AxisFrame, pieces_of
 
 SAMPLES = 721

@@ -10,17 +10,17 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..core.geometry.contact import first_curves, levels, splined
-from ..core.geometry.edge_runs import CORNER, runs
-from ..core.geometry.ground import PlaneGround
-from ..core.geometry.mesh import Mask
-from ..core.geometry.mesh_wall import MOST, MeshWall, mesh_wall
-from ..core.geometry.patch_wall import Array, FirstCurve
-from ..core.geometry.refined import boundary
-from ..core.geometry.surface import dot
+from ..core.geometry.mesh.edge_runs import CORNER, runs
+from ..core.geometry.mesh.refined import boundary
+from ..core.geometry.mesh.triangle_mesh import Mask
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import at_least, count, place
-from ..core.geometry.wall_rims import parts, rims_of, with_ends
+from ..core.geometry.walls.contact import first_curves, levels, splined
+from ..core.geometry.walls.ground import PlaneGround
+from ..core.geometry.walls.mesh_wall import MOST, MeshWall, mesh_wall
+from ..core.geometry.walls.patch_wall import Array, FirstCurve
+from ..core.geometry.walls.rims import parts, rims_of, with_ends
+from ..core.geometry.walls.surface import dot
 from ..core.issues import NOTE, InputError, Issue
 from .patch_wall import EQUAL, from_substrate, several_loops
 from .substrate import Substrate
@@ -36,7 +36,7 @@ def find_mesh_wall(
     """The wall of a mesh for layers of `height` mm, on a substrate, from the edges named, or from the platform under its
     lowest place along Z. Its edges are the loops of its boundary, Edge1 and on, the lowest middle first.
 
-    InputErrors of `core.geometry.mesh_wall`, and NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE, GAP.
+    InputErrors of `core.geometry.walls.mesh_wall`, and NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE, GAP.
     """
     corner = body.corners()
     area = 0.5 * float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())

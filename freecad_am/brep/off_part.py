@@ -15,7 +15,7 @@ import Part
 from numpy.typing import NDArray
 
 from ..core.collision.inside import inside_of
-from ..core.geometry.solid_mesh import SolidMesh
+from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.surroundings import Body
 from .kernel_process import beside
 from .tessellate import triangles_of

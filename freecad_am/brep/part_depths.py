@@ -10,10 +10,10 @@ import numpy as np
 import Part
 
 from ..core.collision.depths import grain, measured
-from ..core.geometry.part_depths import Array, PartDepths, Surface
-from ..core.geometry.profile import RevolvedWall
-from ..core.geometry.solid_mesh import spread
+from ..core.geometry.curves.profile import RevolvedWall
+from ..core.geometry.mesh.solid import spread
 from ..core.geometry.surroundings import Body
+from ..core.geometry.walls.part_depths import Array, PartDepths, Surface
 from .kernel import FAULTS
 from .kernel_process import beside
 from .tessellate import tessellated

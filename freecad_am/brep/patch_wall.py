@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import Part
 
-from ..core.geometry import contact
-from ..core.geometry.ground import nearest
-from ..core.geometry.mesh import Mask
-from ..core.geometry.patch_wall import FirstCurve, PatchWall
+from ..core.geometry.mesh.triangle_mesh import Mask
 from ..core.geometry.told import at_least, count, deviation, place
-from ..core.geometry.wall_rims import outward_volume, parts, rims_of, with_ends
+from ..core.geometry.walls import contact
+from ..core.geometry.walls.ground import nearest
+from ..core.geometry.walls.patch_wall import FirstCurve, PatchWall
+from ..core.geometry.walls.rims import outward_volume, parts, rims_of, with_ends
 from ..core.issues import NOTE, InputError, Issue
 from .sheet import MOST, sheet
 from .start_edges import curves_of

@@ -15,7 +15,7 @@ import Mesh
 import numpy as np
 import Part
 
-from ..core.geometry.file_unit import MESHES
+from ..core.geometry.mesh.file_unit import MESHES
 from ..core.issues import InputError
 from . import three_mf
 from .apart import apart

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry import contour
-from ..core.geometry.contour import Chain, Piece
-from ..core.geometry.profile import Array, Meridian, RevolvedWall
+from ..core.geometry.curves import contour
+from ..core.geometry.curves.contour import Chain, Piece
+from ..core.geometry.curves.profile import Array, Meridian, RevolvedWall
 from ..core.issues import NOTE, WARNING, InputError, Issue
 from .axis import candidates
 from .cylindrical import AxisFrame, axis_frame

@@ -9,9 +9,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from ..core.geometry.mesh import Index, Mask
-from ..core.geometry.patch import SPLINE, Array, Patch
-from ..core.geometry.surface import dot
+from ..core.geometry.mesh.triangle_mesh import Index, Mask
+from ..core.geometry.walls.patch import SPLINE, Array, Patch
+from ..core.geometry.walls.surface import dot
 
 STEPS = 8
 SAME = 1e-4  # mm between a vertex and the node of a tessellation that it came from

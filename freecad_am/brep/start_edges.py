@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import Part
 
-from ..core.geometry.patch import Array
-from ..core.geometry.patch_wall import FirstCurve, PatchWall
 from ..core.geometry.told import place
+from ..core.geometry.walls.patch import Array
+from ..core.geometry.walls.patch_wall import FirstCurve, PatchWall
 from ..core.issues import InputError
 
 ON_WALL = 1e-3  # mm

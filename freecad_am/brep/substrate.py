@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.ground import ExactGround, FacetGround, Ground
-from ..core.geometry.mesh_repair import repaired
-from ..core.geometry.solid_mesh import SolidMesh
+from ..core.geometry.mesh.repair import repaired
+from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.geometry.told import place
+from ..core.geometry.walls.ground import ExactGround, FacetGround, Ground
 from ..core.issues import InputError, Issue
 from .kernel import refuse_bare
 from .kernel_process import beside

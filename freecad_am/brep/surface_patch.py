@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import Part
 
-from ..core.geometry.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, TURN, Array, Patch
+from ..core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, TURN, Array, Patch
 from ..core.issues import InputError
 
 ERROR = 5e-5  # mm that a patch may be off its face

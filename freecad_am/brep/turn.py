@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..core.geometry.contour import Chain, Piece
+from ..core.geometry.curves.contour import Chain, Piece
 from ..core.issues import InputError
 
 SAME = 1e-3  # mm between meridians that are one

@@ -10,7 +10,7 @@ import numpy as np
 import Part
 from numpy.typing import NDArray
 
-from ..core.geometry.profile import Array
+from ..core.geometry.curves.profile import Array
 from .cylindrical import AxisFrame, as_array
 from .patch import planar
 

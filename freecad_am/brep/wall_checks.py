@@ -11,14 +11,14 @@ import numpy as np
 import Part
 from scipy.spatial import cKDTree
 
-from ..core.geometry.mesh import Index, Mask
-from ..core.geometry.patch import Array
-from ..core.geometry.patch_wall import PatchWall
-from ..core.geometry.refined import Edges, boundary
-from ..core.geometry.surface import dot, normals
-from ..core.geometry.surface_wall import SurfaceWall
+from ..core.geometry.mesh.refined import Edges, boundary
+from ..core.geometry.mesh.triangle_mesh import Index, Mask
 from ..core.geometry.told import place
-from ..core.geometry.wall_rims import parts
+from ..core.geometry.walls.patch import Array
+from ..core.geometry.walls.patch_wall import PatchWall
+from ..core.geometry.walls.rims import parts
+from ..core.geometry.walls.surface import dot, normals
+from ..core.geometry.walls.surface_wall import SurfaceWall
 from ..core.issues import InputError
 from .sheet import SEWN
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core.geometry.mesh import Index
-from ..core.geometry.near_pairs import near_pairs
-from ..core.geometry.patch import SPLINE, Array
-from ..core.geometry.patch_wall import PatchWall
-from ..core.geometry.surface import dot
+from ..core.geometry.mesh.near_pairs import near_pairs
+from ..core.geometry.mesh.triangle_mesh import Index
+from ..core.geometry.mesh.triangles import closest
 from ..core.geometry.told import place
-from ..core.geometry.triangles import closest
+from ..core.geometry.walls.patch import SPLINE, Array
+from ..core.geometry.walls.patch_wall import PatchWall
+from ..core.geometry.walls.surface import dot
 from ..core.issues import InputError
 
 BENT, FOLDED = 0.3, -0.7  # cosines between the normals at the ends of an edge, and of a small part of it

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.patch_wall import PatchWall
-from ..core.geometry.surface_wall import SurfaceWall
 from ..core.geometry.surroundings import Body
+from ..core.geometry.walls.patch_wall import PatchWall
+from ..core.geometry.walls.surface_wall import SurfaceWall
 from ..core.issues import InputError
 from .first_layer import find_wall
 from .kernel import FAULTS, told

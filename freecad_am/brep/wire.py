@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.contour import Piece
+from ..core.geometry.curves.contour import Piece
 from ..core.issues import InputError
 from .cylindrical import AxisFrame, edge_points, pieces_of
 

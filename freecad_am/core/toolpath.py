@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .geometry.outline import Outline, estimated, outline
+from .geometry.curves.outline import Outline, estimated, outline
 from .geometry.surroundings import Body
 from .issues import Issue
 

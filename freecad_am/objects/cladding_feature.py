@@ -18,7 +18,7 @@ from .stage import Link, Outcome, Section, Stage, Work
 
 
 class CladdingFeature(Stage):
-    """Result: core.geometry.clad_faces.CladFaces, in the coordinates of the document."""
+    """Result: core.geometry.walls.clad_faces.CladFaces, in the coordinates of the document."""
 
     kind = "feature"
     sections = (

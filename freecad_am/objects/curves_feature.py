@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..brep.curves import curves_of
-from ..core.geometry.curves import Curves
+from ..core.geometry.curves.bead_curves import Curves
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
@@ -17,7 +17,7 @@ from .table_part import points_of
 
 
 class CurvesFeature(Stage):
-    """Result: core.geometry.curves.Curves, in the coordinates of the document."""
+    """Result: core.geometry.curves.bead_curves.Curves, in the coordinates of the document."""
 
     kind = "feature"
     sections = (

@@ -10,8 +10,8 @@ from typing import Any
 
 from ..brep.hub import SHARE, Bodies, bodies_of, given, seats
 from ..core.collision.depths import places_within
+from ..core.geometry.mesh.solid import SolidMesh
 from ..core.geometry.on_hub import OwnHub, Seat, SolidsOnHub
-from ..core.geometry.solid_mesh import SolidMesh
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters

@@ -20,7 +20,7 @@ from .stage import Link, Outcome, Section, Stage, Work
 
 
 class RevolutionFeature(Stage):
-    """Result: core.geometry.profile.RevolvedWall, in the coordinates of the document."""
+    """Result: core.geometry.curves.profile.RevolvedWall, in the coordinates of the document."""
 
     kind = "feature"
     sections = (

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ..brep.distance import skin
+from ..core.geometry.curves.profile import RevolvedWall
 from ..core.geometry.file_content import content
-from ..core.geometry.profile import RevolvedWall
 from ..core.inspection import inspect, point_file, surfaces, table
 from ..core.inspection.planned import Planned, of_triangles
 from ..core.issues import InputError

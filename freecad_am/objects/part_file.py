@@ -10,7 +10,7 @@ import FreeCAD as App
 
 from ..brep.apart import apart
 from ..brep.read import placed_mesh, read_mesh, read_shape
-from ..core.geometry.file_unit import MESHES, refuse_scale
+from ..core.geometry.mesh.file_unit import MESHES, refuse_scale
 from ..core.issues import InputError
 from . import document_file, hooks
 from .shapes import global_shape, outer_placement

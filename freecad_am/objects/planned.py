@@ -167,7 +167,7 @@ def _of_revolution(of: Given) -> CoreToolpath:
 
 
 def _of_wall(of: Given) -> CoreToolpath:
-    from ..core.geometry.patch_wall import PatchWall
+    from ..core.geometry.walls.patch_wall import PatchWall
 
     if isinstance(of.wall, PatchWall):
         from ..core.strategies import wall_fronts as family

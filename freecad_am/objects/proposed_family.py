@@ -13,9 +13,9 @@ from ..brep import hub as hubs
 from ..brep import kernel, part_depths
 from ..brep.revolution import find_wall
 from ..brep.wall_on import named_faces
-from ..core.geometry.manifold import holes, told_apart
-from ..core.geometry.mesh_repair import connected_triangles
-from ..core.geometry.profile import RevolvedWall
+from ..core.geometry.curves.profile import RevolvedWall
+from ..core.geometry.mesh.manifold import holes, told_apart
+from ..core.geometry.mesh.repair import connected_triangles
 from ..core.geometry.surroundings import Body
 from ..core.issues import InputError
 from ..core.layers.stacking import best, facets, judged

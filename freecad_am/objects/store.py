@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from ..core.issues import InputError
 from . import differences, repeats
+from .former_names import MOVED
 
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
 _BYTES_PER_FLOAT = 7
@@ -281,7 +282,7 @@ def _class(name: str) -> Any:
     # only our own dataclasses: a document must not name what is called when it is opened
     module, _, qualified = name.partition(":")
     ours = module.startswith((".core.", ".objects.", ".verify"))
-    kind = getattr(importlib.import_module(_PACKAGE + module), qualified) if ours else None
+    kind = getattr(importlib.import_module(_PACKAGE + MOVED.get(module, module)), qualified) if ours else None
     if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
         raise ValueError(f"{name} is not a result")
     return kind

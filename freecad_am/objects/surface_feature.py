@@ -8,7 +8,7 @@ from typing import Any
 
 from ..brep.part_depths import of_faces
 from ..brep.wall_on import wall_on
-from ..core.geometry.patch_wall import PatchWall
+from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import SurfaceParameters

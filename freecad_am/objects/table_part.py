@@ -12,8 +12,8 @@ from typing import Any
 import FreeCAD as App
 import Part
 
-from ..core.geometry import ada3dp, curve_table, gcode
-from ..core.geometry.curves import POINT_FILES, BeadCurve
+from ..core.geometry.curves import ada3dp, curve_table, gcode
+from ..core.geometry.curves.bead_curves import POINT_FILES, BeadCurve
 from ..core.issues import InputError
 
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"

@@ -10,9 +10,9 @@ from FreeCAD import Placement, Rotation, Vector
 from freecad_am.brep.sheet import sheet
 from freecad_am.brep.wall_cuts import refuse_crossing
 from freecad_am.brep.wall_on import wall_on
-from freecad_am.core.geometry.patch_wall import PatchWall
-from freecad_am.core.geometry.refined import boundary
-from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.geometry.mesh.refined import boundary
+from freecad_am.core.geometry.walls.patch_wall import PatchWall
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0

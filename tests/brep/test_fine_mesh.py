@@ -10,7 +10,7 @@ from FreeCAD import Vector
 
 from freecad_am.brep import fine_mesh
 from freecad_am.brep.tessellate import tessellated
-from freecad_am.core.geometry.refined import Edges
+from freecad_am.core.geometry.mesh.refined import Edges
 
 CHORD = 0.0015
 

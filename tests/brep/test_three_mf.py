@@ -11,8 +11,8 @@ import pytest
 
 from freecad_am.brep import three_mf
 from freecad_am.brep.read import read_mesh
-from freecad_am.core.geometry.mesh_repair import repaired
-from freecad_am.core.geometry.solid_mesh import SolidMesh
+from freecad_am.core.geometry.mesh.repair import repaired
+from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.issues import InputError
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]], dtype=float)  # a volume of 1

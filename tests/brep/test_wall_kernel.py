@@ -9,8 +9,8 @@ from FreeCAD import Vector
 from freecad_am.brep import kernel
 from freecad_am.brep import wall_on as module
 from freecad_am.brep.wall_on import wall_on
-from freecad_am.core.geometry.patch_wall import PatchWall
-from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.geometry.walls.patch_wall import PatchWall
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 
 

@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.frames import pose, rotation_about
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
 from freecad_am.core.inspection.point_file import Measured
 
 R0 = 45.0

@@ -4,11 +4,11 @@
 import numpy as np
 from scipy.spatial import ConvexHull, Delaunay, cKDTree
 
-from freecad_am.core.geometry.edge_runs import runs
-from freecad_am.core.geometry.mesh import Mesh
-from freecad_am.core.geometry.patch import CYLINDER, PLANE, SPHERE, TORUS, Patch
-from freecad_am.core.geometry.patch_wall import FirstCurve, PatchWall, Rim
-from freecad_am.core.geometry.surface import dot
+from freecad_am.core.geometry.mesh.edge_runs import runs
+from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
+from freecad_am.core.geometry.walls.patch import CYLINDER, PLANE, SPHERE, TORUS, Patch
+from freecad_am.core.geometry.walls.patch_wall import FirstCurve, PatchWall, Rim
+from freecad_am.core.geometry.walls.surface import dot
 
 TURN = 2.0 * np.pi
 SUBSTRATE = 1e-9  # mm; a rim that reaches no farther above the substrate lies on it

@@ -7,7 +7,7 @@ import FreeCAD as App
 import numpy as np
 
 from freecad_am import api
-from freecad_am.core.geometry.patch_wall import FirstCurve
+from freecad_am.core.geometry.walls.patch_wall import FirstCurve
 from freecad_am.gui import registry
 from freecad_am.gui.nodes.wall import WallNodes, first_curves
 

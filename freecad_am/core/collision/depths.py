@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.part_depths import Surface
-from ..geometry.solid_mesh import spread
+from ..geometry.mesh.solid import spread
 from ..geometry.surroundings import Body
+from ..geometry.walls.part_depths import Surface
 from .inside import Inside, inside_of
 
 Array = NDArray[np.float64]

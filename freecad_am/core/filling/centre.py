@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.medial import spine
-from ..geometry.plane_curve import Array, length
-from ..geometry.region import Region, along, simplified
+from ..geometry.curves.plane_curve import Array, length
+from ..geometry.regions.medial import spine
+from ..geometry.regions.region import Region, along, simplified
 from ..issues import InfeasibleError
 from .curve import Beads, PlaneCurve
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.plane_curve import Array, nearest
-from ..geometry.region import Region, along
+from ..geometry.curves.plane_curve import Array, nearest
+from ..geometry.regions.region import Region, along
 from .contours import levels, middles
 from .curve import Beads, PlaneCurve, begun, long_enough
 from .rings import Beside, Ring, crossed, side_by_side

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..geometry.plane_curve import length
-from ..geometry.region import Region
+from ..geometry.curves.plane_curve import length
+from ..geometry.regions.region import Region
 from .centre import centre_beads, necks, outermost, single_beads
 from .curve import Beads, PlaneCurve, begun, long_enough
 

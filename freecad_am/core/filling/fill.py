@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..geometry.plane_curve import Array
-from ..geometry.region import Region, joined
-from ..geometry.strip import Strip
+from ..geometry.curves.plane_curve import Array
+from ..geometry.regions.region import Region, joined
+from ..geometry.regions.strip import Strip
 from ..issues import InputError
 from .centre import left_open
 from .connected import connected

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.plane_curve import Array, steps
-from ..geometry.region import telling
+from ..geometry.curves.plane_curve import Array, steps
+from ..geometry.regions.region import telling
 from .curve import Beads, PlaneCurve
 
 STEP = 0.2  # of the spacing, mm between places at which rooms are looked at

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..geometry.plane_curve import Array
-from ..geometry.region import Region, regions
-from ..geometry.strip import Strip, Window
+from ..geometry.curves.plane_curve import Array
+from ..geometry.regions.region import Region, regions
+from ..geometry.regions.strip import Strip, Window
 from .centre import centre_beads, left_open
 from .curve import Beads, PlaneCurve, long_enough
 

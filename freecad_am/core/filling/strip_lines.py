@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.plane_curve import Array, dense
-from ..geometry.region import Region, regions
-from ..geometry.strip import Strip
+from ..geometry.curves.plane_curve import Array, dense
+from ..geometry.regions.region import Region, regions
+from ..geometry.regions.strip import Strip
 from .curve import Beads, PlaneCurve, long_enough
 from .lines import levels_between
 from .strip_closing import strip_closing

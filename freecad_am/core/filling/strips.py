@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.medial import spine
-from ..geometry.region import Region, regions, simplified
-from ..geometry.strip import Strip
+from ..geometry.regions.medial import spine
+from ..geometry.regions.region import Region, regions, simplified
+from ..geometry.regions.strip import Strip
 from ..issues import InfeasibleError
 from .centre import FINE, centre_beads
 from .curve import Beads, PlaneCurve, begun, long_enough

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.plane_curve import Array, length, nearest
-from ..geometry.region import Region, simplified
+from ..geometry.curves.plane_curve import Array, length, nearest
+from ..geometry.regions.region import Region, simplified
 from .centre import closing, single_beads
 from .curve import Beads, PlaneCurve, long_enough
 from .lines import frame, rows

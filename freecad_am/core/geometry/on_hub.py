@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..issues import Issue
 from .columns import columns
+from .curves.guide import Guide
 from .developable import TURN, Developable
-from .guide import Guide
 from .plane import Plane
 from .surroundings import Body
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.profile import Meridian
+from ..geometry.curves.profile import Meridian
 from ..issues import InputError
 from .planned import Planned
 from .roundness import Round, least, narrowest

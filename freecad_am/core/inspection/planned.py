@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geometry.profile import RevolvedWall
-from ..geometry.solid_mesh import SolidMesh
-from ..geometry.surface import dot
+from ..geometry.curves.profile import RevolvedWall
+from ..geometry.mesh.solid import SolidMesh
+from ..geometry.walls.surface import dot
 from ..parameters.inspection import BOTH, INNER
 from .registration import Mask, Surface
 

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..geometry.curves.profile import RevolvedWall
 from ..geometry.on_hub import SolidsOnHub
-from ..geometry.patch_wall import PatchWall
-from ..geometry.profile import RevolvedWall
-from ..geometry.surface import dot
-from ..geometry.surface_wall import SurfaceWall
+from ..geometry.walls.patch_wall import PatchWall
+from ..geometry.walls.surface import dot
+from ..geometry.walls.surface_wall import SurfaceWall
 from ..issues import InputError
 from ..toolpath import Bead, Toolpath
 from .planned import Planned, of_beads, of_revolution, of_triangles

@@ -13,10 +13,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.guide import Guide
+from ..geometry.curves.guide import Guide
+from ..geometry.mesh.split_edges import split
 from ..geometry.on_hub import Base
-from ..geometry.region import Region
-from ..geometry.split_edges import split
+from ..geometry.regions.region import Region
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import ERROR, InfeasibleError, InputError, Issue

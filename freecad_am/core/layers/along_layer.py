@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.guide import Guide
+from ..geometry.curves.guide import Guide
 from .flat import Flat
 from .surface import Array, Wrapped
 

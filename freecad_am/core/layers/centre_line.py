@@ -13,8 +13,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
 from ..geometry.developable import TURN
-from ..geometry.refined import Edges
-from ..geometry.solid_mesh import SolidMesh
+from ..geometry.mesh.refined import Edges
+from ..geometry.mesh.solid import SolidMesh
 from ..geometry.surroundings import Body
 from ..issues import InputError
 from .guide_edges import Nodes

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.mesh import Mesh
+from ..geometry.mesh.triangle_mesh import Mesh
 from .voxels import Array, Index, Mask
 
 CELL = 1.5  # typical edges; side of the squares that triangles are sorted into

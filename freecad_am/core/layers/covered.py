@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-from ..geometry.region import Region
+from ..geometry.regions.region import Region
 from .surface import Slice
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.on_hub import Group
-from ..geometry.solid_mesh import Search, SolidMesh
 from ..geometry.surroundings import Body
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.strategy import SolidParameters

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
-from ..geometry.guide import Guide
 from ..geometry.on_hub import Group, middle_azimuth
 from ..geometry.surroundings import Body
 from ..parameters.strategy import DevelopableParameters, FilledParameters, SolidParameters

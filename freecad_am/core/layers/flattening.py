@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 
-from ..geometry.mesh import Mesh
+from ..geometry.mesh.triangle_mesh import Mesh
 from .voxels import Array
 
 FLAT = 1e-6  # of the extent; what lies so near to a plane is moved onto it

@@ -11,10 +11,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ..geometry.mesh import Mesh
-from ..geometry.plane_curve import doubled_area
-from ..geometry.region import Region, regions
-from ..geometry.solid_mesh import Search, SolidMesh
+from ..geometry.curves.plane_curve import doubled_area
+from ..geometry.mesh.solid import Search, SolidMesh
+from ..geometry.mesh.triangle_mesh import Mesh
+from ..geometry.regions.region import Region, regions
 from .carried_on import carried_on, gradients
 from .chart import Chart
 from .eikonal import Links, arrival, links

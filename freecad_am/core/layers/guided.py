@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..geometry.guide import guide
+from ..geometry.curves.guide import guide
 from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ..geometry.surroundings import Body
 from ..geometry.told import place

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.guide import Guide
+from ..geometry.curves.guide import Guide
 from ..geometry.on_hub import Base
 from ..geometry.surroundings import Body
 from .stacking import facets

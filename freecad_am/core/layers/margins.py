@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from ..geometry.region import Region, joined, mended, regions
+from ..geometry.regions.region import Region, joined, mended, regions
 from ..issues import Issue
 from .surface import Array
 

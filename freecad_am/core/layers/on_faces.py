@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.mesh import Mesh
-from ..geometry.outline import estimated
-from ..geometry.patch_wall import PatchWall
-from ..geometry.region import Region, regions
-from ..geometry.surface import dot
+from ..geometry.curves.outline import estimated
+from ..geometry.mesh.triangle_mesh import Mesh
+from ..geometry.regions.region import Region, regions
 from ..geometry.told import place
+from ..geometry.walls.patch_wall import PatchWall
+from ..geometry.walls.surface import dot
 from ..issues import InputError
 from ..parameters.strategy import CladdingParameters
 from .chart import Chart, Place

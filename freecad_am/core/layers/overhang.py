@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 
 from ..geometry.on_hub import Base
-from ..geometry.region import Region
+from ..geometry.regions.region import Region
 from ..geometry.told import place
 from ..issues import WARNING, Issue
 from ..parameters.strategy import SolidParameters

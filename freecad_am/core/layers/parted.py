@@ -9,9 +9,9 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ..geometry.mesh import Mesh, chains
-from ..geometry.plane_curve import doubled_area
-from ..geometry.region import regions
+from ..geometry.curves.plane_curve import doubled_area
+from ..geometry.mesh.triangle_mesh import Mesh, chains
+from ..geometry.regions.region import regions
 from .flattening import Flattened, flattened
 from .voxels import Array, Index, Mask
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Base, middle_azimuth
-from ..geometry.region import Region, regions
-from ..geometry.strip import Strip, strips
+from ..geometry.regions.region import Region, regions
+from ..geometry.regions.strip import Strip, strips
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import InputError

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.columns import columns
 from ..geometry.developable import TURN, Developable
-from ..geometry.strip import Period
+from ..geometry.regions.strip import Period
 from .surface import Array, Index, Wrapped
 
 

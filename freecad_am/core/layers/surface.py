@@ -12,8 +12,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.region import Region
-from ..geometry.strip import Period, Strip
+from ..geometry.regions.region import Region
+from ..geometry.regions.strip import Period, Strip
 from ..issues import Issue
 
 Array = NDArray[np.float64]

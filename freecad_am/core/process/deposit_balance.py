@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..geometry.on_hub import SolidsOnHub
-from ..geometry.part_depths import PartDepths
+from ..geometry.walls.part_depths import PartDepths
 from ..issues import NOTE, WARNING, Issue
 from ..toolpath import Toolpath
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.profile import Array
+from ..geometry.curves.profile import Array
 from ..parameters.process import ProcessParameters
 
 

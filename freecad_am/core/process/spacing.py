@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.outline import derivatives
+from ..geometry.curves.outline import derivatives
 from ..toolpath import Array, Bead, Layer, Toolpath
 
 Index = NDArray[np.intp]

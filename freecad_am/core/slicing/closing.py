@@ -18,9 +18,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry.mesh import LevelLine, Mesh, chains
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.mesh.triangle_mesh import LevelLine, Mesh, chains
+from ..geometry.walls.surface import dot
 from .even_line import even, rounded
 from .front_curve import Feet, Wall, feet
 from .on_wall import on_wall

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.surface import Surface
+from ..geometry.walls.surface import Surface
 from ..issues import InputError
 from .backstop import refuse_endless
 from .offset import Offset, Places

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..geometry.columns import columns
 from ..geometry.developable import TURN, Developable
-from ..geometry.mesh import chains
+from ..geometry.mesh.triangle_mesh import chains
 from ..issues import InputError
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ..geometry.implicit import Implicit
-from ..geometry.surface import Surface, dot
+from ..geometry.walls.surface import Surface, dot
 from ..issues import InputError
 from .refinement import ROUNDS, finer_grid
 from .wall_layer import WallLayer

@@ -8,8 +8,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface import dot
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -21,10 +21,10 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.mesh import Mesh, thinned
-from ..geometry.patch_wall import FirstCurve, Rim
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.mesh.triangle_mesh import Mesh, thinned
+from ..geometry.walls.patch_wall import FirstCurve, Rim
+from ..geometry.walls.surface import dot
 from .backstop import refuse_endless
 from .banded import HEAVY
 from .closing import closing

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.profile import Array, Meridian
+from ..geometry.curves.profile import Array, Meridian
 from ..issues import InputError
 
 

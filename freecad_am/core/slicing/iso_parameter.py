@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.surface import Surface, dot
+from ..geometry.walls.surface import Surface, dot
 from ..issues import InputError
 from .backstop import refuse_endless
 from .refinement import ROUNDS, finer_grid

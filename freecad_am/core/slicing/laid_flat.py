@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.curves.plane_curve import doubled_area, winding
 from ..geometry.developable import TURN, Array, Developable
-from ..geometry.plane_curve import doubled_area, winding
 from ..issues import InputError
 from .equidistant import Facets, Loop
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..geometry.surface import Surface, dot
+from ..geometry.walls.surface import Surface, dot
 from ..issues import InputError
 from .backstop import refuse_endless
 from .wall_layer import WallLayer

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import Surface, dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface import Surface, dot
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

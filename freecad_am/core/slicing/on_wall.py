@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface import dot
 from .front_curve import INSIDE, WITHIN, Wall, inside
 
 ROUNDS = 12

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..geometry.mesh.solid import Array, Search, SolidMesh, spread
 from ..geometry.on_hub import Base, Group
-from ..geometry.solid_mesh import Array, Search, SolidMesh, spread
 from ..geometry.surroundings import Body
 from ..geometry.told import place
 from ..issues import InputError

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.mesh import chains
+from ..geometry.mesh.triangle_mesh import chains
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.space_curve import SpaceCurve
+from ..geometry.curves.space_curve import SpaceCurve
 
 Array = NDArray[np.float64]
 

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from ..geometry.mesh import LevelLine
-from ..geometry.patch_wall import Rim
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.mesh.triangle_mesh import LevelLine
+from ..geometry.walls.patch_wall import Rim
+from ..geometry.walls.surface import dot
 from .front_curve import feet
 
 Array = NDArray[np.float64]
@@ -155,8 +155,8 @@ class Rims:
 
 
 class Line(NamedTuple):
-    """A level line of the mesh, see `geometry.mesh.LevelLine`. ends: (2, 3) where the front near it ends on rims, not a
-    number where that is not known."""
+    """A level line of the mesh, see `geometry.mesh.triangle_mesh.LevelLine`. ends: (2, 3) where the front near it ends on
+    rims, not a number where that is not known."""
 
     points: Array
     closed: bool

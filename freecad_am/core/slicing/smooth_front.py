@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface import dot
 from .banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest
 from .even_line import even, rounded
 from .front_curve import Wall, feet

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..geometry.surface import Surface, normals
+from ..geometry.walls.surface import Surface, normals
 from ..issues import InputError
 from . import wall_turn
 from .banded import AIM, HEAVY, MARGIN, WEIGHTS, between, lightest

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.columns import columns
-from ..geometry.surface import dot
+from ..geometry.walls.surface import dot
 from ..issues import InputError
 
 Array = NDArray[np.float64]

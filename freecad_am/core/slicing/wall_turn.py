@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface import dot
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..filling.curve import PlaneCurve
-from ..geometry.clad_faces import CladFaces
 from ..geometry.on_hub import Base
 from ..geometry.plane import Plane
+from ..geometry.walls.clad_faces import CladFaces
 from ..issues import NOTE, InfeasibleError, InputError, Issue
 from ..layers.on_faces import FaceLayer, pieces, slices
 from ..layers.surface import Slice

@@ -22,8 +22,8 @@ from ..collision.bodies import Bodies, of_bodies
 from ..collision.nozzle import Nozzle, depositing
 from ..collision.scene import Scene
 from ..geometry.columns import columns
-from ..geometry.polyline import turn_segments
-from ..geometry.profile import Array
+from ..geometry.curves.polyline import turn_segments
+from ..geometry.curves.profile import Array
 from ..geometry.surroundings import disc
 from ..parameters.cell import NozzleParameters
 from .platform import Platform

@@ -18,8 +18,8 @@ from ..collision import deposit
 from ..collision.nozzle import Nozzle, depositing
 from ..collision.scene import Scene, scene
 from ..geometry.columns import columns
-from ..geometry.surface import dot
 from ..geometry.surroundings import Body
+from ..geometry.walls.surface import dot
 from ..parameters.cell import NozzleParameters
 from ..toolpath import Bead, Toolpath
 

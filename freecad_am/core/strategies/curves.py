@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.curves import Array, BeadCurve, Curves
+from ..geometry.curves.bead_curves import Array, BeadCurve, Curves
 from ..geometry.told import place
 from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters

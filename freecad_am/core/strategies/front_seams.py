@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.surface import dot
+from ..geometry.walls.surface import dot
 from .front_tree import Piece
 
 Array = NDArray[np.float64]

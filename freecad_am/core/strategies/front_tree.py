@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..geometry.space_curve import SpaceCurve
+from ..geometry.curves.space_curve import SpaceCurve
 from ..issues import NOTE, Issue
 from ..slicing.front_curve import feet
 from ..slicing.rims import Rims

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.curves.profile import Array, RevolvedWall
+from ..geometry.mesh.solid import spread
 from ..geometry.on_hub import SolidsOnHub
-from ..geometry.profile import Array, RevolvedWall
-from ..geometry.solid_mesh import spread
 from ..geometry.told import place
 from ..issues import WARNING, InputError, Issue
 

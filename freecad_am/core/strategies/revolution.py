@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.polyline import turn_segments
-from ..geometry.profile import Array, RevolvedWall
+from ..geometry.curves.polyline import turn_segments
+from ..geometry.curves.profile import Array, RevolvedWall
 from ..issues import NOTE, WARNING, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..geometry.curves.profile import Array, RevolvedWall
 from ..geometry.on_hub import SolidsOnHub
-from ..geometry.profile import Array, RevolvedWall
 from ..geometry.surroundings import Body
 from ..geometry.told import at_least, count
 from ..issues import NOTE, InputError, Issue
@@ -29,9 +29,9 @@ from ..parameters.strategy import (
 )
 
 if TYPE_CHECKING:
-    from ..geometry.clad_faces import CladFaces
-    from ..geometry.patch_wall import PatchWall
-    from ..geometry.surface_wall import SurfaceWall
+    from ..geometry.walls.clad_faces import CladFaces
+    from ..geometry.walls.patch_wall import PatchWall
+    from ..geometry.walls.surface_wall import SurfaceWall
 
 # measured at a million, a point takes 0.3 kB with its toolpath, 0.6 kB with its joint path and what the document stores, 1.5
 # kB at the peak: these are more than 70 GB, and fifty times the largest jobs known
@@ -68,7 +68,7 @@ def of_revolution(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
 
 def of_wall(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
     """That of a wall on an existing part."""
-    from ..geometry.patch_wall import PatchWall  # no part of revolution needs it, and what it imports takes long
+    from ..geometry.walls.patch_wall import PatchWall  # no part of revolution needs it, and what it imports takes long
 
     return _of_patches(wall, strategy) if isinstance(wall, PatchWall) else _of_tube(wall, strategy)
 

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.polyline import largest_step
-from ..geometry.profile import Array, Meridian, RevolvedWall
+from ..geometry.curves.polyline import largest_step
+from ..geometry.curves.profile import Array, Meridian, RevolvedWall
 from ..issues import InputError, Issue
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import RevolutionParameters

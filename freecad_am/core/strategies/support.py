@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.on_hub import Base
-from ..geometry.solid_mesh import Search, SolidMesh
 from ..geometry.surroundings import Body
 from ..issues import Issue
 from ..process import support

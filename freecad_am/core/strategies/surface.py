@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface import dot
-from ..geometry.surface_wall import Array, Placed, SurfaceWall
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface import dot
+from ..geometry.walls.surface_wall import Array, Placed, SurfaceWall
 from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters

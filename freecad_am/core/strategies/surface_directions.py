@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..geometry.patch_wall import PatchWall
-from ..geometry.surface_wall import Array, SurfaceWall
+from ..geometry.walls.patch_wall import PatchWall
+from ..geometry.walls.surface_wall import Array, SurfaceWall
 from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..slicing.wall_direction import LEAST, capped, held, in_plane, limited

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.space_curve import SpaceCurve
-from ..geometry.surface_wall import Array, Placed
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.surface_wall import Array, Placed
 from ..slicing.wall_layer import WallLayer
 
 SAME_END = 1e-6  # mm; what is above the end by no more than this lies on it

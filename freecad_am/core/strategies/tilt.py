@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.scene import Scene
-from ..geometry.profile import Array, RevolvedWall
+from ..geometry.curves.profile import Array, RevolvedWall
 from ..issues import ERROR, NOTE, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters

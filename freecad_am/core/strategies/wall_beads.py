@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.space_curve import SpaceCurve
+from ..geometry.curves.space_curve import SpaceCurve
 from ..issues import NOTE, WARNING, Issue
 from ..parameters.strategy import SurfaceParameters
 from ..slicing.wall_direction import local

@@ -18,8 +18,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.surface import dot
 from ..geometry.surroundings import Body
+from ..geometry.walls.surface import dot
 from ..issues import InputError
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.cell import NozzleParameters

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry.surface_wall import Array, Placed, SurfaceWall
+from ..geometry.walls.surface_wall import Array, Placed, SurfaceWall
 from ..issues import InputError
 from ..parameters.strategy import SurfaceParameters
 from ..slicing import normal_layers

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.patch_wall import PatchWall
-from ..geometry.space_curve import SpaceCurve
+from ..geometry.curves.space_curve import SpaceCurve
+from ..geometry.walls.patch_wall import PatchWall
 from ..issues import NOTE, InputError, Issue
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.geometry.guide import Guide
+from ...core.geometry.curves.guide import Guide
 from ...core.geometry.on_hub import Base, Group, SolidsOnHub
 from ...core.geometry.plane import Plane
 from ...core.layers.field import footprints

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from pivy import coin
 
-from ...core.geometry.profile import RevolvedWall
+from ...core.geometry.curves.profile import RevolvedWall
 from ...core.strategies.revolution import Slices
 from .lines import DASHED, Lines
 

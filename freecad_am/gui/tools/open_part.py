@@ -12,8 +12,8 @@ import FreeCADGui as Gui
 from PySide import QtGui
 
 from ...brep.read import READABLE
-from ...core.geometry.curves import POINT_FILES
-from ...core.geometry.file_unit import MESHES
+from ...core.geometry.curves.bead_curves import POINT_FILES
+from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import AmError
 from ...objects.progress import Cancelled
 from .. import recorded

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from ...core.geometry.profile import RevolvedWall
+from ...core.geometry.curves.profile import RevolvedWall
 from .. import icons
 from ..nodes.meridian import MeridianNodes
 from ..nodes.wall import WallNodes, first_curves

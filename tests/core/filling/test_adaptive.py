@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from freecad_am.core.filling.adaptive import fitted, shared
 from freecad_am.core.filling.curve import OVER, Beads
 from freecad_am.core.filling.fill import fill
-from freecad_am.core.geometry.region import regions
+from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.strategy import DevelopableParameters
 

@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill
-from freecad_am.core.geometry.region import regions
+from freecad_am.core.geometry.regions.region import regions
 
 _spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))
 shapes = importlib.util.module_from_spec(_spec)

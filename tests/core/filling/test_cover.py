@@ -12,8 +12,8 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill, open_at_slits, open_places
-from freecad_am.core.geometry.region import joined, regions
-from freecad_am.core.geometry.strip import Period, strips
+from freecad_am.core.geometry.regions.region import joined, regions
+from freecad_am.core.geometry.regions.strip import Period, strips
 from freecad_am.core.parameters.strategy import DevelopableParameters
 
 _spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))

@@ -12,7 +12,7 @@ from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.filling.lattice import gyroid_period
 from freecad_am.core.filling.sparse import Infill
-from freecad_am.core.geometry.region import regions
+from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers.covered import under_and_over, with_covered
 from freecad_am.core.layers.surface import Slice

@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import PATTERNS, fill
 from freecad_am.core.filling.lines import Frame, levels_between, rows
-from freecad_am.core.geometry.region import regions
+from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
 
 _spec = importlib.util.spec_from_file_location("filling_shapes", Path(__file__).with_name("shapes.py"))

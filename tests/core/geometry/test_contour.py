@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry import contour
-from freecad_am.core.geometry.contour import Piece
-from freecad_am.core.geometry.profile import Meridian
-from freecad_am.core.geometry.sampling import arc, line
+from freecad_am.core.geometry.curves import contour
+from freecad_am.core.geometry.curves.contour import Piece
+from freecad_am.core.geometry.curves.profile import Meridian
+from freecad_am.core.geometry.curves.sampling import arc, line
 
 
 def pieces(*stretches):

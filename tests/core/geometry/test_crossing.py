@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.crossing import crossings
-from freecad_am.core.geometry.mesh_repair import repaired
+from freecad_am.core.geometry.mesh.crossing import crossings
+from freecad_am.core.geometry.mesh.repair import repaired
 from freecad_am.core.issues import InputError
 
 
@@ -108,7 +108,7 @@ def test_a_mesh_that_cuts_itself_is_refused_with_the_place(turn):
 
 def test_long_triangles_and_flat_faces_of_many_are_no_work():
     """Long triangles of a fine cylinder, all of whose boxes reach into one another unless they are turned."""
-    from freecad_am.core.geometry.near_triangles import near_pairs
+    from freecad_am.core.geometry.mesh.near_triangles import near_pairs
 
     course = np.c_[np.linspace(0.0, 100.0, 2), np.zeros((2, 2))]
     points, faces = tube(course, 50.0, 2000)

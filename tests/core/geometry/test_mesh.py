@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.mesh import Mesh, chains
+from freecad_am.core.geometry.mesh.triangle_mesh import Mesh, chains
 from freecad_am.core.issues import InputError
 
 

@@ -6,8 +6,8 @@ import pytest
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.mesh_repair import repaired
-from freecad_am.core.geometry.refined import Edges
+from freecad_am.core.geometry.mesh.refined import Edges
+from freecad_am.core.geometry.mesh.repair import repaired
 from freecad_am.core.issues import InputError
 
 

@@ -6,8 +6,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry import near_pairs as module
-from freecad_am.core.geometry.near_pairs import near_pairs
+from freecad_am.core.geometry.mesh import near_pairs as module
+from freecad_am.core.geometry.mesh.near_pairs import near_pairs
 
 
 @pytest.mark.parametrize("block", [5, 300, 2_000_000])

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.outline import estimated, outline
+from freecad_am.core.geometry.curves.outline import estimated, outline
 from freecad_am.core.toolpath import Bead
 
 

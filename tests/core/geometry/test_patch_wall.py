@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.edge_runs import runs, tangents
-from freecad_am.core.geometry.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, Patch
-from freecad_am.core.geometry.patch_wall import FirstCurve, PatchWall, Rim
-from freecad_am.core.geometry.triangles import closest
+from freecad_am.core.geometry.mesh.edge_runs import runs, tangents
+from freecad_am.core.geometry.mesh.triangles import closest
+from freecad_am.core.geometry.walls.patch import CONE, CYLINDER, PLANE, SPHERE, SPLINE, TORUS, Patch
+from freecad_am.core.geometry.walls.patch_wall import FirstCurve, PatchWall, Rim
 
 TURN = 2.0 * np.pi
 BEND, TUBE = 60.0, 15.0

@@ -6,7 +6,7 @@ import struct
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry import ada3dp, gcode
+from freecad_am.core.geometry.curves import ada3dp, gcode
 from freecad_am.core.issues import InputError
 
 SQUARE = """\

@@ -6,8 +6,8 @@ import builtins
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry import region as module
-from freecad_am.core.geometry.region import mended, regions
+from freecad_am.core.geometry.regions import region as module
+from freecad_am.core.geometry.regions.region import mended, regions
 from freecad_am.core.issues import InputError
 
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])

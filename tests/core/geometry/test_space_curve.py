@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.space_curve import SpaceCurve
+from freecad_am.core.geometry.curves.space_curve import SpaceCurve
 
 
 def circle(nodes=40, radius=10.0):

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from freecad_am.core.filling.curve import Beads
 from freecad_am.core.filling.fill import fill
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.geometry.strip import Period, Strip, strips
+from freecad_am.core.geometry.regions.strip import Period, Strip, strips
 
 HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0), "wide cone": Developable(90.0, 70.0)}
 BEADS = Beads(4.0, 1.5, 0.0)

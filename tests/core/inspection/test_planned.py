@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.inspection.planned import of_triangles, sided
 from freecad_am.core.inspection.surfaces import planned
 from freecad_am.core.issues import InputError

@@ -9,8 +9,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.mesh import Mesh
-from freecad_am.core.geometry.refined import Edges
+from freecad_am.core.geometry.mesh.refined import Edges
+from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.layers.carried_on import carried_on
 from freecad_am.core.layers.chart import Chart
 from freecad_am.core.layers.eikonal import arrival, links

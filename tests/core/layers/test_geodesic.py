@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from freecad_am.core.geometry.solid_mesh import SolidMesh
+from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.layers.geodesic import field
 
 from .shapes import box, tee

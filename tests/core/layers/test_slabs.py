@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from freecad_am.core.geometry.guide import guide
+from freecad_am.core.geometry.curves.guide import guide
 from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.plane import Plane
 from freecad_am.core.geometry.surroundings import Body

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from freecad_am import verify
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import sampled
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.sampling import sampled
 from freecad_am.core.issues import has_errors
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters

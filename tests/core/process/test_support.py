@@ -7,10 +7,10 @@ import time
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.sampling import arc, line
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import arc, line
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters

@@ -6,8 +6,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
-from freecad_am.core.geometry.surface import Cone, Torus, cylinder
-from freecad_am.core.geometry.tabulated import Tabulated
+from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
+from freecad_am.core.geometry.walls.tabulated import Tabulated
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing import constant_distance, iso_parameter
 from freecad_am.core.slicing.first_layer import on_implicit, on_polyline

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.curves.outline import outline
+from freecad_am.core.geometry.curves.space_curve import SpaceCurve
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.outline import outline
-from freecad_am.core.geometry.space_curve import SpaceCurve
-from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing import constant_distance
 from freecad_am.core.slicing.curve_points import within_chord
 from freecad_am.core.slicing.first_layer import on_implicit, on_polyline

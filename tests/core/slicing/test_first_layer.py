@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
-from freecad_am.core.geometry.surface import Torus, cylinder
+from freecad_am.core.geometry.walls.surface import Torus, cylinder
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing.first_layer import on_implicit, on_polyline
 from freecad_am.core.slicing.wall_layer import even_grid

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
-from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.slicing import constant_distance, fronts
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.rims import Rims

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.curves.plane_curve import doubled_area
 from freecad_am.core.geometry.developable import Developable
-from freecad_am.core.geometry.plane_curve import doubled_area
 from freecad_am.core.slicing.equidistant import Facets
 from freecad_am.core.slicing.laid_flat import cut
 from tests.core.slicing.test_equidistant import hull

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.curves.space_curve import SpaceCurve
 from freecad_am.core.geometry.implicit import HalfSpace, Round
-from freecad_am.core.geometry.mesh import Mesh
-from freecad_am.core.geometry.space_curve import SpaceCurve
-from freecad_am.core.geometry.surface import Torus
+from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
+from freecad_am.core.geometry.walls.surface import Torus
 from freecad_am.core.process import spacing
 from freecad_am.core.slicing import constant_distance, fronts, iso_parameter, smooth_spacing
 from freecad_am.core.slicing.first_layer import on_implicit

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.surface import Cone, Torus, cylinder
-from freecad_am.core.geometry.tabulated import Tabulated
+from freecad_am.core.geometry.walls.surface import Cone, Torus, cylinder
+from freecad_am.core.geometry.walls.tabulated import Tabulated
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing import normal_layers
 from freecad_am.core.slicing.first_layer import on_implicit

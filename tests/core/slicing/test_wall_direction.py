@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.surface import Cone, Torus, normals
+from freecad_am.core.geometry.walls.surface import Cone, Torus, normals
 from freecad_am.core.issues import InputError
 from freecad_am.core.slicing import constant_distance, wall_direction
 from freecad_am.core.slicing.first_layer import on_implicit

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.sampling import line
 from freecad_am.core.geometry.developable import Developable
 from freecad_am.core.geometry.on_hub import Base, Group, SolidsOnHub, upright
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import line
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.strategies import platform

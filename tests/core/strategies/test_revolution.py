@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.profile import Meridian, RevolvedWall
-from freecad_am.core.geometry.sampling import arc, line, sampled
+from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
+from freecad_am.core.geometry.curves.sampling import arc, line, sampled
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters

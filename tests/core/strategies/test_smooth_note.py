@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.surface import Torus
-from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.geometry.walls.surface import Torus
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import NOTE, WARNING
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters

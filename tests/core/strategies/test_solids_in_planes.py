@@ -9,7 +9,7 @@ import pytest
 from scipy import ndimage
 from scipy.spatial import ConvexHull, cKDTree
 
-from freecad_am.core.geometry.solid_mesh import SolidMesh
+from freecad_am.core.geometry.mesh.solid import SolidMesh
 from freecad_am.core.geometry.surroundings import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers.stacking import stacked

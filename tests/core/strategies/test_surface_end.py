@@ -6,8 +6,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.surface import Torus
-from freecad_am.core.geometry.surface_wall import Placed
+from freecad_am.core.geometry.walls.surface import Torus
+from freecad_am.core.geometry.walls.surface_wall import Placed
 from freecad_am.core.slicing import constant_distance
 from freecad_am.core.slicing.first_layer import on_implicit
 from freecad_am.core.slicing.wall_layer import even_grid

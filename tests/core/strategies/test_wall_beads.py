@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.geometry.patch_wall import FirstCurve
+from freecad_am.core.geometry.walls.patch_wall import FirstCurve
 from freecad_am.core.slicing.curve_points import within_chord
 from freecad_am.core.strategies.wall_beads import NEAREST, traced
 

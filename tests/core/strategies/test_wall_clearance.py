@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from freecad_am.core.collision.frustum import beside_tip
 from freecad_am.core.collision.tolerances import ABOVE_FACES
-from freecad_am.core.geometry.surface_wall import TORUS, SurfaceWall
 from freecad_am.core.geometry.surroundings import Body, disc
+from freecad_am.core.geometry.walls.surface_wall import TORUS, SurfaceWall
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters

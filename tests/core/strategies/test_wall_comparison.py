@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.implicit import Round
-from freecad_am.core.geometry.surface import Torus
-from freecad_am.core.geometry.surface_wall import SurfaceWall
+from freecad_am.core.geometry.walls.surface import Torus
+from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.strategy import SurfaceParameters
 from freecad_am.core.slicing.first_layer import on_implicit

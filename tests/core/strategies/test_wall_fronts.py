@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from freecad_am.core.geometry.implicit import HalfSpace, Round
-from freecad_am.core.geometry.patch import CYLINDER, PLANE, Patch
+from freecad_am.core.geometry.walls.patch import CYLINDER, PLANE, Patch
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters

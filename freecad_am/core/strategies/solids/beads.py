@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...filling.curve import PlaneCurve
 from ...geometry.developable import TURN, Array
 from ...geometry.on_hub import Base
-from ...geometry.region import simplified, telling
+from ...geometry.regions.region import simplified, telling
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters

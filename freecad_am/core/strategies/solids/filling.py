@@ -15,11 +15,11 @@ from ...filling.curve import OVER, Beads, PlaneCurve
 from ...filling.fill import fill, open_at_slits, open_places
 from ...filling.room import thinned
 from ...filling.sparse import Infill
+from ...geometry.curves.plane_curve import nearest, steps
 from ...geometry.developable import Array
 from ...geometry.on_hub import Base
-from ...geometry.plane_curve import nearest, steps
-from ...geometry.region import Region, along
-from ...geometry.strip import Strip
+from ...geometry.regions.region import Region, along
+from ...geometry.regions.strip import Strip
 from ...geometry.told import place
 from ...issues import NOTE, WARNING, InputError, Issue
 from ...layers.margins import ARCS

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...geometry.columns import columns
 from ...geometry.developable import TURN, Array
-from ...geometry.region import simplified
+from ...geometry.regions.region import simplified
 from ...layers.surface import LayerSurface
 from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
 from ...slicing.wall_direction import turn_rates

@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from ...filling.curve import PlaneCurve
-from ...geometry.plane_curve import Array, nearest, steps
-from ...geometry.region import Region
+from ...geometry.curves.plane_curve import Array, nearest, steps
+from ...geometry.regions.region import Region
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.strategy import FilledParameters

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...filling.curve import PlaneCurve
 from ...geometry.developable import Array
+from ...geometry.mesh.solid import SolidMesh
 from ...geometry.on_hub import Base, SolidsOnHub, downwards, upright
-from ...geometry.solid_mesh import SolidMesh
 from ...issues import InfeasibleError, InputError, Issue
 from ...layers.field import Piece, pieces, upwards
 from ...layers.surface import Slice

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Curves of a table of points as text: x, y, z in mm, and where there are such the direction i, j, k and the bead."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...issues import InputError
+from .bead_curves import Array, BeadCurve
+
+COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
+BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}
+CODE = "BAD_TABLE"
+APART = 1e-6  # mm; points no farther apart are one
+MOST = 1e7  # mm; farther away is a slip of the pen
+FORM = "a table has the columns x,y,z, then i,j,k where directions are given, then bead where there are several"
+
+
+def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
+    """The curves of a table, one for each number of a bead in the order of the lines, separated by commas or semicolons, the
+    first line names of columns or numbers. InputError BAD_TABLE with the line."""
+    lines = text.lstrip("\ufeff").splitlines()
+    while lines and not lines[-1].strip():
+        lines.pop()
+    if not lines:
+        raise InputError(CODE, where, f"it has no points; {FORM}")
+    separator = ";" if ";" in lines[0] else ","
+    columns, first = _columns(_cells(lines[0], separator), where)
+    numbers = [
+        _numbers(_cells(line, separator), columns, f"{where} line {k}") for k, line in enumerate(lines[first:], first + 1)
+    ]
+    if not numbers:
+        raise InputError(CODE, where, f"it has no points; {FORM}")
+    rows = np.array(numbers)
+    bead = rows[:, columns.index("bead")] if "bead" in columns else np.zeros(len(rows))
+    starts = np.flatnonzero(np.r_[True, np.diff(bead) != 0.0])
+    found, known = [], set()
+    for start, end in zip(starts, [*starts[1:], len(rows)]):
+        at = f"{where} line {first + 1 + int(start)}"
+        if bead[start] in known:
+            raise InputError(CODE, at, f"bead {bead[start]:g} begins again; keep the lines of a bead together")
+        known.add(float(bead[start]))
+        found.append(_curve(rows[start:end], columns, at, first + 1 + int(start), where))
+    return tuple(found)
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    return [cell.strip() for cell in line.split(separator)]
+
+
+def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
+    """The columns, and the number of lines before the points."""
+    names = tuple(cell.lower().removesuffix("_mm") for cell in cells)
+    if any(name in COLUMNS for name in names):
+        wanted = BY_COUNT.get(len(names))
+        if set(names) != set(wanted or ()):
+            raise InputError(CODE, f"{where} line 1", f"its columns are {', '.join(cells)}; {FORM}")
+        return names, 1
+    if len(cells) not in BY_COUNT:
+        raise InputError(CODE, f"{where} line 1", f"it has {len(cells)} columns; {FORM}")
+    return BY_COUNT[len(cells)], 0
+
+
+def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[float]:
+    if len(cells) != len(columns) or not all(cells):
+        lacking = "it is empty" if not any(cells) else f"it has {sum(map(bool, cells))} numbers in place of {len(columns)}"
+        raise InputError(CODE, where, f"{lacking}; fill the gap, or leave the line out")
+    found = []
+    for cell, name in zip(cells, columns):
+        try:
+            number = float(cell)
+        except ValueError:
+            raise InputError(CODE, where, f"{cell[:40]!r} is not a number; give {name} as a number with a point") from None
+        if not math.isfinite(number) or abs(number) > MOST:
+            raise InputError(CODE, where, f"{name} is {number:g}; give a number of at most {MOST:g}")
+        found.append(number)
+    return found
+
+
+def _curve(rows: Array, columns: Sequence[str], at: str, line: int, where: str) -> BeadCurve:
+    points = rows[:, [columns.index(name) for name in COLUMNS[:3]]]
+    if len(points) < 2:
+        raise InputError(CODE, at, "a bead of one point has no way to go; give it two points or more")
+    near = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < APART)
+    if len(near):
+        at = f"{where} line {line + int(near[0]) + 1}"
+        raise InputError(CODE, at, "the point is that of the line before; leave it out")
+    if "i" not in columns:
+        return BeadCurve(points)
+    directions = rows[:, [columns.index(name) for name in COLUMNS[3:6]]]
+    size = np.linalg.norm(directions, axis=1)
+    none = np.flatnonzero(size < 1e-9)
+    if len(none):
+        raise InputError(CODE, f"{where} line {line + int(none[0])}", "i, j, k are 0; give a direction, such as 0, 0, 1")
+    return BeadCurve(points, directions / size[:, None])

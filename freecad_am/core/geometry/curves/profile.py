@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Walls of revolution: the generating curve (meridian) and the turn it makes about the axis.
+
+The meridian lives in the half plane (radius, height) of the feature frame, whose Z is the axis. It is a chain
+of exact samples with exact unit tangents, joined by cubic Hermite arcs in arc length: with neighbouring
+tangents less than 0.006 rad apart (see `sampling`) positions are good to 1e-7 mm and tangents to 1e-8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...issues import Issue
+from ..surroundings import Body
+from ..walls.part_depths import PartDepths
+
+Array = NDArray[np.float64]
+
+KINK = 1e-5  # rad; smaller turns between two pieces are a smooth join
+SAME_PLACE = 1e-9  # mm; the end of one piece and the start of the next closer than this are one point
+STEP = 1e-4  # mm; a gap up to this is the rounding of a file and has no length of its own
+ON_AXIS = 1e-6  # mm; a smaller radius is a point on the axis
+
+
+def arc_lengths(points: Array, tangents: Array) -> Array:
+    """Arc length of each arc between neighbouring samples, (n-1,) mm.
+
+    points, tangents: (n, 2). The length of the cubic that leaves and meets its chord at the angles a and b is
+    chord (1 + (2 a^2 - a b + 2 b^2) / 30) to fourth order, relatively 1e-12 at 0.006 rad per arc.
+    """
+    steps = np.diff(points, axis=0)
+    chords = np.hypot(steps[:, 0], steps[:, 1])
+    a = turning(steps, tangents[:-1])
+    b = turning(steps, tangents[1:])
+    length: Array = chords * (1.0 + (2.0 * a * a - a * b + 2.0 * b * b) / 30.0)
+    return length
+
+
+def turning(one: Array, other: Array) -> Array:
+    """Angle (...,) rad from vectors to others, (..., 2), counter-clockwise positive."""
+    cross = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+    angle: Array = np.arctan2(cross, (one * other).sum(axis=-1))
+    return angle
+
+
+@dataclass(frozen=True)
+class Meridian:
+    """The generating curve from the platform up. Node i has the arc length s[i] mm, (radius, height) points[i]
+    mm and the unit tangent tangents[i] towards rising s. Nodes are doubled at kinks: same s, other tangent.
+    """
+
+    s: Array
+    points: Array
+    tangents: Array
+
+    def __post_init__(self) -> None:
+        for name in ("s", "points", "tangents"):
+            values = np.array(getattr(self, name), dtype=np.float64)
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
+        n = len(self.s)
+        if n < 2 or self.points.shape != (n, 2) or self.tangents.shape != (n, 2):
+            raise ValueError("a meridian needs at least two nodes, each with a point and a tangent")
+        if (np.diff(self.s) < 0.0).any() or not self.s[-1] > 0.0:
+            raise ValueError("the arc length of a meridian must rise")
+        if self.points[:, 0].min() < 0.0:
+            raise ValueError("the radius of a meridian is never negative")
+
+    @classmethod
+    def chained(cls, pieces: Sequence[tuple[Array, Array]]) -> Meridian:
+        """The pieces (points (n, 2), unit tangents (n, 2)) one after the other.
+
+        A gap between the end of a piece and the start of the next is bridged by a straight step, which counts in the
+        arc length; one of no more than STEP is jumped.
+        """
+        points: list[Array] = []
+        tangents: list[Array] = []
+        lengths = [0.0]
+        for piece_points, piece_tangents in pieces:
+            if points:
+                _bridge(points, tangents, lengths, piece_points[0], piece_tangents[0])
+                piece_points, piece_tangents = piece_points[1:], piece_tangents[1:]
+                joined = np.vstack([points[-1][-1:], piece_points]), np.vstack([tangents[-1][-1:], piece_tangents])
+            else:
+                joined = piece_points, piece_tangents
+            lengths.extend(arc_lengths(*joined))
+            points.append(piece_points)
+            tangents.append(piece_tangents)
+        stacked = np.vstack(points)
+        stacked[:, 0] = np.where(np.abs(stacked[:, 0]) < ON_AXIS, 0.0, stacked[:, 0])
+        return cls(np.cumsum(lengths), stacked, np.vstack(tangents))
+
+    @property
+    def length(self) -> float:
+        """Length of the whole curve, mm."""
+        return float(self.s[-1])
+
+    @property
+    def kinks(self) -> Array:
+        """Arc lengths (k,) at which the tangent jumps, mm."""
+        at = np.flatnonzero(np.diff(self.s) == 0.0)
+        kinks: Array = self.s[at[np.abs(turning(self.tangents[at], self.tangents[at + 1])) > KINK]]
+        return kinks
+
+    @property
+    def closed_top(self) -> bool:
+        """True when the curve ends on the axis."""
+        return bool(self.points[-1, 0] == 0.0)
+
+    def at(self, s: ArrayLike) -> tuple[Array, Array, Array]:
+        """Radius (n,) mm, height (n,) mm and unit tangent (n, 2) at the arc lengths s (n,), kept inside the curve.
+
+        At a kink the tangent is that of the piece below, which carries the deposit.
+        """
+        i, u, h = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
+        u, h = u[:, None], h[:, None]
+        p, q = self.points[i], self.points[i + 1]
+        a, b = self.tangents[i] * h, self.tangents[i + 1] * h
+        d = q - p
+        point = p + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)))
+        slope = a + u * (2.0 * (3.0 * d - 2.0 * a - b) + 3.0 * u * (a + b - 2.0 * d))
+        tangent = slope / np.linalg.norm(slope, axis=1, keepdims=True)
+        return np.maximum(point[:, 0], 0.0), point[:, 1], tangent
+
+    def _locate(self, s: Array) -> tuple[NDArray[np.intp], Array, Array]:
+        # a layer that falls on a kink up to rounding belongs below it; side='left' then skips the doubled node
+        i = np.clip(np.searchsorted(self.s, s - 1e-9, side="left") - 1, 0, len(self.s) - 2)
+        i = np.where(self.s[i + 1] > self.s[i], i, np.minimum(i + 1, len(self.s) - 2))
+        h = self.s[i + 1] - self.s[i]
+        return i, (s - self.s[i]) / h, h
+
+    def s_at_height(self, heights: ArrayLike) -> list[Array]:
+        """For each height (n,) mm all arc lengths at which the curve crosses or reaches it, rising, mm."""
+        wanted = np.atleast_1d(np.asarray(heights, dtype=np.float64))
+        z = self.points[None, :, 1] - wanted[:, None]
+        z = np.where(np.abs(z) < 1e-9, 0.0, z)
+        which, at = np.nonzero(z[:, 1:] * z[:, :-1] < 0.0)
+        low, high = self.s[at].copy(), self.s[at + 1].copy()
+        rising = z[which, at + 1] > 0.0
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            over = (self.at(middle)[1] >= wanted[which]) == rising
+            low, high = np.where(over, low, middle), np.where(over, middle, high)
+        on, node = np.nonzero(z == 0.0)
+        which, found = np.r_[which, on], np.r_[0.5 * (low + high), self.s[node]]
+        order = np.lexsort((found, which))
+        which, found = which[order], found[order]
+        kept = np.r_[True, (np.diff(found) > 1e-6) | (np.diff(which) > 0)][: len(found)]
+        return np.split(found[kept], np.searchsorted(which[kept], np.arange(1, len(wanted))))
+
+
+def _bridge(points: list[Array], tangents: list[Array], lengths: list[float], to: Array, tangent: Array) -> None:
+    """Append to the chain the nodes that lead from its end to the start of the next piece."""
+    end = points[-1][-1]
+    gap = to - end
+    distance = float(np.hypot(*gap))
+    if distance > STEP:
+        along = gap / distance
+        points.append(np.array([end, to]))
+        tangents.append(np.array([along, along]))
+        lengths.extend([0.0, distance])
+    if SAME_PLACE < distance <= STEP or abs(turning(tangents[-1][-1], tangent)) > KINK:
+        points.append(np.array([to]))
+        tangents.append(np.array([tangent]))
+        lengths.append(0.0)
+
+
+@dataclass(frozen=True)
+class RevolvedWall:
+    """A meridian turned about the Z of the feature frame.
+
+    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). start, end: azimuths in
+    rad about the axis, end > start; `full` when the wall closes on itself. issues: what was found out on the way.
+    label: what the user calls the part. faces: names of the wall's faces, from the platform up. surroundings: fixtures.
+    depths: how the part lies about the wall, where it has faces.
+    """
+
+    meridian: Meridian
+    frame: Array
+    start: float = 0.0
+    end: float = 2.0 * np.pi
+    full: bool = True
+    issues: tuple[Issue, ...] = ()
+    label: str = "part"
+    faces: tuple[str, ...] = ()
+    surroundings: tuple[Body, ...] = ()
+    depths: PartDepths | None = None
+
+    def __post_init__(self) -> None:
+        frame = np.array(self.frame, dtype=np.float64)
+        frame.setflags(write=False)
+        object.__setattr__(self, "frame", frame)
+        if frame.shape != (4, 4) or not self.end > self.start:
+            raise ValueError("a wall needs a (4, 4) frame and a turn of positive angle")
+
+    def points(self, radius: Array, height: Array, azimuth: Array) -> Array:
+        """(n, 3) mm in part coordinates from cylindrical coordinates (n,) of the feature frame."""
+        local = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=-1)
+        moved: Array = local @ self.frame[:3, :3].T + self.frame[:3, 3]
+        return moved
+
+    def directions(self, vectors: Array, azimuth: Array) -> Array:
+        """(n, 3) vectors in part coordinates from components (n, 3) along radius, azimuth and axis at the azimuths."""
+        c, s = np.cos(azimuth), np.sin(azimuth)
+        r, t, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+        turned: Array = np.stack([r * c - t * s, r * s + t * c, z + 0.0 * c], axis=-1) @ self.frame[:3, :3].T
+        return turned

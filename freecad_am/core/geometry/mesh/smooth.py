@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A smooth surface through a mesh, for what needs curvature and normals that do not jump from facet to facet.
+
+An implicit surface of moving least squares (Shen et al. 2004): near a place the planes of the samples about it are weighted.
+Each plane is turned halfway towards the mean normal there, with which spheres and cylinders are reproduced, not swollen.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..walls.surface import dot
+from .triangle_mesh import Index
+
+Array = NDArray[np.float64]
+
+NEAREST = 28  # samples that count at a place
+REACH = 2.2  # typical distances of samples; farther ones do not count
+STEPS = 12
+STILL = 1e-11  # mm
+
+
+class SmoothMesh:
+    """samples (n, 3) mm, the vertices of triangles (m, 3) about `spacing` mm apart; normals to the side from which these are
+    counter-clockwise."""
+
+    def __init__(self, samples: Array, triangles: Index, spacing: float) -> None:
+        self.samples, self.triangles, self.reach = samples, triangles, REACH * spacing
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self.samples)
+
+    @cached_property
+    def _facets(self) -> tuple[Array, Array]:
+        """Unit normals (n, 3) and areas (n,) of the samples, those of their triangles."""
+        corner = self.samples[self.triangles]
+        normal, area = np.zeros_like(self.samples), np.zeros(len(self.samples))
+        double = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        size = np.linalg.norm(double, axis=1)
+        unit = double / np.maximum(size, 1e-300)[:, None]
+        for k in range(3):
+            one, other = corner[:, (k + 1) % 3] - corner[:, k], corner[:, (k + 2) % 3] - corner[:, k]
+            angle = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), dot(one, other))
+            np.add.at(normal, self.triangles[:, k], angle[:, None] * unit)
+            np.add.at(area, self.triangles[:, k], size / 6.0)
+        return normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300), area
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Points of the surface near points (k, 3), and unit normals there, each (k, 3)."""
+        at = points.astype(np.float64, copy=True)
+        normals = np.zeros_like(at)
+        busy = np.arange(len(at))
+        near: Array = np.empty((len(at), 0))
+        for step in range(STEPS):
+            if step < 2:  # from afar the first step leads elsewhere
+                found = np.asarray(self._tree.query(at[busy], k=min(NEAREST, len(self.samples)))[1])
+                near = found.reshape(len(busy), min(NEAREST, len(self.samples)))
+            value, slope = self._level(at[busy], near)
+            size = np.maximum((slope * slope).sum(axis=1), 0.04)
+            move = np.clip(value / size, -4.0 * self.reach, 4.0 * self.reach)[:, None] * slope
+            at[busy] -= move
+            normals[busy] = slope
+            still = np.abs(move).max(axis=1) < STILL
+            if step > 0:
+                busy, near = busy[~still], near[~still]
+            if not len(busy):
+                break
+        return at, normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+
+    def _level(self, points: Array, near: Array) -> tuple[Array, Array]:
+        """How far (k,), about, points are above the surface, and the gradient (k, 3) of that, by samples `near` (k, l)."""
+        normals, areas = self._facets
+        normal, area = normals[near], areas[near]
+        away = points[:, None] - self.samples[near]
+        square = np.einsum("klc,klc->kl", away, away)
+        reach = np.maximum(self.reach**2, 2.0 * square.min(axis=1))[:, None]
+        inner = np.maximum(1.0 - square / reach, 0.0)
+        weight = area * inner**4
+        pull = -8.0 / reach * area * inner**3  # times `away`: how the weight changes
+        total = weight.sum(axis=1)
+        weight, pull = weight / total[:, None], pull / total[:, None]
+        mean = np.einsum("kl,klc->kc", weight, normal)
+        length = np.maximum(np.linalg.norm(mean, axis=1), 1e-9)
+        unit = mean / length[:, None]
+        above = np.einsum("klc,klc->kl", normal, away)
+        middle = np.einsum("kl,klc->kc", weight, away)
+        lift = dot(unit, middle)
+        value = 0.5 * ((weight * above).sum(axis=1) + lift)
+        turned = (middle - lift[:, None] * unit) / length[:, None]
+        change = above + np.einsum("klc,kc->kl", normal, turned) + np.einsum("klc,kc->kl", away, unit) - 2.0 * value[:, None]
+        slope = 0.5 * (np.einsum("kl,klc->kc", pull * change, away) + mean + unit)
+        return value, slope

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Triangle meshes of walls: level lines of a function of the vertices, chained."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...issues import InputError
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+class LevelLine(NamedTuple):
+    """A chain of points (n, 3), the lower side on its left. A closed one does not repeat its first point.
+
+    rims: unit vectors (2, 3) along the mesh's edges on which an open one begins and ends.
+    """
+
+    points: Array
+    closed: bool
+    rims: Array
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """vertices (n, 3) mm, faces (m, 3) with one sense of rotation all over the wall."""
+
+    vertices: Array
+    faces: Index
+
+    @cached_property
+    def edges(self) -> Index:
+        """All edges (k, 2), each once, the lower vertex first."""
+        return np.column_stack(np.divmod(np.unique(self._sides), len(self.vertices)))
+
+    @cached_property
+    def border_edges(self) -> Index:
+        """The edges (k, 2) with a face on one side only, which is on their left."""
+        _, place, count = np.unique(self._sides, return_inverse=True, return_counts=True)
+        edges: Index = self._half_edges[count[place] == 1]
+        return edges
+
+    @property
+    def _half_edges(self) -> Index:
+        """The sides of all faces (3 m, 2), each face on the left of its own."""
+        return self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+    @property
+    def _sides(self) -> Index:
+        """The sides (3 m,) as numbers, the same for both faces beside an edge and in the order of its vertices. Unlike rows
+        of two, numbers are sorted quickly, and without holding up what other threads do."""
+        low, high = np.sort(self._half_edges, axis=1).astype(np.int64).T
+        sides: Index = low * len(self.vertices) + high
+        return sides
+
+    @cached_property
+    def area_vectors(self) -> Array:
+        """Of each face (m, 3): its normal, as long as its area, mm2."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        vectors: Array = 0.5 * np.cross(b - a, c - a)
+        return vectors
+
+    @cached_property
+    def areas(self) -> Array:
+        """Of the faces (m,), mm2."""
+        areas: Array = np.linalg.norm(self.area_vectors, axis=1)
+        return areas
+
+    @cached_property
+    def longest_edge(self) -> float:
+        """Length of the longest edge, mm."""
+        a, b = self.vertices[self.edges].transpose(1, 0, 2)
+        return float(np.linalg.norm(a - b, axis=1).max())
+
+    @cached_property
+    def typical_edge(self) -> float:
+        """Median length of the edges, mm."""
+        a, b = self.vertices[self.edges].transpose(1, 0, 2)
+        return float(np.median(np.linalg.norm(a - b, axis=1)))
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """Search tree of the vertices."""
+        return cKDTree(self.vertices)
+
+    @cached_property
+    def _faces_of(self) -> tuple[Index, Index]:
+        """Faces sorted by vertex, and where those of each vertex begin."""
+        order = np.argsort(self.faces.ravel(), kind="stable")
+        counts = np.bincount(self.faces.ravel(), minlength=len(self.vertices))
+        return (order // 3).astype(np.intp), np.r_[0, np.cumsum(counts)].astype(np.intp)
+
+    def faces_at(self, vertices: Index) -> Index:
+        """The faces (k,) that touch the vertices."""
+        faces, begin = self._faces_of
+        count = begin[vertices + 1] - begin[vertices]
+        at = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(count.sum())
+        touched: Index = np.unique(faces[at])
+        return touched
+
+    def joined(self, members: Mask, seeds: Mask) -> Mask:
+        """The members (n,) that edges link to a seed through members alone; seeds count as members."""
+        inside = members | seeds
+        pairs = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        pairs = pairs[inside[pairs].all(axis=1)]
+        links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(inside), len(inside)))
+        count, label = connected_components(links, directed=False)
+        linked = np.zeros(count, dtype=bool)
+        linked[label[seeds]] = True
+        return inside & linked[label]
+
+    def part(self, faces: Index) -> tuple[Mesh, Index]:
+        """The mesh of some faces (k,) alone, and the numbers (m,) that its vertices have here."""
+        vertices, corners = np.unique(self.faces[faces], return_inverse=True)
+        return Mesh(self.vertices[vertices], np.ravel(corners).reshape(-1, 3).astype(np.intp)), vertices
+
+    def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
+        """The lines on the faces (k,) along which the values (n,) are zero, interpolated along edges.
+
+        InputError MESH where neighbouring faces turn opposite ways, so that lines have no sides.
+        """
+        corners = self.faces[faces]
+        low = values[corners] < 0.0
+        count = low.sum(axis=1)
+        mixed = (count == 1) | (count == 2)
+        corners, low, single = corners[mixed], low[mixed], (count == 1)[mixed]
+        if not len(corners):
+            return []
+        odd = np.argmax(low == single[:, None], axis=1)
+        row = np.arange(len(corners))
+        a, b, c = corners[row, odd], corners[row, (odd + 1) % 3], corners[row, (odd + 2) % 3]
+        ab, ac = np.sort(np.stack([a, b], 1), axis=1), np.sort(np.stack([a, c], 1), axis=1)
+        start, end = np.where(single[:, None], ab, ac), np.where(single[:, None], ac, ab)
+        edges, node = np.unique(np.vstack([start, end]), axis=0, return_inverse=True)
+        node = np.ravel(node)
+        following = np.full(len(edges), -1, dtype=np.intp)
+        following[node[: len(row)]] = node[len(row) :]
+        arrives = np.bincount(node[len(row) :], minlength=len(edges))
+        if np.bincount(node[: len(row)]).max() > 1 or arrives.max() > 1:
+            raise InputError("MESH", "wall", "faces of the wall's mesh turn opposite ways: orient the faces alike")
+        one, other = values[edges].T
+        t = np.clip(one / (one - other), 1e-6, 1.0 - 1e-6)[:, None]
+        points = (1.0 - t) * self.vertices[edges[:, 0]] + t * self.vertices[edges[:, 1]]
+        rims = self.vertices[edges[:, 1]] - self.vertices[edges[:, 0]]
+        rims /= np.linalg.norm(rims, axis=1, keepdims=True)
+        return [LevelLine(points[chain], closed, rims[chain[[0, -1]]]) for chain, closed in chains(following)]
+
+
+def chains(following: Index) -> list[tuple[Index, bool]]:
+    """The chains of a list of successors (n,), -1 for none, in the order of their least members: members in order, and
+    whether the chain is closed. Closed ones begin with their least member."""
+    ahead = following.tolist()
+    arrives = np.zeros(len(ahead), dtype=bool)
+    arrives[following[following >= 0]] = True
+    found: list[tuple[int, list[int], bool]] = []
+    unseen = bytearray(b"\x01") * len(ahead)
+    starts = np.flatnonzero(~arrives).tolist()[::-1]
+    # walked along lists, which is quicker than doubling by arrays at any length
+    while (start := starts.pop() if starts else unseen.find(1)) >= 0:
+        chain, node = [], start
+        while node >= 0 and unseen[node]:
+            unseen[node] = 0
+            chain.append(node)
+            node = ahead[node]
+        if chain:
+            found.append((min(chain), chain, node >= 0))
+    return [(np.array(chain, dtype=np.intp), closed) for _, chain, closed in sorted(found)]
+
+
+def thinned(points: Array, closed: bool, least: float) -> Array:
+    """A chain of points (n, 3) without those nearer to the one before than `least` mm; the ends of an open one stay."""
+    length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    keep = np.r_[True, np.diff(np.floor(length / least)) > 0]
+    if not closed:
+        keep[-1] = True
+    elif length[-1] > least and np.linalg.norm(points[-1] - points[0]) < least:
+        keep[-1] = False
+    return points[keep]

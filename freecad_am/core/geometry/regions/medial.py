@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The middle of thin regions: paths along the medial axis, from the Voronoi diagram of places on the border.
+
+A Voronoi vertex is equally far from three places of the border, so that those inside follow the medial axis. An edge between
+two of them belongs to two places of the border; how far these are apart, compared with the circle that touches both, is 1
+where the edge runs between two walls and small where it runs into a corner.
+"""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.spatial import Voronoi
+
+from ..curves.plane_curve import Array, winding
+from .region import Region
+
+Index = NDArray[np.intp]
+
+BETWEEN_WALLS, ANYWHERE = 0.75, 0.3  # least spread of an edge of the axis
+
+
+class _Axis(NamedTuple):
+    """points (n, 2), clearance (n,) mm from the border, links (m, 2) between points and their spread (m,)."""
+
+    points: Array
+    clearance: Array
+    links: Index
+    spread: Array
+
+
+def spine(region: Region, least: float, step: float) -> tuple[Array, bool]:
+    """The longest path (n, 2) in the middle of a region where it is wider than 2 `least` mm, and whether it is closed.
+
+    step: mm between places on the border. A region with a single hole that the axis goes round has a closed path. Empty,
+    (0, 2), where the region is nowhere that wide.
+    """
+    axis = _axis(region, least, step)
+    for spread in (BETWEEN_WALLS, ANYWHERE):
+        links = axis.links[(axis.spread >= spread) & (axis.clearance[axis.links] >= least).all(axis=1)]
+        if not len(links):
+            continue
+        ring = _cycle(axis.points, links) if len(region.rings()) > 1 else None
+        if ring is not None:
+            return axis.points[ring], True
+        path = _longest(axis.points, links)
+        way = float(np.hypot(*np.diff(axis.points[path], axis=0).T).sum())
+        if spread == ANYWHERE or way > 2.0 * float(axis.clearance[path].max()):
+            return axis.points[path], False
+    return np.zeros((0, 2)), False
+
+
+def _axis(region: Region, least: float, step: float) -> _Axis:
+    """The axis inside of a region where it is wider than 2 `least` mm, without what runs into corners."""
+    places, follows = _places(region.rings(), step)
+    middle, size = places.mean(axis=0), max(region.extent, 1e-300)
+    diagram = Voronoi((places - middle) / size)
+    corners = diagram.vertices * size + middle
+    pairs = diagram.ridge_points
+    ends = np.fromiter(chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)).reshape(-1, 2)
+    beside = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
+    use = (ends >= 0).all(axis=1) & ~beside
+    pairs, ends = pairs[use], ends[use]
+    away = np.hypot(*(corners[ends] - places[pairs[:, :1]]).transpose(2, 0, 1))
+    apart = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
+    spread = apart / np.maximum(2.0 * away.mean(axis=1), 1e-300)
+    use = (spread >= ANYWHERE) & (away >= least).all(axis=1)  # before it is asked what is inside, which takes longest
+    ends, away, spread = ends[use], away[use], spread[use]
+    members = np.unique(ends)
+    inside = np.zeros(len(corners), dtype=bool)
+    inside[members] = winding(region.rings(), corners[members]) > 0
+    use = inside[ends].all(axis=1)
+    ends = ends[use]
+    clearance = np.zeros(len(corners))
+    clearance[ends] = away[use]
+    return _Axis(corners, clearance, ends, spread[use])
+
+
+def _places(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]:
+    """Places on the rings at most `step` mm apart, corners among them, and the number of the one that follows each."""
+    places, follows, first = [], [], 0
+    for ring in rings:
+        way = np.roll(ring, -1, axis=0) - ring
+        count = np.maximum(np.ceil(np.hypot(*way.T) / step - 1e-9), 1.0).astype(np.intp)
+        edge = np.repeat(np.arange(len(ring)), count)
+        share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
+        places.append(ring[edge] + share[:, None] * way[edge])
+        follows.append(first + np.roll(np.arange(len(edge)), -1))
+        first += len(edge)
+    return np.vstack(places), np.concatenate(follows)
+
+
+def _cycle(points: Array, links: Index) -> Index | None:
+    """The members in order of the only closed path in the graph; None where there is none, or more."""
+    for _ in range(len(links)):
+        degree = np.bincount(links.ravel(), minlength=len(points))
+        keep = (degree[links] > 1).all(axis=1)
+        if keep.all():
+            break
+        links = links[keep]
+    if not len(links) or (np.bincount(links.ravel()) > 2).any():
+        return None
+    beside: dict[int, list[int]] = {}
+    for a, b in links.tolist():
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    path = [min(beside)]
+    ahead = min(beside[path[0]])
+    while ahead != path[0]:
+        before, here = path[-1], ahead
+        path.append(here)
+        ahead = next((other for other in beside[here] if other != before), path[0])
+    return np.array(path) if len(path) == len(beside) else None
+
+
+def _longest(points: Array, links: Index) -> Index:
+    """The members of the longest of the shortest paths, as two sweeps find it."""
+    members, number = np.unique(links, return_inverse=True)
+    number = number.reshape(-1, 2)
+    size = np.hypot(*(points[links[:, 0]] - points[links[:, 1]]).T)
+    graph = coo_matrix((np.maximum(size, 1e-300), number.T), shape=(len(members), len(members))).tocsr()
+    count, label = connected_components(graph, directed=False)
+    total = np.bincount(label[number[:, 0]], weights=size, minlength=count)
+    start = int(np.flatnonzero(label == int(np.argmax(total)))[0])
+    for _ in range(2):
+        away = dijkstra(graph, directed=False, indices=np.array([start]))[0]
+        away[~np.isfinite(away)] = -1.0
+        start = int(np.argmax(away))
+    away, before = (
+        rows[0] for rows in dijkstra(graph, directed=False, indices=np.array([start]), return_predecessors=True)
+    )
+    away[~np.isfinite(away)] = -1.0
+    path = [int(np.argmax(away))]
+    while path[-1] != start:
+        path.append(int(before[path[-1]]))
+    return np.asarray(members[path[::-1]], dtype=np.intp)

@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plane regions with holes: read from loops, mended where those cross, grown and shrunk by parallel curves.
+
+The only file that knows shapely (decision 0010), in its versions 1.8 and 2 alike. The library is imported when first needed;
+what goes in and comes out are arrays.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...issues import NOTE, InputError, Issue
+from ..curves.plane_curve import Array, doubled_area, nearest, winding
+from ..curves.polyline import turn_segments
+
+Mask = NDArray[np.bool_]
+
+SAME = 1e-12  # of the extent; points nearer together are one
+SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
+AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
+LEAST_ARC = 8  # segments of a full turn
+WIDTH = 0.005  # relative tolerance of a region's width
+FLAT = 1e-3  # slope of a curve of values, so that they count and their places do not
+FINE_SLIT, LONG_SLIT = 0.1, 20.0  # of a slit's width: chord error of what closes it; how much border it takes away
+
+
+class Shapely(NamedTuple):
+    """What is used of the library."""
+
+    geometry: Any
+    ops: Any
+    arcs: str  # name of the argument with the segments of a quarter turn
+
+
+@lru_cache(maxsize=1)
+def shapely() -> Shapely:
+    """The library. InputError MISSING_LIBRARY where it is not installed."""
+    try:
+        import shapely as package
+        from shapely import geometry, ops
+    except ImportError:
+        raise InputError(
+            "MISSING_LIBRARY", "filling", "solids are filled with the Python package shapely (1.8 or newer), which is not "
+            "installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely",
+        ) from None
+    return Shapely(geometry, ops, "resolution" if package.__version__.startswith("1.") else "quad_segs")
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """One connected piece of the plane, with its holes; mm."""
+
+    shape: Any  # a valid shapely Polygon; for this file alone
+    sheet: float = 0.0  # u (`strip.Period`), mm, of its middle, where it goes round more than half a turn of the plane
+
+    @cached_property
+    def _rings(self) -> tuple[Array, ...]:
+        outer = _ring(self.shape.exterior, 1.0)
+        holes = [_ring(hole, -1.0) for hole in self.shape.interiors]
+        return (outer, *sorted(holes, key=lambda ring: (ring[0, 0], ring[0, 1])))
+
+    def rings(self) -> tuple[Array, ...]:
+        """Its borders (n, 2), material to the left, the outer one first; each begins at its leftmost point, not repeated at
+        its end, and the holes are in the order of these points."""
+        return self._rings
+
+    @property
+    def area(self) -> float:
+        """mm^2."""
+        return float(self.shape.area)
+
+    @cached_property
+    def extent(self) -> float:
+        """Diagonal of the box about it, mm."""
+        return float(np.hypot(*np.ptp(self._rings[0], axis=0)))
+
+    def contains(self, points: Array) -> Mask:
+        """Whether points (..., 2) lie inside; on the border either may be said."""
+        flat = np.reshape(points, (-1, 2))
+        return np.reshape(winding(self._rings, flat) > 0, np.shape(points)[:-1])
+
+    def nearest(self, points: Array) -> tuple[Array, Array]:
+        """The places (n, 2) on the border nearest to points (n, 2), and how far they are (n,), mm."""
+        found = [nearest(ring, points, closed=True) for ring in self._rings]
+        away = np.stack([one.distance for one in found])
+        best = np.argmin(away, axis=0)
+        row = np.arange(len(points))
+        return np.stack([one.points for one in found])[best, row], away[best, row]
+
+    @cached_property
+    def width(self) -> float:
+        """Diameter of the largest circle inside, mm, at most WIDTH (relative) too small."""
+        low, high = self.area / float(self.shape.length), math.sqrt(self.area / math.pi)
+        while high - low > WIDTH * high:
+            middle = 0.5 * (low + high)
+            core = self.grown(-middle, 0.1 * WIDTH * middle)
+            if core:
+                low = middle
+            else:
+                high = middle
+        return 2.0 * low
+
+    def grown(self, distance: float, chord_error: float) -> tuple[Region, ...]:
+        """What lies within `distance` mm of it, with round corners; a negative distance shrinks it.
+
+        The border is the parallel curve: straight along edges, and arcs within the chord error (mm) on its material's side.
+        """
+        if distance == 0.0:
+            return (self,)
+        return _parts(_buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet)
+
+    def without(self, others: Iterable[Region]) -> tuple[Region, ...]:
+        """What is left when others are taken away."""
+        away = shapely().ops.unary_union([other.shape for other in others])
+        return _parts(self.shape.difference(away), SLIVER * self.extent**2)
+
+    def common(self, others: Iterable[Region]) -> tuple[Region, ...]:
+        """What it shares with others."""
+        both = shapely().ops.unary_union([other.shape for other in others])
+        return _parts(self.shape.intersection(both), SLIVER * self.extent**2)
+
+    def pieces(self, line: Array) -> list[Array]:
+        """What of an open line (n, 2), which does not meet itself, lies inside: pieces (m, 2) in its order and sense."""
+        library = shapely()
+        whole = library.geometry.LineString(line)
+        cut = whole.intersection(self.shape)
+        cut = library.ops.linemerge(cut) if cut.geom_type == "MultiLineString" else cut
+        parts = [part for part in getattr(cut, "geoms", [cut]) if part.geom_type == "LineString" and not part.is_empty]
+        found = []
+        for part in parts:
+            ends = [float(whole.project(library.geometry.Point(part.coords[k]))) for k in (0, -1)]
+            found.append((min(ends), np.array(part.coords, dtype=float)[:: 1 if ends[0] <= ends[1] else -1]))
+        return [piece for _, piece in sorted(found, key=lambda item: item[0])]
+
+    def distance(self, other: Region) -> float:
+        """Shortest way (mm) to another region, 0 where they touch."""
+        return float(self.shape.distance(other.shape))
+
+    def simple(self, tolerance: float) -> Region:
+        """The same with no more points than `tolerance` mm asks for."""
+        found = _parts(self.shape.simplify(tolerance), 0.0, self.sheet)
+        return found[0] if len(found) == 1 else self
+
+    def inside(self) -> Array:
+        """A place (2,) inside, away from the border."""
+        point = self.shape.representative_point()
+        return np.array([point.x, point.y])
+
+
+class Mended(NamedTuple):
+    """Regions read from loops; area (mm^2) that mending loops gave or took, and that of slivers dropped."""
+
+    regions: tuple[Region, ...]
+    changed: float
+    dropped: float
+
+    def issues(self, layer: int | None = None) -> tuple[Issue, ...]:
+        """What a user should know."""
+        found = []
+        if self.changed > 0.0:
+            text = f"contours that cross or touch were mended; {self.changed:.3g} mm^2 changed"
+            found.append(Issue(NOTE, "REGION_MENDED", text, layer))
+        if self.dropped > 0.0:
+            found.append(Issue(NOTE, "REGION_SLIVERS", f"slivers of {self.dropped:.3g} mm^2 were dropped", layer))
+        return tuple(found)
+
+
+def regions(loops: Sequence[Array], least_area: float | None = None) -> tuple[Region, ...]:
+    """The regions that closed loops (n, 2) bound, material to their left; islands in holes are regions of their own. In the
+    order of their leftmost points. Pieces below `least_area` mm^2 are dropped, by default SLIVER of the squared extent."""
+    return mended(loops, least_area).regions
+
+
+def mended(loops: Sequence[Array], least_area: float | None = None) -> Mended:
+    """As `regions`; where loops cross themselves or each other, inside is what they go round at least once."""
+    clean = [ring for loop in loops if len(ring := _distinct(np.asarray(loop, dtype=float))) > 2]
+    if not clean:
+        return Mended((), 0.0, 0.0)
+    extent = float(np.hypot(*np.ptp(np.vstack(clean), axis=0)))
+    least = SLIVER * extent**2 if least_area is None else least_area
+    shape, changed = _nested(clean), 0.0
+    if shape is None:
+        shape, changed = _wound(clean)
+    kept = _parts(shape, least)
+    dropped = max(float(shape.area) - sum(region.area for region in kept), 0.0)
+    noise = SLIVER * extent**2
+    return Mended(kept, changed if changed > noise else 0.0, dropped if dropped > noise else 0.0)
+
+
+def along(curves: Sequence[tuple[Array, bool]], half: float, chord_error: float) -> tuple[Region, ...]:
+    """What lies within `half` mm of curves (points (n, 2), whether closed)."""
+    library = shapely()
+    wholes = [np.vstack([points, points[:1]]) if closed else points for points, closed in curves]
+    lines = [library.geometry.LineString(piece) for whole in wholes for piece in _bends(whole)]
+    return _parts(library.ops.unary_union([_buffered(line, half, chord_error) for line in lines]), 0.0)
+
+
+def joined(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
+    """Regions of one plane without the slits in and between them that are thinner than `width` mm; the same regions where
+    there are none, or only short ones."""
+    shape = shapely().ops.unary_union([_buffered(part.shape, 0.5 * width, FINE_SLIT * width) for part in parts])
+    shape = _buffered(shape, -0.5 * width, FINE_SLIT * width)
+    if sum(part.shape.length for part in parts) - shape.length < LONG_SLIT * width:
+        return tuple(parts)
+    return _parts(shape, SLIVER * shape.area)
+
+
+def _bends(line: Array) -> list[Array]:
+    """A line (n, 2) in pieces that do not come beside themselves: where one does, the library may fill what it goes round,
+    or find a shape that crosses itself."""
+    way = np.diff(line, axis=0)
+    heading = np.arctan2(way[:, 1], way[:, 0])
+    turn = np.abs(np.remainder(np.diff(heading) + math.pi, 2.0 * math.pi) - math.pi)
+    number = np.floor(np.r_[0.0, np.cumsum(turn)] / BEND + np.arange(len(way)) / AT_ONCE)
+    cuts = np.r_[0, np.flatnonzero(np.diff(number) > 0.0) + 1, len(way)]
+    return [line[a : b + 1] for a, b in zip(cuts, cuts[1:])]
+
+
+def simplified(points: Array, tolerance: float) -> Array:
+    """An open curve (n, 2) with no more points than `tolerance` mm asks for, ends kept."""
+    line = shapely().geometry.LineString(points).simplify(tolerance, preserve_topology=False)
+    found: Array = np.array(line.coords, dtype=float)
+    return found
+
+
+def telling(at: Array, values: Array, tolerance: float) -> Mask:
+    """Which of values (n,) at places (n,), in order, are needed so that straight lines between them tell all within the
+    tolerance."""
+    stretch = float(np.ptp(values)) / (FLAT * max(float(np.ptp(at)), 1e-300))
+    if not stretch > 0.0:
+        return np.asarray(np.isin(np.arange(len(at)), (0, len(at) - 1)), dtype=bool)
+    line = np.stack([at * stretch, values], axis=1)
+    return np.asarray(np.isin(line[:, 0], simplified(line, tolerance)[:, 0]), dtype=bool)
+
+
+def _buffered(shape: Any, distance: float, chord_error: float) -> Any:
+    quarter = math.ceil(turn_segments(abs(distance), chord_error, 2.0 * math.pi, LEAST_ARC) / 4)
+    return shape.buffer(distance, **{shapely().arcs: quarter})
+
+
+def _distinct(loop: Array) -> Array:
+    """The loop without points that repeat the one before."""
+    if len(loop) == 0:
+        return loop
+    away = np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1)
+    kept: Array = loop[away > SAME * max(float(np.ptp(loop, axis=0).max()), 1e-300)]
+    return kept
+
+
+def _nested(loops: list[Array]) -> Any:
+    """The shape of loops that bound regions as they are; None where they do not."""
+    geometry = shapely().geometry
+    turned = [doubled_area(loop) for loop in loops]
+    outers = [loop for loop, area in zip(loops, turned) if area > 0.0]
+    sizes = np.array([area for area in turned if area > 0.0])
+    holes: list[list[Array]] = [[] for _ in outers]
+    for hole in (loop for loop, area in zip(loops, turned) if area <= 0.0):
+        about = [k for k, outer in enumerate(outers) if winding((outer,), hole[:1])[0] > 0]
+        if not about:
+            return None
+        holes[about[int(np.argmin(sizes[about]))]].append(hole)
+    polygons = [geometry.Polygon(outer, inner) for outer, inner in zip(outers, holes)]
+    shape = polygons[0] if len(polygons) == 1 else geometry.MultiPolygon(polygons)
+    return shape if shape.is_valid else None
+
+
+def _wound(loops: list[Array]) -> tuple[Any, float]:
+    """The shape of what loops go round at least once, and the area (mm^2) that they go round otherwise."""
+    library = shapely()
+    lines = library.ops.unary_union([library.geometry.LineString(np.vstack([loop, loop[:1]])) for loop in loops])
+    faces = list(library.ops.polygonize(lines))
+    if not faces:
+        return library.geometry.Polygon(), 0.0
+    spots = np.array([[spot.x, spot.y] for spot in (face.representative_point() for face in faces)])
+    count = winding(loops, spots)
+    inside = count > 0
+    area = np.array([face.area for face in faces])
+    kept = library.ops.unary_union([face for face, is_in in zip(faces, inside) if is_in])
+    return kept, float((np.abs(count - inside) * area).sum())
+
+
+def _ring(ring: Any, sense: float) -> Array:
+    points = np.asarray(ring.coords)
+    x, y = points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]
+    points = points[:-1] if (x[:-1] @ y[1:] - x[1:] @ y[:-1]) * sense >= 0.0 else points[-2::-1]
+    leftmost = np.flatnonzero(points[:, 0] == points[:, 0].min())
+    first = int(leftmost[np.argmin(points[leftmost, 1])])
+    return np.concatenate([points[first:], points[:first]])
+
+
+def _parts(shape: Any, least_area: float, sheet: float = 0.0) -> tuple[Region, ...]:
+    """The polygons of a shape in the order of their leftmost points."""
+    found = [Region(part, sheet) for part in _polygons(shape) if part.area > least_area]
+    if len(found) < 2:
+        return tuple(found)
+    return tuple(sorted(found, key=lambda region: (region.rings()[0][0, 0], region.rings()[0][0, 1])))
+
+
+def _polygons(shape: Any) -> list[Any]:
+    if shape.geom_type == "Polygon":
+        return [] if shape.is_empty else [shape]
+    return [part for item in getattr(shape, "geoms", ()) for part in _polygons(item)]

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a wall must offer to the slicing, and the analytic walls.
+
+A wall is a map (u, v) -> point: layers rise with u, v runs around. Parameters are arrays of one shape (...),
+points and derivatives (..., 3), mm. `period` is the period of v, or None where the wall is open in v.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..columns import columns
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * np.pi
+
+
+class Surface(Protocol):
+    """A parametric wall."""
+
+    @property
+    def period(self) -> float | None:
+        """Period of v, None when the wall is open."""
+
+    @property
+    def rise_period(self) -> float | None:
+        """Period of u where the wall comes back to itself in that direction too, else None; `inverse` knows u up to it."""
+
+    def point(self, u: Array, v: Array) -> Array:
+        """Points (..., 3), mm."""
+
+    def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
+        """Points and the first derivatives along u and along v, each (..., 3)."""
+
+    def inverse(self, points: Array) -> tuple[Array, Array]:
+        """(u, v) of the points of the wall nearest to points (n, 3); v within one period from -period / 2 on."""
+
+
+@dataclass(frozen=True)
+class Torus:
+    """Chalvin 2019, equation 1: bend radius R, tube radius r, mm.
+
+    The tube's centre line starts at the origin along Z and turns about the line parallel to Y through (-R, 0, 0)
+    (errata); u is the angle along the bend, v the angle around the tube, v = 0 on the outside of the bend.
+    """
+
+    bend: float
+    tube: float
+
+    @property
+    def period(self) -> float:
+        """A full turn."""
+        return TURN
+
+    @property
+    def rise_period(self) -> float:
+        """A full turn too."""
+        return TURN
+
+    def point(self, u: Array, v: Array) -> Array:
+        """Points (..., 3)."""
+        reach = self.bend + self.tube * np.cos(v)
+        return _stacked(reach * np.cos(u) - self.bend, self.tube * np.sin(v), reach * np.sin(u))
+
+    def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
+        """Points and first derivatives."""
+        u, v = np.asarray(u, order="C"), np.asarray(v, order="C")
+        cu, su, cv, sv = np.cos(u), np.sin(u), self.tube * np.cos(v), self.tube * np.sin(v)
+        reach = self.bend + cv
+        return (
+            _stacked(reach * cu - self.bend, sv, reach * su),
+            _stacked(-reach * su, 0.0 * sv, reach * cu),
+            _stacked(-sv * cu, cv, -sv * su),
+        )
+
+    def inverse(self, points: Array) -> tuple[Array, Array]:
+        """(u, v) of the nearest points, both from -pi on."""
+        x, y, z = columns(points)
+        x = x + self.bend
+        return np.arctan2(z, x), np.arctan2(y, np.hypot(x, z) - self.bend)
+
+
+@dataclass(frozen=True)
+class Cone:
+    """A cone about Z with the radius `radius` (mm) at u = 0; u is the length along the side (mm), v the azimuth.
+
+    slope: angle (rad) of the side to Z, positive when it flares; 0 is the cylinder, +-pi/2 the plane Z = 0 run
+    outwards or inwards. Only where the radius is positive.
+    """
+
+    radius: float
+    slope: float = 0.0
+
+    @property
+    def period(self) -> float:
+        """A full turn."""
+        return TURN
+
+    @property
+    def rise_period(self) -> None:
+        """None: u is a length."""
+        return None
+
+    def point(self, u: Array, v: Array) -> Array:
+        """Points (..., 3)."""
+        radius = self.radius + u * np.sin(self.slope)
+        return _stacked(radius * np.cos(v), radius * np.sin(v), u * np.cos(self.slope))
+
+    def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
+        """Points and first derivatives."""
+        out, up, v = np.sin(self.slope), np.cos(self.slope), np.asarray(v, order="C")
+        cv, sv, radius = np.cos(v), np.sin(v), self.radius + u * out
+        return (
+            _stacked(radius * cv, radius * sv, u * up),
+            _stacked(out * cv, out * sv, up + 0.0 * u),
+            _stacked(-radius * sv, radius * cv, 0.0 * u),
+        )
+
+    def inverse(self, points: Array) -> tuple[Array, Array]:
+        """(u, v) of the nearest points."""
+        x, y, z = columns(points)
+        out = np.hypot(x, y) - self.radius
+        return out * np.sin(self.slope) + z * np.cos(self.slope), np.arctan2(y, x)
+
+
+def cylinder(radius: float) -> Cone:
+    """The cylinder about Z; u is the height."""
+    return Cone(radius)
+
+
+def normals(surface: Surface, u: Array, v: Array) -> Array:
+    """Unit normals (..., 3), along the cross product of the derivatives along u and v."""
+    _, along, around = surface.derivatives(u, v)
+    normal = np.cross(along, around)
+    unit: Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    return unit
+
+
+def dot(a: Array, b: Array) -> Array:
+    """Scalar products (...,) of vectors (..., 3)."""
+    product: Array = np.einsum("...k,...k->...", a, b)
+    return product
+
+
+def _stacked(x: Array, y: Array, z: Array) -> Array:
+    stacked: Array = np.stack(np.broadcast_arrays(x, y, z), axis=-1)
+    return stacked
