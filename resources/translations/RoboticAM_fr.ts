@@ -5622,7 +5622,7 @@
         <translation>un modèle de cordon ne règle que la vitesse d&apos;avance des solides ; choisissez none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>a bead of one point has no way to go; give it two points or more</source>
         <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
     </message>
@@ -5762,7 +5762,7 @@
         <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/ada3dp.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>a position is not a number of at most {0} mm; export it again</source>
         <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
     </message>
@@ -5802,7 +5802,7 @@
         <translation>un quaternion n&apos;est pas tout à zéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>a radius of {0} mm makes no arc between points {1} mm apart; give I and J</source>
         <translation>un rayon de {0} mm ne fait pas d&apos;arc entre des points distants de {1} mm ; donnez I et J</translation>
     </message>
@@ -5842,7 +5842,7 @@
         <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>a table has the columns x,y,z, then i,j,k where directions are given, then bead where there are several</source>
         <translation>un tableau a les colonnes x,y,z, puis i,j,k si des directions sont données, puis bead s&apos;il y en a plusieurs</translation>
     </message>
@@ -5997,7 +5997,7 @@
         <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez plus loin sur le tour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>all triangles of the mesh cancel one another; export it again</source>
         <translation>tous les triangles du maillage s&apos;annulent ; exportez-le à nouveau</translation>
     </message>
@@ -6092,12 +6092,12 @@
         <translation>longueur d&apos;arc</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>arcs are in the plane of X and Z; let the slicer write arcs in the plane of X and Y, or lines alone</source>
         <translation>les arcs sont dans le plan de X et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>arcs are in the plane of Y and Z; let the slicer write arcs in the plane of X and Y, or lines alone</source>
         <translation>les arcs sont dans le plan de Y et Z ; faites écrire au trancheur des arcs dans le plan de X et Y, ou seulement des lignes</translation>
     </message>
@@ -6307,7 +6307,7 @@
         <translation>largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>bead {0} begins again; keep the lines of a bead together</source>
         <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
@@ -6462,7 +6462,7 @@
         <translation>cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>check it where it was drawn (Part, Check geometry), and draw those faces again or sew them</source>
         <translation>vérifiez-le là où il a été dessiné (Part, Vérifier la géométrie), et redessinez ou cousez ces faces</translation>
     </message>
@@ -6602,7 +6602,7 @@
         <translation>contours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/region.py"/>
+        <location filename="../../freecad_am/core/geometry/regions/region.py"/>
         <source>contours that cross or touch were mended; {0} mm^2 changed</source>
         <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
     </message>
@@ -6692,7 +6692,7 @@
         <translation>les sorties numériques vont de 1 à {0}, pas {1} ; utilisez l&apos;une d&apos;elles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>direct moves of steppers are not known</source>
         <translation>les mouvements directs des moteurs pas à pas ne sont pas connus</translation>
     </message>
@@ -6717,7 +6717,7 @@
         <translation>bas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>draw it apart there, or let it overlap there and fuse it (Part, Boolean)</source>
         <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
     </message>
@@ -6762,12 +6762,12 @@
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>faces of the solid do not meet along their edges</source>
         <translation>des faces du solide ne se joignent pas le long de leurs arêtes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/triangle_mesh.py"/>
         <source>faces of the wall&apos;s mesh turn opposite ways: orient the faces alike</source>
         <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
     </message>
@@ -6797,7 +6797,7 @@
         <translation>élément à déposer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>fill holes (Mesh, Close holes) or export it again</source>
         <translation>bouchez les trous (Mesh, Fermer les trous) ou exportez-le de nouveau</translation>
     </message>
@@ -6912,7 +6912,7 @@
         <translation>donnez une grandeur en {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>give absolute or relative moves in mm, G0 to G3 with E, as a slicer for filament or pellets writes them</source>
         <translation>donnez des mouvements absolus ou relatifs en mm, G0 à G3 avec E, comme les écrit un trancheur pour filament ou granulés</translation>
     </message>
@@ -6997,7 +6997,7 @@
         <translation>de quelque façon que l&apos;outil soit incliné, la buse touche substrat, montage, plateau ou dépôt en {0} point(s) des couches {1} à {2} ; utilisez une buse plus fine, un plus grand build_direction.max_tilt ou une autre place pour ce qui gêne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>i, j, k are 0; give a direction, such as 0, 0, 1</source>
         <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
@@ -7137,7 +7137,7 @@
         <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>it cuts itself: {0} pairs of its triangles cross, for instance at {1}, so that what is inside is not known; fuse what overlaps where the part was drawn, or repair the mesh (Mesh, Analyze, Self-intersections)</source>
         <translation>il se coupe lui-même : {0} paires de ses triangles se croisent, par exemple en {1}, de sorte que l&apos;intérieur n&apos;est pas connu ; fusionnez ce qui se recouvre là où la pièce a été dessinée, ou réparez le maillage (Mesh, Analyser, Auto-intersections)</translation>
     </message>
@@ -7217,7 +7217,7 @@
         <translation>il finit dans une boucle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>it extrudes before the program says where: X, Y and Z are to be told first; {0}</source>
         <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
     </message>
@@ -7317,7 +7317,7 @@
         <translation>il n&apos;a pas de points ; il n&apos;y a rien à jouer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>it has no points; {0}</source>
         <translation>il n&apos;a pas de points ; {0}</translation>
     </message>
@@ -7367,7 +7367,7 @@
         <translation>il a {0} axes, dont {1} linéaires ; un robot planifiable en a six rotatifs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>it has {0} columns; {1}</source>
         <translation>il a {0} colonnes ; {1}</translation>
     </message>
@@ -7382,7 +7382,7 @@
         <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>it has {0} numbers in place of {1}; fill the gap, or leave the line out</source>
         <translation>elle a {0} nombres au lieu de {1} ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
@@ -7487,7 +7487,7 @@
         <translation>il est vide ; exportez les points de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>it is empty; fill the gap, or leave the line out</source>
         <translation>elle est vide ; remplissez le vide, ou enlevez la ligne</translation>
     </message>
@@ -7527,7 +7527,7 @@
         <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>it is in inches; let the slicer write mm (G21)</source>
         <translation>il est en pouces ; faites écrire des mm au trancheur (G21)</translation>
     </message>
@@ -7622,7 +7622,7 @@
         <translation>ce n&apos;est pas un projet en millimètres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/ada3dp.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>it is not a toolpath of AdaOne, or it is damaged ({0}); export it again</source>
         <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
     </message>
@@ -7792,7 +7792,7 @@
         <translation>son code ne va pas de begin à end</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>its columns are {0}; {1}</source>
         <translation>ses colonnes sont {0} ; {1}</translation>
     </message>
@@ -8307,7 +8307,7 @@
         <translation>près d&apos;une singularité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>neighbouring triangles face opposite ways, for instance at {0}; turn them alike (Mesh, Harmonize normals)</source>
         <translation>des triangles voisins regardent en sens opposés, par exemple en {0} ; tournez-les pareillement (Mesh, Harmoniser les normales)</translation>
     </message>
@@ -8422,7 +8422,7 @@
         <translation>aucune machine connue n’est de {0} ; les titres commencent par {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>no move of it extrudes, so there is no bead; {0}</source>
         <translation>aucun de ses mouvements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
     </message>
@@ -8452,7 +8452,7 @@
         <translation>aucune section là où il repose</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/ada3dp.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>no segment of it deposits, so there is no bead; export a toolpath that deposits</source>
         <translation>aucun de ses segments ne dépose, il n&apos;y a donc pas de cordon ; exportez une trajectoire qui dépose</translation>
     </message>
@@ -8812,7 +8812,7 @@
         <translation>points de la couche {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>points up to {0} mm apart were made one</source>
         <translation>des points écartés de {0} mm au plus ont été confondus</translation>
     </message>
@@ -8912,7 +8912,7 @@
         <translation>refuser</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>repair the mesh (Mesh, Analyze)</source>
         <translation>réparez le maillage (Mesh, Analyser)</translation>
     </message>
@@ -9052,7 +9052,7 @@
         <translation>glisse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/region.py"/>
+        <location filename="../../freecad_am/core/geometry/regions/region.py"/>
         <source>slivers of {0} mm^2 were dropped</source>
         <translation>des éclats de {0} mm^2 ont été écartés</translation>
     </message>
@@ -9062,7 +9062,7 @@
         <translation>lisse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/region.py"/>
+        <location filename="../../freecad_am/core/geometry/regions/region.py"/>
         <source>solids are filled with the Python package shapely (1.8 or newer), which is not installed; on Debian: apt-get install python3-shapely, elsewhere: pip install shapely</source>
         <translation>les solides sont remplis avec le paquet Python shapely (1.8 ou plus récent), qui n&apos;est pas installé ; sous Debian : apt-get install python3-shapely, ailleurs : pip install shapely</translation>
     </message>
@@ -9112,7 +9112,7 @@
         <translation>spirale</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>splines are not known; let the slicer write lines and arcs</source>
         <translation>les splines ne sont pas connues ; faites écrire des lignes et des arcs au trancheur</translation>
     </message>
@@ -9312,7 +9312,7 @@
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>the ends of the arc are {0} and {1} mm from its middle; give I and J from its start to its middle</source>
         <translation>les extrémités de l&apos;arc sont à {0} et {1} mm de son centre ; donnez I et J de son début à son centre</translation>
     </message>
@@ -9587,42 +9587,42 @@
         <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh encloses nothing; export the solid again</source>
         <translation>le maillage n&apos;enferme rien ; exportez le solide de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>the mesh has a hole</source>
         <translation>le maillage a un trou</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; up to strategy.mend, {4} mm, holes are closed; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; jusqu&apos;à strategy.mend, {4} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; up to strategy.mend, {3} mm, holes are closed; fill holes (Mesh, Close holes) or export it again, or deposit it as a wall if it is one</source>
         <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; jusqu&apos;à strategy.mend, {3} mm, les trous sont fermés ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh has no inside, as at {0}; model the solid again</source>
         <translation>le maillage n&apos;a pas d&apos;intérieur, comme en {0} ; modélisez le solide de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>the mesh has no triangles, or points that are no numbers; export it again</source>
         <translation>le maillage n&apos;a pas de triangles, ou des points qui ne sont pas des nombres ; exportez-le de nouveau</translation>
     </message>
@@ -9712,7 +9712,7 @@
         <translation>le plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>the point is that of the line before; leave it out</source>
         <translation>le point est celui de la ligne d&apos;avant ; enlevez-le</translation>
     </message>
@@ -9872,7 +9872,7 @@
         <translation>le solide finit après une section</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>the solid is turned inside out (volume {0} mm3, near {1}); flip its normals (Mesh, Flip normals)</source>
         <translation>le solide est retourné (volume {0} mm3, près de {1}) ; inversez ses normales (Mesh, Inverser les normales)</translation>
     </message>
@@ -9887,7 +9887,7 @@
         <translation>le solide dépasse la fin de l&apos;axe du moyeu, en {0}, là où les surfaces équidistantes ont un sommet ou une fin ; faites-le finir à côté de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>the solid touches itself along an edge, so that its inside is not known</source>
         <translation>le solide se touche lui-même le long d’une arête, si bien que son intérieur est inconnu</translation>
     </message>
@@ -10047,7 +10047,7 @@
         <translation>la paroi se coupe elle-même en {0} ({1}) ; un coude doit avoir un plus grand rayon que le tube, et les faces ne doivent pas se croiser</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>the wall cuts itself: {0} pairs of its triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid</source>
         <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide</translation>
     </message>
@@ -10347,12 +10347,12 @@
         <translation>cette paroi n&apos;a pas de paramètre fermé dont les lignes puissent guider des couches (plusieurs faces, ouvertures, un côté ou une extrémité oblique) ; utilisez constant-distance ou smooth</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>three or more triangles share an edge</source>
         <translation>trois triangles ou plus partagent une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>three or more triangles share an edge: {0} edges, the first at {1}; repair the mesh (Mesh, Analyze)</source>
         <translation>trois triangles ou plus partagent une arête : {0} arêtes, la première en {1} ; réparez le maillage (Mesh, Analyser)</translation>
     </message>
@@ -10387,7 +10387,7 @@
         <translation>les axes de l&apos;outil sont {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>tool lengths are not known; let the slicer leave them out</source>
         <translation>les longueurs d&apos;outil ne sont pas connues ; faites-les omettre par le trancheur</translation>
     </message>
@@ -10462,7 +10462,7 @@
         <translation>ramenés jusqu&apos;à {0} deg pour rester dans build_direction.max_tilt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>turned coordinates are not known; let the slicer leave them out</source>
         <translation>les coordonnées tournées ne sont pas connues ; faites-les omettre par le trancheur</translation>
     </message>
@@ -10642,7 +10642,7 @@
         <translation>avec TRAORI un mouvement demande X Y Z A3 B3 C3 F, G94, FGROUP, ORIWKS et un décalage d&apos;origine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>with edges of {0} mm, a layer height, the mesh of the wall has more than {1} triangles; use a larger layer height, or deposit the wall in parts</source>
         <translation>avec des arêtes de {0} mm, une hauteur de couche, le maillage de la paroi a plus de {1} triangles ; prenez des couches plus hautes, ou déposez la paroi en plusieurs parties</translation>
     </message>
@@ -10892,7 +10892,7 @@
         <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} edges of more than two triangles were divided, as at {1}</source>
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
     </message>
@@ -10952,7 +10952,7 @@
         <translation>{0} a des arêtes et pas de faces ; elles sont déposées comme cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/gcode.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} has neither I and J nor R; an arc needs its middle or its radius</source>
         <translation>{0} n&apos;a ni I et J ni R ; un arc a besoin de son centre ou de son rayon</translation>
     </message>
@@ -10997,7 +10997,7 @@
         <translation>{0} contient {1} solides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} holes were closed, the largest {1} mm across at {2}</source>
         <translation>{0} trous ont été bouchés, le plus grand large de {1} mm en {2}</translation>
     </message>
@@ -11317,7 +11317,7 @@
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>{0} is not a number; give {1} as a number with a point</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1} comme nombre à point décimal</translation>
     </message>
@@ -11577,7 +11577,7 @@
         <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curve_table.py"/>
+        <location filename="../../freecad_am/core/geometry/curves/curve_table.py"/>
         <source>{0} is {1}; give a number of at most {2}</source>
         <translation>{0} est {1} ; donnez un nombre d&apos;au plus {2}</translation>
     </message>
@@ -11622,7 +11622,7 @@
         <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} missing triangles were put in</source>
         <translation>{0} triangles manquants ont été ajoutés</translation>
     </message>
@@ -11637,7 +11637,7 @@
         <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/file_unit.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
         <source>{0} mm is no unit; give the length of one unit of the file, as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
     </message>
@@ -11802,12 +11802,12 @@
         <translation>{0} paires de points ; donnez-en trois ou plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} pairs of triangles cross, as at {1}, and what any of them enclose counts as inside</source>
         <translation>{0} paires de triangles se croisent, par exemple en {1}, et ce que l&apos;un d&apos;eux enferme compte comme intérieur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} pieces that enclose nothing were dropped</source>
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
     </message>
@@ -11877,7 +11877,7 @@
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} solids were inside out and were turned</source>
         <translation>{0} solides étaient retournés et ont été remis à l&apos;endroit</translation>
     </message>
@@ -11902,7 +11902,7 @@
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/file_unit.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
         <source>{0} tells its unit itself; leave out the scale, it is for STL and OBJ</source>
         <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
     </message>
@@ -11917,17 +11917,17 @@
         <translation>{0} qui est sur la bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} triangles that were there twice were dropped</source>
         <translation>{0} triangles présents en double ont été écartés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} triangles were turned to agree with their neighbours</source>
         <translation>{0} triangles ont été retournés pour s&apos;accorder avec leurs voisins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_repair.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} triangles without an area were dropped</source>
         <translation>{0} triangles sans surface ont été écartés</translation>
     </message>
@@ -12092,12 +12092,12 @@
         <translation>{0} : ce qui porte la pièce à côté du robot demande l&apos;outil sur le robot ; utilisez setup : {1}, ou omettez external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/mesh_wall.py"/>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>{0}: where facets meet at an angle the wall runs smoothly, up to {1} mm off them, at {2}</source>
         <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/solid_mesh.py"/>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0}: {1} edges, the first at {2}; {3}</source>
         <translation>{0} : {1} arêtes, la première en {2} ; {3}</translation>
     </message>
