@@ -231,6 +231,15 @@ class Person:
         red, green, blue = self.picture().T
         return int(((blue > red + 60) & (blue > green + 30)).sum()), int(((red > blue + 60) & (green > blue + 60)).sum())
 
+    def path_is_seen(self):
+        """Wait until the first and the last layers are in the picture, which a busy machine draws late."""
+        def both():
+            counts.append(self.path_pixels())
+            return counts[-1][0] > 200 and counts[-1][1] > 100
+
+        counts = []
+        self.until(both, "a path in blue and yellow", 10)
+
     def screenshot(self, name):
         """The whole screen, kept where ROBOTIC_AM_PICTURES says."""
         folder = os.environ.get("ROBOTIC_AM_PICTURES")
