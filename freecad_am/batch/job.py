@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics import urdf_reference
+from freecad_am.core.kinematics import calibration, urdf_reference
 from freecad_am.core.parameters import external
 from freecad_am.core.parameters import field as f
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -166,8 +166,10 @@ def _machine(value: Any, path: str) -> Any:
     """What `cell.machine` says, the path of a file made absolute: of a machine file, or of a URDF with the links meant."""
     key = "cell.machine"
     if isinstance(value, dict) and value:
-        fields.known_keys(value, ("file", "base", "tip"), key)
+        fields.known_keys(value, ("file", "base", "tip", "name", "calibration"), key)
         texts = {name: fields.text(one, f"{key}.{name}").strip() for name, one in value.items() if one is not None}
+        if "calibration" in texts or "name" in texts:
+            return _calibrated(texts, path)
         if "file" not in texts:
             raise InputError("BAD_VALUE", f"{key}.file", "there is no file; write machine: {file: robot.urdf}")
         meant = urdf_reference.reference(texts["file"])
@@ -179,10 +181,21 @@ def _machine(value: Any, path: str) -> Any:
         return str(urdf_reference.Reference(absolute(meant.file, path), texts.get("base"), texts.get("tip")))
     if not isinstance(value, str):
         return value
+    measured = calibration.named(value)
+    if measured is not None:
+        return _calibrated({"name": measured.machine, "calibration": measured.file}, path)
     meant = urdf_reference.reference(value)
     if meant is not None:
         return str(dataclasses.replace(meant, file=absolute(meant.file, path)))
     return absolute(value, path) if os.sep in value or value.lower().endswith(".json") else value
+
+
+def _calibrated(texts: dict[str, str], path: str) -> str:
+    """A machine with the calibration of one robot as the text that a cell keeps."""
+    if set(texts) != {"name", "calibration"}:
+        raise InputError("BAD_VALUE", "cell.machine", "a calibration is that of a machine; write machine: {name: ur-ur10e, "
+                         "calibration: my_robot.yaml}")
+    return str(calibration.Named(_machine(texts["name"], path), absolute(texts["calibration"], path)))
 
 
 def _external(value: Any, path: str) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,8 +32,4 @@ class Cell(Stage):
         return work
 
     def further_inputs(self, obj: Any) -> list[str]:
-        path = user_machines.file_of(obj.Machine)
-        if path is None:
-            return []
-        with open(path, "rb") as file:
-            return [hashlib.sha256(file.read()).hexdigest()]
+        return [hashlib.sha256(Path(path).read_bytes()).hexdigest() for path in user_machines.files_of(obj.Machine)]

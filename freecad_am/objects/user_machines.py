@@ -9,7 +9,7 @@ import os
 import FreeCAD as App
 
 from ..core.issues import InputError
-from ..core.kinematics import machine, urdf_reference
+from ..core.kinematics import calibration, machine, urdf_reference
 from . import preferences
 
 FOLDER = os.path.join("RoboticAM", "machines")
@@ -40,8 +40,11 @@ def save(name: str, text: str) -> str:
     return path
 
 
-def file_of(name: str) -> str | None:
-    """The user's file of a machine given by its id or by a path; None for a built-in or unknown one."""
+def files_of(name: str) -> list[str]:
+    """The user's files that a machine given by its id or by a path is made of; none of a built-in or unknown one."""
+    measured = calibration.named(name)
+    if measured is not None:
+        return [*files_of(measured.machine), *([measured.file] if os.path.isfile(measured.file) else [])]
     meant = urdf_reference.reference(name)
     candidates = [name if meant is None else meant.file, *(os.path.join(folder, f"{name}.json") for folder in folders())]
-    return next((path for path in candidates if os.path.isfile(path)), None)
+    return [path for path in candidates if os.path.isfile(path)][:1]

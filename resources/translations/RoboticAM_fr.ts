@@ -6442,6 +6442,11 @@
         <translation>annulé ; recalculez</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <source>cannot be read as a calibration: {0}</source>
+        <translation>ne peut pas être lu comme étalonnage : {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
         <source>cannot be read as a machine file: {0}</source>
         <translation>ne peut pas être lu comme un fichier machine : {0}</translation>
@@ -7692,6 +7697,11 @@
         <translation>les attentes sont autres que planifié</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <source>it is {0} mm and {1} deg from where the machine file has this joint, which is more than a calibration corrects; name the machine that it is of</source>
+        <translation>elle est à {0} mm et {1} deg de l&apos;endroit où le fichier de machine place cette articulation, plus qu&apos;un étalonnage ne corrige ; nommez la machine dont il s&apos;agit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/wire.py"/>
         <source>it is {0} mm off the plane of the wire and its axis; draw the wire in a plane that holds the axis</source>
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
@@ -8702,7 +8712,7 @@
         <translation>ouverte, {:.1f} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>opw gives</source>
         <translation>opw donne</translation>
     </message>
@@ -9452,7 +9462,7 @@
         <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>the joint frames give</source>
         <translation>les repères articulaires donnent</translation>
     </message>
@@ -9485,6 +9495,11 @@
         <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
         <source>the key {0} is not known; use {1}</source>
         <translation>la clé {0} n&apos;est pas connue ; utilisez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <source>the key {0} is there twice</source>
+        <translation>la clé {0} s&apos;y trouve deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc_read.py"/>
@@ -9727,7 +9742,7 @@
         <translation>les points s&apos;étendent sur {0} mm, {1} sur {2} mm ; vérifiez l&apos;unité du fichier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>the pose at all zeros is missing</source>
         <translation>la pose à zéro de tous les axes manque</translation>
     </message>
@@ -10167,7 +10182,7 @@
         <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>there are {0}; a machine needs at least 3 joint vectors with their flange poses</source>
         <translation>il y en a {0} ; une machine demande au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
     </message>
@@ -10200,6 +10215,11 @@
         <location filename="../../freecad_am/core/planning/program.py"/>
         <source>there is no bead {0} in a layer {1}; the job has layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; le travail a les couches 0 à {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <source>there is no calibration {0}</source>
+        <translation>il n&apos;y a pas d&apos;étalonnage {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
@@ -10335,6 +10355,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>this is xacro; make a URDF of it first, with the program xacro of ROS</source>
         <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <source>this key is missing; give the file as ur_calibration wrote it</source>
+        <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/words.py"/>
@@ -10732,7 +10757,7 @@
         <translation>{0} (et {1} couches de solides de plus)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>{0} a flange {1} mm and {2} (largest entry of the rotation) from it; correct the geometry or the pose</source>
         <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
     </message>
@@ -11137,7 +11162,7 @@
         <translation>{0} manque ; choisissez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <location filename="../../freecad_am/core/kinematics/check_poses.py"/>
         <source>{0} is more than the rounding of a display leaves; give 0 to {1}</source>
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
     </message>
@@ -11277,6 +11302,11 @@
         <translation>{0} n&apos;est aucun de {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
+        <source>{0} is not `key: value`; give the file as ur_calibration wrote it</source>
+        <translation>{0} n&apos;est pas de la forme `clé: valeur` ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>{0} is not a branch; use [front|back, up|down, flip|noflip] or auto</source>
         <translation>{0} n&apos;est pas une branche ; utilisez [front|back, up|down, flip|noflip] ou auto</translation>
@@ -11302,7 +11332,7 @@
         <translation>{0} n&apos;est pas une liste de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machine_file.py"/>
+        <location filename="../../freecad_am/core/kinematics/calibration.py"/>
         <source>{0} is not a number</source>
         <translation>{0} n&apos;est pas un nombre</translation>
     </message>
@@ -11900,6 +11930,11 @@
         <location filename="../../freecad_am/brep/patch_wall.py"/>
         <source>{0} starts in {1} curves, about {2}: layers grow from all of them; choose the edges to start from if only some are meant</source>
         <translation>{0} commence en {1} courbes, vers {2} : les couches croissent à partir de toutes ; choisissez les arêtes de départ si seules certaines sont voulues</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machine.py"/>
+        <source>{0} takes no calibration; those of Universal Robots do: leave it out</source>
+        <translation>{0} n&apos;admet pas d&apos;étalonnage ; seuls les robots d&apos;Universal Robots en ont un : omettez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>

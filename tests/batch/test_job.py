@@ -141,7 +141,19 @@ def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
         assert job.cell.machine == f"{tmp_path / file}{links}"
 
 
+def test_a_calibration_is_beside_the_job(read, tmp_path):
+    for written, named in (
+        ("{name: ur-ur10e, calibration: my/robot.yaml}", "ur-ur10e"), ("ur-ur10e calibration=my/robot.yaml", "ur-ur10e"),
+        ("{name: my/arm.json, calibration: my/robot.yaml}", f"{tmp_path}/my/arm.json"),
+    ):
+        job = read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
+        assert job.cell.machine == f"{named} calibration={tmp_path}/my/robot.yaml"
+
+
 @pytest.mark.parametrize("written,where,words", [
+    ("{calibration: my.yaml}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
+    ("{name: ur-ur10e}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
+    ("{file: arm.urdf, calibration: my.yaml}", "cell.machine", "write machine: {name: ur-ur10e, calibration"),
     ("{base: base_link}", "cell.machine.file", "write machine: {file: robot.urdf}"),
     ("{file: arm.json}", "cell.machine.file", "arm.json is no URDF"),
     ("{file: arm.urdf, top: tool0}", "cell.machine.top", "there is no key 'top'; did you mean tip"),

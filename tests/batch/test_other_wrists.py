@@ -10,6 +10,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics import machine
 from freecad_am.kdl.chain import KdlArm
 from tests.batch.test_plan_command import deposit
+from tests.core.kinematics.test_calibration import FILE
 
 pytest.importorskip("PyKDL")
 
@@ -20,12 +21,16 @@ cell: {{machine: {machine}, platform_diameter: 100 mm, {cell}}}
 joints: {{method: layer-by-layer}}
 program: {{post: {post}}}
 """
-POINTS = {"ur-ur10e": (700.0, 0.0, 300.0), "fanuc-crx10ia": (710.0, 0.0, 839.0)}
-CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]"), ("fanuc-crx10ia", "[front, up, noflip]")]
+CALIBRATED = "ur-ur10e calibration=robot.yaml"
+POINTS = {"ur-ur10e": (700.0, 0.0, 300.0), CALIBRATED: (700.0, 0.0, 300.0), "fanuc-crx10ia": (710.0, 0.0, 839.0)}
+CELLS = [("ur-ur10e", "auto"), ("ur-ur10e", "[front, up, flip]"), (CALIBRATED, "[front, up, flip]"),
+         ("fanuc-crx10ia", "[front, up, noflip]")]
 
 
 @pytest.mark.parametrize(("name", "branch"), CELLS, ids=[f"{name} {branch.split(',')[0]}" for name, branch in CELLS])
-def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branch):
+def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branch, monkeypatch):
+    monkeypatch.chdir(workshop.folder)
+    (workshop.folder / "robot.yaml").write_text(FILE, encoding="utf-8")
     point = POINTS[name]
     cell = f"deposition_point: [{', '.join(map(str, point))}, 0, 0, 0], branch: {branch}"
     workshop.write_job(JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "ur"))

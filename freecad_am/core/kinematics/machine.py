@@ -10,18 +10,19 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..geometry import frames
 from ..geometry.frames import Array
 from ..issues import InputError
-from . import urdf_machine
+from . import calibration, check_poses, urdf_machine
 from .chain import Chain
 from .inverse import recognition
+from .inverse.calibrated import CalibratedArm
+from .inverse.parallel_axes import ParallelAxesArm
 from .inverse.serial_arm import SerialArm
 from .limits import Limits
 from .link_shape import LinkShape, link_shapes
@@ -38,9 +39,6 @@ KEYS = (
     "id", "title", "sources", "remarks", "joints", "flange", "base", "opw", "controller", "limits", "reach", "payload",
     "verified", "check_poses", "shapes",
 )
-# what rounding of the check poses may leave: mm, and entries of a rotation
-POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
-MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,13 +145,16 @@ def _title(path: Path) -> str:
 
 
 def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
-    """The machine of an id, of the path of a machine file, or of a URDF (`urdf_machine.Reference`). A file of the user's
-    `folders` goes before a built-in one.
+    """The machine of an id, of the path of a machine file, with the calibration of one robot (`calibration.Named`) or
+    without, or of a URDF (`urdf_machine.Reference`). A file of the user's `folders` goes before a built-in one.
 
     Raises InputError: UNKNOWN_MACHINE when there is none; BAD_MACHINE, naming file, key and value, when the file is
-    wrong or does not give its own check poses; BAD_URDF, and NO_CLOSED_FORM with the reason.
+    wrong or does not give its own check poses; BAD_CALIBRATION; BAD_URDF, and NO_CLOSED_FORM with the reason.
     """
     text = str(name)
+    measured = calibration.named(text)
+    if measured is not None:
+        return _calibrated(load(measured.machine, folders), Path(measured.file).expanduser())
     if text.lower().endswith(".json"):
         path = Path(text).expanduser()
         if not path.is_file():
@@ -245,8 +246,19 @@ def _parse(top: Node) -> Machine:
     rates = (machine.max_speed, machine.max_acceleration, machine.max_jerk)
     for array in (machine.base, *rates, machine.controller_matrix, machine.controller_offset):
         array.flags.writeable = False
-    _check(machine, top["check_poses"])
+    check_poses.check(chain, machine.opw, top["check_poses"])
     return machine
+
+
+def _calibrated(machine: Machine, path: Path) -> Machine:
+    """The machine with the joint frames that were measured of one robot, and the inverse of these."""
+    if not isinstance(machine.arm, ParallelAxesArm):
+        raise InputError("BAD_CALIBRATION", "cell.machine", f"{machine.title} takes no calibration; those of Universal "
+                         "Robots do: leave it out")
+    poses, robot = calibration.read(path)
+    chain = calibration.calibrated(machine.chain, machine.base, poses, path)
+    told = f"{path.name} ({robot})" if robot else path.name
+    return replace(machine, chain=chain, arm=CalibratedArm(machine.arm, chain), sources=(*machine.sources, told))
 
 
 def _of_urdf(meant: Reference) -> Machine:
@@ -357,43 +369,3 @@ def _limits(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limit
         labels=axes + tuple(row["label"].text() for row in coupled),
         source=node["source"].text(),
     )
-
-
-def _check(machine: Machine, node: Node) -> None:
-    """Refuse a file whose check poses are not those of its own geometry."""
-    poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
-    if len(poses) < 3:
-        raise node.bad(f"there are {len(poses)}; a machine needs at least 3 joint vectors with their flange poses")
-    q = np.array([pose["q"].numbers(len(machine.axes)) for pose in poses]) * machine.unit_values
-    if not (q == 0.0).all(axis=1).any():
-        raise node.bad("the pose at all zeros is missing")
-    wanted = np.stack([frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses])
-    allowed = np.array([_within(pose) for pose in poses])
-    solvers = {"the joint frames give": machine.chain.forward}
-    if machine.opw is not None:
-        solvers["opw gives"] = machine.opw.forward
-    for solver_gives, forward in solvers.items():
-        off = np.abs(forward(q) - wanted)
-        position, rotation = off[:, :3, 3].max(axis=1), off[:, :3, :3].max(axis=(1, 2))
-        wrong = (position > allowed[:, 0]) | (rotation > allowed[:, 1])
-        if wrong.any():
-            index = int(np.argmax(wrong))
-            raise poses[index].bad(
-                f"{solver_gives} a flange {position[index]:.6g} mm and "
-                f"{rotation[index]:.3g} (largest entry of the rotation) from it; correct the geometry or the pose"
-            )
-
-
-def _within(pose: Node) -> tuple[float, float]:
-    """How far the rounding of a check pose may leave it, mm and as entries of the rotation: what `within` says of one
-    that was read from a display."""
-    if not pose.has("within"):
-        return POSITION_TOLERANCE, ROTATION_TOLERANCE
-    node = pose["within"].only("mm", "deg")
-    found = []
-    for key, most in zip(("mm", "deg"), MOST_ROUNDING, strict=True):
-        value = node[key].number()
-        if not 0.0 <= value <= most:
-            raise node[key].bad(f"{value:g} is more than the rounding of a display leaves; give 0 to {most:g}")
-        found.append(value)
-    return max(found[0], POSITION_TOLERANCE), max(math.radians(found[1]), ROTATION_TOLERANCE)

@@ -16,8 +16,8 @@ import numpy as np
 from ..geometry import frames
 from ..geometry.frames import Array
 from ..issues import InputError
+from . import check_poses, machine_file, pendant, urdf_machine
 from . import machine as machines
-from . import machine_file, pendant, urdf_machine
 from .chain import Chain
 from .inverse.serial_arm import SerialArm
 from .link_shape import BASE, LinkShape
@@ -28,7 +28,7 @@ from .urdf import Description
 
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 # what the deviations of check poses are rounded up to, mm and deg, for the machine file
-_ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), machines.MOST_ROUNDING)
+_ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), check_poses.MOST_ROUNDING)
 
 
 @dataclass(frozen=True, eq=False)

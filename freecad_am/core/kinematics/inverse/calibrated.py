@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The inverse of an arm that is nearly one with a closed form: by its solutions, and Newton's method from there.
+
+A calibration takes axes that are parallel or meet a few hundredths of a degree and millimetres apart. The closed form of the
+machine file is that near, so that three or four steps are enough.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...geometry.frames import Array
+from ..chain import Chain
+from ..jacobian import jacobian
+from .serial_arm import SerialArm
+
+CHUNK = 2048
+STEPS, AGAIN = 16, 4  # steps at most, and after how many the Jacobian is found again
+ASIDE = 5.0  # mm
+TINY = 1e-9
+LENGTH = 500.0  # mm that count as one rad
+SETTLED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
+NEAR = 2e-10  # left by rounding beside a singularity
+DAMPING = 1e-14
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class CalibratedArm:
+    """`chain` is the arm as it is, `near` the closed form of what it should be. Configurations are those of the closed form
+    for the same angles; within some millimetres of the stretched arm and some tenths of a degree of the wrist's singularity
+    solutions that only one of the two has are left out."""
+
+    near: SerialArm
+    chain: Chain
+
+    followed = False
+
+    @property
+    def shoulder(self) -> tuple[float, float]:
+        """How far axis 2 lies ahead of axis 1 and above base_link, mm; that of the closed form."""
+        return self.near.shoulder
+
+    @property
+    def reach(self) -> float:
+        """From axis 2 to the wrist of the stretched arm, mm; that of the closed form."""
+        return self.near.reach
+
+    def inverse(self, poses: ArrayLike) -> Array:
+        """Joint angles (8, n, 6) of all configurations for flange poses (n, 4, 4), in [-pi, pi]; NaN where not reached."""
+        given = np.asarray(poses, float)
+        return np.stack([self._brought(given, words) for words in range(8)])
+
+    def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
+        """Joint angles (n, 6) of one configuration; else as `inverse`."""
+        given = np.asarray(poses, float)
+        return self._brought(given, branch)
+
+    def solutions(self, poses: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
+        found = self.inverse(poses)
+        return found, np.where(np.isnan(found[..., 0]), -1, np.arange(len(found))[:, None])
+
+    def branch_of(self, q: ArrayLike) -> NDArray[np.intp]:
+        """The configuration (...) that joint angles `q` (..., 6) are in."""
+        return self.near.branch_of(q)
+
+    def bend(self, q: ArrayLike) -> Array:
+        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        return self.near.bend(q)
+
+    def _brought(self, poses: Array, words: int) -> Array:
+        """Angles (n, 6) of those words that give the poses (n, 4, 4), NaN where there are none."""
+        result = self._from(self.near.inverse_branch(poses, words), poses, words)
+        # where the closed form just does not reach: by what it finds a little nearer to the shoulder, or farther from axis 1
+        for inwards, outwards in ((ASIDE, 0.0), (0.0, ASIDE)):
+            lost = np.flatnonzero(np.isnan(result[:, 0]))
+            if not len(lost):
+                break
+            moved = poses[lost].copy()
+            place = moved[:, :3, 3]
+            ahead = place * (1.0, 1.0, 0.0)
+            place += outwards * ahead / np.linalg.norm(ahead + TINY, axis=1, keepdims=True)
+            towards = place - (0.0, 0.0, self.shoulder[1])
+            place -= inwards * towards / np.linalg.norm(towards + TINY, axis=1, keepdims=True)
+            result[lost] = self._from(self.near.inverse_branch(moved, words), poses[lost], words)
+        return result
+
+    def _from(self, start: Array, poses: Array, words: int) -> Array:
+        """Angles (n, 6) near `start` (n, 6) that give the poses, NaN where there are none of those words."""
+        result = np.full(start.shape, np.nan)
+        reached = np.flatnonzero(np.isfinite(start[:, 0]))
+        for first in range(0, len(reached), CHUNK):
+            rows = reached[first : first + CHUNK]
+            result[rows] = self._newton(start[rows].copy(), poses[rows])
+        result -= TURN * np.round(result / TURN)
+        result[self.near.branch_of(np.nan_to_num(result)) != words] = np.nan
+        return result
+
+    def _newton(self, q: Array, poses: Array) -> Array:
+        off = np.full(len(q), np.inf)
+        open_ = np.arange(len(q))
+        back = np.empty((len(q), 6, 6))
+        for step in range(STEPS):
+            flange, wanted = self.chain.forward(q[open_]), poses[open_]
+            error = np.empty((len(open_), 6))
+            error[:, :3] = (wanted[:, :3, 3] - flange[:, :3, 3]) / LENGTH
+            turned = wanted[:, :3, :3] @ np.swapaxes(flange[:, :3, :3], 1, 2)
+            for row, (following, last) in enumerate(((1, 2), (2, 0), (0, 1))):
+                error[:, 3 + row] = 0.5 * (turned[:, last, following] - turned[:, following, last])
+            off[open_] = np.sqrt(np.einsum("ni,ni->n", error, error))
+            left = off[open_] > SETTLED
+            if not left.any():
+                break
+            open_, error = open_[left], error[left]
+            if step % AGAIN == 0:
+                back[open_] = self._inverse_rates(q[open_], flange[left, :3, 3])
+            rates = np.einsum("nij,nj->ni", back[open_], error)
+            q[open_] += rates / np.maximum(1.0, np.abs(rates).max(axis=1, keepdims=True))  # no more than 1 rad at a time
+        q[~(off < NEAR)] = np.nan
+        return q
+
+    def _inverse_rates(self, q: Array, points: Array) -> Array:
+        """(n, 6, 6) what takes an error of the flange, at (n, 3), to angles; hardly damped, so that it stays finite beside a
+        singularity."""
+        rates = np.array(jacobian(self.chain, q, points))
+        rates[:, :3] /= LENGTH
+        across = np.swapaxes(rates, 1, 2)
+        product = across @ rates
+        product[:, range(6), range(6)] += DAMPING
+        found: Array = np.linalg.solve(product, across)
+        return found
