@@ -408,6 +408,16 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     return interop.write_wires(obj, path, rapids)
 
 
+def export_cell(cell: Any, path: str) -> str:
+    """Write a cell into a file of its own, which jobs name: `cell: my-cell.yaml`.
+
+    `am.export_cell(doc.Cell, "my-cell.yaml")`
+    """
+    from .interop import export as interop
+
+    return interop.write_cell(cell, path)
+
+
 def export_waypoints(obj: Any, path: str) -> str:
     """Write the points of a toolpath, joint path or program as a table, as the commands write waypoints.csv.
 

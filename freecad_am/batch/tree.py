@@ -45,8 +45,11 @@ class Tree:
         return InputError(error.code, self.where(error.where), self.with_line(error.where, error.message))
 
 
-def read(path: str) -> Tree:
-    """The file as a `Tree`. Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE."""
+def read(path: str, kind: str = "a job", least: str = "part: {file: ...}", keys: str = "part: and strategy:") -> Tree:
+    """The file as a `Tree`; `kind`, what it needs at `least` and its `keys` are for messages.
+
+    Raises InputError NO_FILE, EMPTY_FILE, BAD_FILE, DUPLICATE_KEY or BAD_VALUE.
+    """
     label = os.path.basename(path) or path
     text = text_of(path, label)
     import yaml
@@ -57,12 +60,12 @@ def read(path: str) -> Tree:
     except yaml.YAMLError as error:
         raise InputError("BAD_FILE", label, f"this is not YAML: {_one_line(error)}") from None
     except RecursionError:
-        raise InputError("BAD_FILE", label, "this is nested too deeply to be a job") from None
+        raise InputError("BAD_FILE", label, f"this is nested too deeply to be {kind}") from None
     if node is None:
-        raise InputError("EMPTY_FILE", label, "the file is empty; a job needs at least part: {file: ...}")
+        raise InputError("EMPTY_FILE", label, f"the file is empty; {kind} needs at least {least}")
     tree = Tree(label, {})
     if not isinstance(node, yaml.MappingNode):
-        raise InputError("BAD_FILE", label, "a job is a mapping of keys such as part: and strategy:")
+        raise InputError("BAD_FILE", label, f"{kind} is a mapping of keys such as {keys}")
     tree.values = _Reader(yaml, tree).mapping(node, "")
     return tree
 

@@ -9,12 +9,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..core.issues import InputError
+from ..core.parameters.cell import CellParameters
 from ..core.simulation import waypoints
-from . import cam_path, dxf, robot_trajectory, step_wires
+from . import cam_path, cell_file, dxf, robot_trajectory, step_wires
 from .lines import Line
 from .source import lines_of, motion_of
 
-STEP, DXF = (".step", ".stp"), (".dxf",)
+STEP, DXF, CELL = (".step", ".stp"), (".dxf",), (".yaml", ".yml")
 
 
 def write_wires(obj: Any, path: str, rapids: bool) -> str:
@@ -42,6 +43,24 @@ def write_waypoints(obj: Any, path: str) -> str:
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
             stream.writelines(waypoints.text(motion, columns, units))
+
+    return _whole(path, write)
+
+
+def write_cell(obj: Any, path: str) -> str:
+    """Write a cell as the file that jobs name; the path. The file appears whole or not at all.
+
+    Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE, and for what is no cell.
+    """
+    if os.path.splitext(path)[1].lower() not in CELL:
+        raise InputError("UNSUPPORTED_FILE", path, "cells are written as .yaml; end the name with it")
+    if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
+        raise InputError("WRONG_KIND", obj.Label, "this is no cell; choose one")
+    saved = cell_file.text(obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path)))
+
+    def write(unfinished: str) -> None:
+        with open(unfinished, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(saved)
 
     return _whole(path, write)
 

@@ -4,6 +4,7 @@
 import dataclasses
 import math
 import re
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -163,6 +164,30 @@ def test_a_urdf_is_named_with_file_and_links_alone(read, written, where, words):
     with pytest.raises(InputError) as found:
         read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
     assert where in found.value.where and words in found.value.message
+
+
+def test_a_cell_is_a_file_of_its_own(read, tmp_path):
+    whole = read(WHOLE.replace("machine: fanuc-arcmate120ic", "machine: hall/my/robot.json")).cell
+    section = WHOLE[WHOLE.index("cell:") :]
+    section = section[: section.index("joints:")]
+    (tmp_path / "hall").mkdir()
+    lines = textwrap.dedent(section.split("\n", 1)[1]).replace("machine: fanuc-arcmate120ic", "machine: my/robot.json")
+    (tmp_path / "hall" / "cell 3.yaml").write_text(lines, encoding="utf-8")
+    assert read(WHOLE.replace(section, "cell: hall/cell 3.yaml\n")).cell == whole
+
+
+@pytest.mark.parametrize(("text", "code", "where", "says"), [
+    ("", "EMPTY_FILE", "mine.yaml", "a cell needs at least machine:"),
+    ("- 1", "BAD_FILE", "mine.yaml", "a cell is a mapping"),
+    ("limits: maker\nplatform: 5 kg", "BAD_UNIT", "mine.yaml: cell.platform", "(line 2)"),
+    ("part: {file: part.step}", "UNKNOWN_KEY", "mine.yaml: cell.part", "there is no key 'part'"),
+    (None, "NO_FILE", "mine.yaml", "there is no such file"),
+])
+def test_a_broken_cell_file_is_told_by_its_own_place(read, tmp_path, text, code, where, says):
+    if text is not None:
+        (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    error = refused(read, "part: {file: part.step}\ncell: mine.yaml\n")
+    assert error.code == code and error.where.endswith(where) and says in error.message
 
 
 LINE = {key: number for number, line in enumerate(WHOLE.splitlines(), 1) for key in [line.split(":")[0].strip()]}

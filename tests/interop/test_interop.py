@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Paths for other programs: read back by FreeCAD and by readers of our own making, and compared with the beads."""
 
+import dataclasses
 import functools
 import math
 import os
@@ -11,9 +12,12 @@ import Part
 import pytest
 
 from freecad_am import api
+from freecad_am.batch import job_cell
 from freecad_am.core.geometry.frames import rotation_about
 from freecad_am.core.issues import InputError
+from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.interop.lines import Line, attitudes, of_motion, of_toolpath, thinned
+from tests.core.kinematics.test_calibration import FILE as calibrated_robot
 
 LABEL = "Hémisphère n° 1"
 
@@ -235,3 +239,32 @@ def test_only_paths_are_exported(job, tmp_path):
             call()
     with pytest.raises(InputError, match="not above 0"):
         api.make_trajectory(job, tolerance=0.0)
+
+
+def test_a_saved_cell_is_the_cell_again_where_jobs_name_it(tmp_path):
+    """Written from the document, read by the commands; files beside it are named from there, so that the folder can move."""
+    doc = App.newDocument("SavedCell")
+    (tmp_path / "robot 1.yaml").write_text(calibrated_robot, encoding="utf-8")
+    given = CellParameters(
+        machine=f"ur-ur10e calibration={tmp_path / 'robot 1.yaml'}", setup="tool-on-robot", branch="auto",
+        platform=(1.0, 2.0, 3.0, 0.1, -0.2, 0.3), platform_diameter=250.0, mount="part", world_up="0 0.5 1",
+        nozzle=NozzleParameters(half_angle=0.3, tool=(1.5, 0.0, 210.0, 0.0, 0.4, 0.0)),
+        external="motoman-motopos-d500 at 900 10.5 -200 0 0 30 carries part",
+    )
+    cell = api.make_cell(doc, parameters=given)
+    path = api.export_cell(cell, str(tmp_path / "hall.yaml"))
+    with open(path, encoding="utf-8") as stream:
+        assert str(tmp_path) not in stream.read()
+    again = job_cell.read("hall.yaml", str(tmp_path / "cup.yaml"))
+    assert api.make_cell(doc, parameters=again).Status == cell.Status == "up to date"
+    for field in ("platform", "nozzle"):
+        one, other = getattr(again, field), getattr(given, field)
+        one, other = (np.hstack(dataclasses.astuple(of) if field == "nozzle" else of) for of in (one, other))
+        assert np.allclose(one, other, atol=1e-12)
+    same = {"platform": given.platform, "nozzle": given.nozzle}
+    assert dataclasses.replace(again, **same) == dataclasses.replace(given, **same)
+    assert job_cell.read(api.export_cell(api.make_cell(doc), str(tmp_path / "usual.yaml")), "/") == CellParameters()
+    for wrong, where in ((cell, "cell.txt"), (doc.addObject("App::FeaturePython", "Nothing"), "cell.yaml")):
+        with pytest.raises(InputError):
+            api.export_cell(wrong, str(tmp_path / where))
+    App.closeDocument(doc.Name)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A cell as a file of its own, which jobs name: `cell: my-cell.yaml`."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import os
+from typing import Any
+
+from ..core.kinematics import calibration, urdf_reference
+from ..core.parameters import external
+from ..core.parameters import field as f
+from ..core.parameters.cell import CellParameters
+
+
+def text(cell: CellParameters, folder: str) -> str:
+    """The YAML of a cell, of what is not at its default alone, each key on a line; lengths in mm, angles in degrees. Files
+    within `folder`, where the cell file will be, are named from there."""
+    lines = [f"machine: {_machine(cell.machine, folder)}"]
+    usual = CellParameters()
+    for field in dataclasses.fields(cell):
+        value = getattr(cell, field.name)
+        if field.name in ("machine", "nozzle", "external", "world_up") or value == getattr(usual, field.name):
+            continue
+        lines.append(f"{field.name}: {_shown(value, f.spec_of(field).kind)}")
+    if cell.nozzle != usual.nozzle:
+        entries = [
+            f"{field.name}: {_shown(getattr(cell.nozzle, field.name), f.spec_of(field).kind)}"
+            for field in dataclasses.fields(cell.nozzle)
+            if getattr(cell.nozzle, field.name) != getattr(usual.nozzle, field.name)
+        ]
+        lines.append(f"nozzle: {{{', '.join(entries)}}}")
+    beside = external.externals(cell.external)
+    if beside:
+        lines.append("external:")
+        lines += [
+            f"- {{machine: {_machine(one.machine, folder)}, pose: {_shown(one.pose, f.POSE)}, carries: {one.carries}}}"
+            for one in beside
+        ]
+    if cell.world_up != usual.world_up:
+        lines.append(f"world_up: {_shown(cell.upward(), f.NUMBER)}")
+    return "\n".join(lines) + "\n"
+
+
+def _shown(value: Any, kind: str) -> str:
+    """A value in the units of a job file; numbers to what a float holds of them in degrees."""
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, (tuple, list)):
+        if value and isinstance(value[0], str):
+            return f"[{', '.join(value)}]"
+        kinds = [kind] * len(value) if len(value) != 6 else [f.LENGTH] * 3 + [f.ANGLE] * 3
+        return f"[{', '.join(_shown(one, of) for one, of in zip(value, kinds, strict=True))}]"
+    return f"{math.degrees(value) if kind == f.ANGLE else value:.15g}"
+
+
+def _machine(name: str, folder: str) -> str:
+    """What names a machine, as a job file says it."""
+    measured = calibration.named(name)
+    if measured is not None:
+        return f"{{name: {_machine(measured.machine, folder)}, calibration: {_file(measured.file, folder)}}}"
+    meant = urdf_reference.reference(name)
+    if meant is not None:
+        links = [f", {key}: {json.dumps(link)}" for key, link in (("base", meant.base), ("tip", meant.tip)) if link]
+        return f"{{file: {_file(meant.file, folder)}{''.join(links)}}}"
+    return _file(name, folder) if os.sep in name or name.lower().endswith(".json") else name
+
+
+def _file(path: str, folder: str) -> str:
+    inside = os.path.relpath(path, folder)
+    return json.dumps(path if inside.startswith(os.pardir) else inside, ensure_ascii=False)
