@@ -6467,6 +6467,11 @@
         <translation>cellule</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>cells are written as .yaml; end the name with it</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>check it where it was drawn (Part, Check geometry), and draw those faces again or sew them</source>
         <translation>vérifiez-le là où il a été dessiné (Part, Vérifier la géométrie), et redessinez ou cousez ces faces</translation>
@@ -10340,6 +10345,11 @@
         <location filename="../../freecad_am/core/kinematics/urdf.py"/>
         <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF</source>
         <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop/export.py"/>
+        <source>this is no cell; choose one</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
