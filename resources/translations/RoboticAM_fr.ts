@@ -6469,7 +6469,7 @@
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
         <source>cells are written as .yaml; end the name with it</source>
-        <translation type="unfinished"></translation>
+        <translation>les cellules sont écrites en .yaml ; terminez le nom ainsi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -10349,7 +10349,7 @@
     <message>
         <location filename="../../freecad_am/interop/export.py"/>
         <source>this is no cell; choose one</source>
-        <translation type="unfinished"></translation>
+        <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf_xml.py"/>
