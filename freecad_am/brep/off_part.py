@@ -15,7 +15,7 @@ import Part
 from numpy.typing import NDArray
 
 from ..core.collision.inside import inside_of
-from ..core.geometry.mesh.solid import SolidMesh
+from ..core.geometry.mesh.solid import Search, SolidMesh
 from ..core.geometry.surroundings import Body
 from .kernel_process import beside
 from .tessellate import triangles_of
@@ -41,26 +41,36 @@ def off_faces(shape: Any, names: Sequence[str], points: Array, allowed: float) -
     if not chosen:
         return np.full(len(points), np.nan)
     faces = Part.makeCompound([face.copy(False) for face in chosen])
-    found = np.abs(_by_triangles(faces, points))
+    found = np.abs(_Triangles(faces).signed(points))
     return _exact(faces, points, found, allowed + DEFLECTION, False)
 
 
 def off_solids(shape: Any, points: Array, allowed: float) -> Array:
     """Distances (n,) mm of points (n, 3) outside of the solids of a shape, 0 inside; as `off_faces`."""
-    solids = [solid.copy(False) for solid in shape.Solids or [shape]]
-    outside = np.maximum([_by_triangles(solid, points) for solid in solids], 0.0)
-    nearest = outside.argmin(axis=0)
-    found = outside.min(axis=0)
+    solids = shape.Solids or [shape]
+    found, nearest = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.intp)
+    made: list[tuple[Any, _Triangles]] = []
+    for number, solid in enumerate(solids):
+        first = next((entry for entry in made if _differs_by_place(entry[0], solid)), None)
+        if first is None:
+            mesh, seen = _Triangles(solid.copy(False)), points
+            made.append((solid, mesh))
+        else:
+            mesh, seen = first[1], _seen_from(first[0], solid, points)
+        mine = np.flatnonzero(mesh.box_off(seen) <= found)
+        away = np.maximum(mesh.signed(seen[mine]), 0.0)
+        closer = ~(away >= found[mine])  # NaN too: then nobody knows
+        found[mine[closer]], nearest[mine[closer]] = away[closer], number
     for number, solid in enumerate(solids):
         mine = np.flatnonzero(nearest == number)
-        found[mine] = _exact(solid, points[mine], found[mine], allowed + DEFLECTION, True)
+        found[mine] = _exact(solid.copy(False), points[mine], found[mine], allowed + DEFLECTION, True)
     return found
 
 
 def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
     """Distances (n,) mm of points (n, 3) outside of a closed mesh, 0 inside of any piece of it, whatever triangles of others
     cross that."""
-    away = _signed(vertices, triangles, points)
+    away = _signed(_searched(vertices, triangles), points)
     body = inside_of(Body("", vertices, triangles))
     if body is None:  # a hole that was closed: the side of the nearest triangle is all there is
         return np.maximum(away, 0.0)
@@ -69,21 +79,49 @@ def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Ar
 
 def off_facets(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
     """Distances (n,) mm of points (n, 3) from the triangles of a mesh, open or closed."""
-    found: Array = np.abs(_signed(vertices, triangles, points))
+    found: Array = np.abs(_signed(_searched(vertices, triangles), points))
     return found
 
 
-def _by_triangles(shape: Any, points: Array) -> Array:
-    return _signed(*beside(triangles_of, shape, DEFLECTION), points)
+def _differs_by_place(first: Any, solid: Any) -> bool:
+    return bool(first.isPartner(solid)) and first.Orientation == solid.Orientation
 
 
-def _signed(vertices: Array, triangles: Any, points: Array) -> Array:
-    """Distances (n,), NaN where the kernel makes no triangles of a shape."""
-    if not len(triangles):
-        return np.full(len(points), np.nan)
-    mesh = SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max()))
+def _seen_from(first: Any, solid: Any, points: Array) -> Array:
+    """Points (n, 3) at a solid, moved to where they are at the one that differs from it by its place alone."""
+    way = np.array(first.Placement.multiply(solid.Placement.inverse()).toMatrix().A).reshape(4, 4)
+    moved: Array = points @ way[:3, :3].T + way[:3, 3]
+    return moved
+
+
+class _Triangles:
+    """A shape as triangles, within DEFLECTION; distances are NaN where the kernel makes none of it."""
+
+    def __init__(self, shape: Any, deflection: float = DEFLECTION) -> None:
+        vertices, triangles = beside(triangles_of, shape, deflection)
+        self.search = _searched(vertices, triangles) if len(triangles) else None
+        self.box = (vertices.min(axis=0), vertices.max(axis=0)) if len(triangles) else None
+
+    def box_off(self, points: Array) -> Array:
+        """Distances (n,) mm of points (n, 3) from the box around the triangles, which are no nearer."""
+        if self.box is None:
+            return np.zeros(len(points))
+        low, high = self.box
+        off: Array = np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
+        return off
+
+    def signed(self, points: Array) -> Array:
+        """Distances (n,) mm of points (n, 3), negative inside."""
+        return np.full(len(points), np.nan) if self.search is None else _signed(self.search, points)
+
+
+def _searched(vertices: Array, triangles: Any) -> Search:
+    return SolidMesh(vertices, triangles).searched(0.01 * float(np.ptp(vertices, axis=0).max()))
+
+
+def _signed(search: Search, points: Array) -> Array:
     pieces = np.array_split(points, max(1, len(points) // PIECE))
-    return np.concatenate([mesh.signed(some)[0] for some in pieces])
+    return np.concatenate([search.signed(some)[0] for some in pieces])
 
 
 def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool) -> Array:
@@ -103,8 +141,7 @@ def _exact(shape: Any, points: Array, found: Array, allowed: float, solid: bool)
         except (RuntimeError, Part.OCCError):
             unsure.append(k)
     if unsure:
-        vertices, triangles = beside(triangles_of, shape, FINE)
-        finer = _signed(vertices, triangles, points[unsure])
+        finer = _Triangles(shape, FINE).signed(points[unsure])
         exact[unsure] = np.maximum((finer if solid else np.abs(finer)) - 2.0 * FINE, 0.0)
     return np.minimum(exact, np.fmax.reduce(exact[asked], initial=0.0))
 

@@ -64,6 +64,29 @@ def test_distances_outside_of_solids(rng):
     assert off_mesh(vertices, np.array(triangles), np.array([[5.0, 5, 5], [5, 5, 13]])) == pytest.approx([0.0, 3.0])
 
 
+def test_solids_that_differ_by_their_place_are_divided_once(rng, monkeypatch):
+    """Bars around an axis: distances are those in the frame of each, also where each is a shape of its own."""
+    bar, asked = Part.makeBox(20, 6, 10, Vector(30, -3, 0)), []
+    shared = [Part.Shape(bar) for _ in range(6)]
+    for number, solid in enumerate(shared):
+        solid.rotate(Vector(), Vector(0, 0, 1), 60.0 * number)
+        solid.translate(Vector(0, 0, number))
+    points = ring(rng, rng.uniform(20.0, 60.0, 150), -10.0, 20.0, 150)
+    off = []
+    for number in range(6):
+        c, s = np.cos(np.radians(60.0 * number)), np.sin(np.radians(60.0 * number))
+        local = points @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) - [40.0, 0, 5.0 + number]
+        off.append(np.linalg.norm(np.maximum(np.abs(local) - [10.0, 3.0, 5.0], 0.0), axis=1))
+    divide = off_part.triangles_of
+    monkeypatch.setattr(off_part, "triangles_of", lambda *given: asked.append(given) or divide(*given))
+    for solids, count in ((shared, 1), ([solid.copy() for solid in shared], 6)):
+        asked.clear()
+        found = off_solids(Part.makeCompound(solids), points, 0.5)
+        assert len(asked) == count
+        assert found == pytest.approx(np.min(off, axis=0), abs=1e-6 + off_part.DEFLECTION)
+        assert found.max() == pytest.approx(np.min(off, axis=0).max(), abs=1e-6)
+
+
 def test_distances_outside_of_a_mesh_that_cuts_itself(rng):
     """A rod that sticks in a block: next to its triangles in there the nearest one shows its outside, up to 8 mm away."""
     vertices, triangles = [], []
