@@ -2,6 +2,7 @@
 """Every text of the window can be translated, the French one is complete and current, and messages are recognised."""
 
 import ast
+import gc
 import json
 import math
 import re
@@ -36,7 +37,11 @@ NAMED = re.compile(r"\b(?:part|cell|strategy|build_direction|process|joints|prog
 
 @pytest.fixture(scope="module")
 def collected():
-    return collect.Collected()
+    gc.disable()  # it would look through the million nodes of the code again and again
+    try:
+        return collect.Collected()
+    finally:
+        gc.enable()
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ host.find_freecad()
 
 import FreeCAD  # noqa: E402, F401  first of all
 import ts_file  # noqa: E402
-from sources import ROOT, Code, Module, called, files, walked  # noqa: E402
+from sources import ROOT, Code, Module, called, calls_in, files, walked  # noqa: E402
 from templates import Templates  # noqa: E402
 
 from freecad_am.core import issues  # noqa: E402
@@ -79,7 +79,7 @@ class Collected:
 
     def _of_window(self, module: Module, place: str) -> None:
         """What is called `tr` or `marked`; texts of commands under the name of the command too, as FreeCAD wants them."""
-        for call in module.calls():
+        for call in calls_in(module.tree):
             if called(call) in ("tr", "marked") and call.args and isinstance(call.args[0], ast.Constant):
                 text = call.args[0].value
                 self.window.setdefault(text, place)

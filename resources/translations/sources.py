@@ -15,10 +15,30 @@ PACKAGE = ROOT / "freecad_am"
 Function = ast.FunctionDef
 
 
+def children(node: ast.AST) -> Iterator[ast.AST]:
+    """The nodes right below one, without the contexts of names (Load, Store), half of all nodes, which say nothing here."""
+    for name in node._fields:
+        value = getattr(node, name, None)
+        if isinstance(value, ast.AST):
+            if name != "ctx":
+                yield value
+        elif isinstance(value, list):
+            yield from (one for one in value if isinstance(one, ast.AST))
+
+
 @cache
 def walked(node: ast.AST) -> tuple[ast.AST, ...]:
     """All nodes of a tree or function, found once: the same are looked at again and again."""
-    return tuple(ast.walk(node))
+    found = [node]
+    for one in found:  # which grows meanwhile
+        found.extend(children(one))
+    return tuple(found)
+
+
+@cache
+def calls_in(node: ast.AST) -> tuple[ast.Call, ...]:
+    """All calls in a tree or function."""
+    return tuple(one for one in walked(node) if isinstance(one, ast.Call))
 
 
 class Module:
@@ -28,17 +48,11 @@ class Module:
         self.path = path
         self.tree = ast.parse(path.read_text(encoding="utf-8"))
         self.functions = [node for node in walked(self.tree) if isinstance(node, Function)]
-        self.around: dict[int, Function | None] = {}
-        self._place(self.tree, None)
-
-    def _place(self, node: ast.AST, function: Function | None) -> None:
-        for child in ast.iter_child_nodes(node):
-            self.around[id(child)] = function
-            self._place(child, child if isinstance(child, Function) else function)
-
-    def calls(self) -> Iterator[ast.Call]:
-        """All calls."""
-        return (node for node in walked(self.tree) if isinstance(node, ast.Call))
+        self.around: dict[int, Function | None] = {id(self.tree): None}
+        for node in walked(self.tree):
+            function = node if isinstance(node, Function) else self.around[id(node)]
+            for child in children(node):
+                self.around[id(child)] = function
 
 
 class Code:

@@ -11,10 +11,11 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from itertools import product
 from string import Formatter
 
-from sources import ROOT, Code, Function, Module, assigned, called, walked
+from sources import ROOT, Code, Function, Module, assigned, called, calls_in, walked
 
 # what of a call is told to the user: positions of its arguments
 MAKERS: dict[str, set[int]] = {
@@ -54,17 +55,15 @@ class Templates:
 
     def _telling(self, module: Module) -> Iterator[tuple[ast.AST, list[ast.expr]]]:
         """The nodes that tell something, calls and settings of a stage's message, with what they tell."""
-        for node in walked(module.tree):
-            if isinstance(node, ast.Call):
-                yield node, self._told(node)
-            elif isinstance(node, ast.Assign) and any(getattr(target, "attr", "") == PROPERTY for target in node.targets):
+        for node in _tellers(module.tree):
+            if isinstance(node, ast.Assign):
                 yield node, [node.value]
+            elif called(node) in self.makers:
+                yield node, self._told(node)
 
     def _told(self, call: ast.Call) -> list[ast.expr]:
         """The arguments of a call that are told."""
-        positions = self.makers.get(called(call))
-        if positions is None:
-            return []
+        positions = self.makers[called(call)]
         return [argument for at, argument in enumerate(call.args) if at in positions] + [
             keyword.value for keyword in call.keywords if keyword.arg in KEYWORDS
         ]
@@ -157,7 +156,7 @@ class Templates:
 
     def _filled(self, name: str, function: Function) -> Iterator[tuple[Module, Function, str]]:
         """The functions that get a list to put texts into, and what they call it."""
-        for call in (node for node in walked(function) if isinstance(node, ast.Call)):
+        for call in calls_in(function):
             for at, argument in enumerate(call.args):
                 if getattr(argument, "id", "") == name:
                     for where, other in self.code.functions.get(called(call), []):
@@ -219,6 +218,15 @@ class Templates:
             self.found.setdefault(template, module.path.relative_to(ROOT).as_posix())
 
 
+@cache
+def _tellers(tree: ast.AST) -> tuple[ast.Call | ast.Assign, ...]:
+    """What may tell something: all calls, and settings of a stage's message."""
+    return tuple(
+        node for node in walked(tree) if isinstance(node, ast.Call)
+        or (isinstance(node, ast.Assign) and any(getattr(target, "attr", "") == PROPERTY for target in node.targets))
+    )
+
+
 def _formatted(text: str) -> list[Part]:
     """The parts of a constant, which may be meant for `format`."""
     if not re.search(r"\{\w*(:[^{}]*)?\}", text):
@@ -232,15 +240,25 @@ def _formatted(text: str) -> list[Part]:
 
 def _values(name: str, function: Function) -> list[ast.expr]:
     """What a local variable is given."""
-    found = [value for node in walked(function) if isinstance(node, ast.stmt) for given, value in assigned(node)
-             if given == name]
+    return _given(function).get(name, [])
+
+
+@cache
+def _given(function: Function) -> dict[str, list[ast.expr]]:
+    """What all local variables are given: by statements, then by loops, and by calls that add to a list."""
+    found: dict[str, list[ast.expr]] = {}
+    for node in walked(function):
+        if isinstance(node, ast.stmt):
+            for name, value in assigned(node):
+                found.setdefault(name, []).append(value)
     for node in walked(function):
         if isinstance(node, (ast.For, ast.comprehension)):
-            names = [one.id for one in ast.walk(node.target) if isinstance(one, ast.Name)]
-            if name in names:
-                found.append(node.iter)
-        elif isinstance(node, ast.Call) and _adds_to(node, name):
-            found.append(node.args[-1])
+            for name in {one.id for one in ast.walk(node.target) if isinstance(one, ast.Name)}:
+                found.setdefault(name, []).append(node.iter)
+        elif isinstance(node, ast.Call) and node.args and called(node) in ("append", "insert", "extend"):
+            holder = getattr(node.func, "value", None)
+            if isinstance(holder, ast.Name):
+                found.setdefault(holder.id, []).append(node.args[-1])
     return found
 
 
@@ -248,12 +266,6 @@ def _is_list(function: Function, name: str) -> bool:
     """Whether a parameter is a list of texts."""
     note = next(one.annotation for one in function.args.args if one.arg == name)
     return note is not None and ast.unparse(note) == "list[str]"
-
-
-def _adds_to(call: ast.Call, name: str) -> bool:
-    """Whether a call puts something more into a list of this name."""
-    holder = call.func.value if isinstance(call.func, ast.Attribute) else None
-    return getattr(holder, "id", "") == name and called(call) in ("append", "insert", "extend") and bool(call.args)
 
 
 def says_something(template: str) -> bool:
