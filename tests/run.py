@@ -47,8 +47,8 @@ WINDOWS = (
     ))),
     ("tutorials", *(f"test_{name}.py" for name in ("spin_map", "new_machine", "flow", "docks", "tree", "clicks"))),
 )
-# of a core: what a window has beside two others; headless tests, which stand far behind, take what the three leave
-WAITING = 0.4
+# of a core: what a window has beside two others, and what each of two BESIDE parts, far behind them, has of what they leave
+WAITING, LEFT = 0.4, 0.6
 BEHIND = 15  # the niceness of the headless tests, so that no click in a window comes late for them
 # what depends on FreeCAD's version (docs/testing.md tells why): documents, shapes and what is written of them, without those
 # whose numbers are those of core, of triangles too; commands as they start, plan, export and are interrupted; of the window
@@ -195,7 +195,10 @@ def headless_parts(arguments: list[str]) -> list[Part]:
         interpreters.provide()
     if paths:
         return [Part("headless", lambda: run_headless(arguments))]
-    return [Part(name, partial(run_headless, [*arguments, *places])) for name, places in cut(FOLDERS, "tests")]
+    return [
+        Part(name, partial(run_headless, [*arguments, *places]), LEFT if number < BESIDE else 1.0)
+        for number, (name, places) in enumerate(cut(FOLDERS, "tests"))
+    ]
 
 
 def window_parts(arguments: list[str]) -> list[Part]:
