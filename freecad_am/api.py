@@ -250,19 +250,20 @@ def inspect(
 def make_all(
     doc: Any, source: Any, faces: Sequence[str] = (), *, kind: str = "revolution", layers: str = "", substrate: Any = None,
     further: Sequence[Any] = (), base_faces: Sequence[str] = (), name: str = "", machine: str = "", post: str = "",
-    process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (),
+    process: Mapping[str, Any] | None = None, then: Sequence[Mapping[str, Any]] = (), mend: float = 0.0,
 ) -> tuple[Any, ...]:
     """All stages of a part at their defaults, in one step and one group: (cell, feature, toolpath, joint path[, program]).
 
     kind: revolution, surface (a wall of the source's faces on the substrate), developable (source and further solids on
     the substrate, on its base_faces), solid (source and further solids, in plane layers unless `layers` says others) or
-    curves (edges of the source, named in faces). The program is for the machine's controller, in the words of `post` where
+    curves (edges of the source, named in faces). mend: mm across of the largest hole of a mesh that is closed; 0 for the
+    usual one. The program is for the machine's controller, in the words of `post` where
     it reads them; there is none when no post is known that writes joint motion of this set-up for it, or the joint path is
     infeasible. process: parameters of the toolpath by key. A robot other than the default one gets a deposition point and a
     branch that suit it. `am.make_all(doc, doc.Pot)`
 
     then: features that are deposited after it, in this order and one program, each by its `source`, `kind`, `layers`,
-    `faces`, `substrate`, `further` and `base_faces`; they come after the feature in what is returned.
+    `faces`, `substrate`, `further`, `base_faces` and `mend`; they come after the feature in what is returned.
     `am.make_all(doc, doc.Hub, then=[{"source": doc.Fins, "kind": "developable", "substrate": doc.Hub}])`
     """
     chosen = cell_of(machine, user_machines.folders())
@@ -270,7 +271,7 @@ def make_all(
         made = [make_cell(doc, parameters=chosen)]
         first = {
             "source": source, "kind": kind, "layers": layers, "faces": faces, "substrate": substrate, "further": further,
-            "base_faces": base_faces,
+            "base_faces": base_faces, "mend": mend,
         }
         features = [_feature_of_job(doc, one) for one in (first, *then)]
         toolpath = make_toolpath(doc, features, made[0], **(process or {}))
@@ -288,7 +289,7 @@ def make_all(
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
     """A feature at its defaults by the keys that `make_all` takes. InputError BAD_VALUE for another key."""
-    known = ("source", "kind", "layers", "faces", "substrate", "further", "base_faces")
+    known = ("source", "kind", "layers", "faces", "substrate", "further", "base_faces", "mend")
     wrong = [key for key in given_keys if key not in known]
     if wrong or "source" not in given_keys:
         told = ", ".join(wrong) or "no source"
@@ -297,8 +298,11 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
         "Substrate": given_keys.get("substrate"), "Further": list(given_keys.get("further", ())),
         "BaseFaces": given_keys.get("base_faces", ()),
     }
-    kind, values = given_keys.get("kind", "revolution"), {"layers": given_keys["layers"]} if given_keys.get("layers") else {}
-    return make_feature_of(doc, kind, given_keys["source"], given_keys.get("faces", ()), links=links, values=values)
+    values = {key: given_keys[key] for key in ("layers", "mend") if given_keys.get(key)}
+    return make_feature_of(
+        doc, given_keys.get("kind", "revolution"), given_keys["source"], given_keys.get("faces", ()), links=links,
+        values=values,
+    )
 
 
 def change(obj: Any, **values: Any) -> Any:

@@ -91,11 +91,13 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str, path:
     )
 
 
-def chosen(feature: JobFeature, kind: str, layers: str, path: str, earlier: bool) -> JobFeature:
-    """The feature with the family that was left open: of its keys those that the family has. Raises InputError as any."""
+def chosen(feature: JobFeature, kind: str, layers: str, mend: float, path: str, earlier: bool) -> JobFeature:
+    """The feature with the family that was left open: of its keys those that the family has. mend: mm across of the largest
+    hole that is closed where the job does not say, 0 for what is usual. Raises InputError as any."""
     values, family = dict(feature.sections), KINDS[kind]
     section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
-    values["strategy"] = {**({"layers": layers} if layers else {}), **section, "kind": kind}
+    proposed = {**({"layers": layers} if layers else {}), **({"mend": f"{mend!r} mm"} if mend else {})}
+    values["strategy"] = {**proposed, **section, "kind": kind}
     if family.substrate == NONE:
         values.pop("substrate", None)
     if kind != "solid" and isinstance(values["part"], dict):

@@ -15,8 +15,10 @@ import Part
 from numpy.typing import NDArray
 
 from ..core.collision.inside import inside_of
+from ..core.geometry.mesh.repair import repaired
 from ..core.geometry.mesh.solid import Search, SolidMesh
 from ..core.geometry.surroundings import Body
+from ..core.issues import InputError
 from .kernel_process import beside
 from .tessellate import triangles_of
 
@@ -68,13 +70,21 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
 
 
 def off_mesh(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:
-    """Distances (n,) mm of points (n, 3) outside of a closed mesh, 0 inside of any piece of it, whatever triangles of others
-    cross that."""
-    away = _signed(_searched(vertices, triangles), points)
-    body = inside_of(Body("", vertices, triangles))
-    if body is None:  # a hole that was closed: the side of the nearest triangle is all there is
-        return np.maximum(away, 0.0)
-    return np.where(body.holds(points), 0.0, np.abs(away))
+    """Distances (n,) mm of points (n, 3) outside of a mesh, 0 inside of any piece of it, whatever triangles of others cross
+    that. Holes count as closed, however large: which are, the feature has told."""
+    whole = inside_of(Body("", vertices, triangles))
+    if whole is not None:
+        return np.where(whole.holds(points), 0.0, np.abs(_signed(_searched(vertices, triangles), points)))
+    try:
+        pieces = repaired(vertices, triangles.astype(np.intp), "", np.inf, True).solids
+    except InputError:  # the side of the nearest triangle is all there is
+        return np.maximum(_signed(_searched(vertices, triangles), points), 0.0)
+    away = np.min([np.abs(_signed(_searched(piece.vertices, piece.triangles), points)) for piece in pieces], axis=0)
+    for piece in pieces:
+        inside = inside_of(Body("", piece.vertices, piece.triangles.astype(np.int64)))
+        if inside is not None:
+            away[inside.holds(points)] = 0.0
+    return away
 
 
 def off_facets(vertices: Array, triangles: NDArray[np.int64], points: Array) -> Array:

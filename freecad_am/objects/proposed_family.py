@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,11 @@ from ..brep import kernel, part_depths
 from ..brep.revolution import find_wall
 from ..brep.wall_on import named_faces
 from ..core.geometry.curves.profile import RevolvedWall
+from ..core.geometry.mesh.crossing import crossings
 from ..core.geometry.mesh.manifold import holes, told_apart
-from ..core.geometry.mesh.repair import connected_triangles
+from ..core.geometry.mesh.repair import WELDS, connected_triangles
 from ..core.geometry.surroundings import Body
+from ..core.geometry.told import at_least, place
 from ..core.issues import InputError
 from ..core.layers.stacking import best, facets, judged
 from ..core.parameters.strategy import DevelopableParameters, SolidParameters
@@ -31,6 +33,7 @@ OVER = 0.1  # of the surface; parts of which more hangs over get layers that nee
 STEEP = float(np.radians(45.0))
 FLAT = 0.01  # of the height, above the lowest point; what lies there stands on something
 OPEN = 0.1  # of its size; a mesh with a wider hole is a wall
+WIDEST = 10000.0  # mm; the bound of `strategy.mend`
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 UP = (0.0, 0.0, 1.0)
 PLANES, GEODESIC = "planes", "geodesic"
@@ -40,11 +43,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Proposal:
-    """A family, by its `strategy.kind`, layers of solids ('' of other families), and why."""
+    """A family, by its `strategy.kind`, layers of solids ('' of other families), and why. mend: mm across of the largest
+    hole that has to be closed for it; 0 for those that are closed anyway."""
 
     kind: str
     layers: str
     reason: str
+    mend: float = 0.0
 
     def told(self) -> str:
         """What is proposed, in one sentence."""
@@ -67,7 +72,7 @@ def proposed(
     if not names and substrate is not None and stands_on_hub(part, substrate, base):
         return Proposal("developable", "", f"{part.label} stands on a cylinder or cone of {substrate.label}")
     if shape is None:
-        return _of_mesh(part, substrate, tilts, direction)
+        return _of_mesh(part, substrate, edges, tilts, direction)
     if edges:
         return Proposal("surface", "", f"{part.label} names the edges that it starts from")
     if substrate is not None and (names or not shape.Solids):
@@ -111,13 +116,26 @@ def proposed(
     return _solid(part, f"{part.label} is a solid{left}", tilts, direction)
 
 
-def _of_mesh(part: Taken, substrate: Taken | None, tilts: bool, direction: Sequence[float] | None) -> Proposal:
-    """A wall where it is wide open, else filled."""
+def _of_mesh(
+    part: Taken, substrate: Taken | None, edges: bool, tilts: bool, direction: Sequence[float] | None
+) -> Proposal:
+    """A wall where it is wide open, else filled; so is what cuts itself, as pieces of a model for display that are pushed
+    into one another do: no wall of one bead is that."""
     body = part.body()
     found = connected_triangles(body.vertices, body.triangles, part.label, 0.0)
-    opening = max((hole.size for hole in holes(told_apart(found.vertices, found.triangles))), default=0.0)
+    open_ = holes(told_apart(found.vertices, found.triangles))
+    opening = max((hole.size for hole in open_), default=0.0)
     if opening <= OPEN * float(np.linalg.norm(np.ptp(body.vertices, axis=0))):
         return _solid(part, f"{part.label} is a mesh, which is filled", tilts, direction)
+    crossed = crossings(found.vertices, found.triangles, WELDS[-1])
+    if len(crossed.pairs) and not edges:
+        at = place(crossed.places[crossed.length.argmax()])
+        size = at_least(opening)
+        why = (
+            f"{part.label} is an open mesh that cuts itself at {len(crossed.pairs)} pairs of its triangles, as at {at}, "
+            f"so it is no wall of one bead: it is filled, with its {len(open_)} holes of up to {size:.4g} mm closed"
+        )
+        return replace(_solid(part, why, tilts, direction), mend=min(size, WIDEST))
     where = "starts on the platform" if substrate is None else f"grows on {substrate.label}"
     return Proposal("surface", "", f"{part.label} is an open mesh, so it is a thin wall that {where}")
 

@@ -126,6 +126,46 @@ def test_an_open_mesh_is_a_wall_and_one_with_a_small_hole_is_filled(turned):
     assert "open mesh" in of_mesh(points[vase]).reason and "starts on the platform" in of_mesh(points[vase]).reason
 
 
+def open_tube(radius, first, last, sides=24):
+    """Corners (m, 3, 3) of a tube between two points, open at both ends."""
+    way = (last - first) / np.linalg.norm(last - first)
+    across = np.linalg.svd(way[None])[2][1:]
+    turn = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)[:, None]
+    ring = radius * (np.cos(turn) * across[0] + np.sin(turn) * across[1])
+    low, high = first + ring, last + ring
+    after = np.roll(np.arange(sides), -1)
+    return np.concatenate([np.stack([low, low[after], high[after]], axis=1), np.stack([low, high[after], high], axis=1)])
+
+
+def test_an_open_mesh_that_cuts_itself_is_filled(workshop):
+    """A pot without a lid, with a spout pushed into it: refused as a wall, it is deposited as what the two enclose. Volume
+    and outline are those of a drum and a rod that OCC fuses."""
+    pot = open_tube(25.0, np.zeros(3), np.array([0.0, 0.0, 40.0]))
+    spout = open_tube(9.0, np.array([10.0, 0.0, 20.0]), np.array([50.0, 0.0, 30.0]))
+    Mesh.Mesh(np.concatenate([pot, spout]).tolist()).write(str(workshop.folder / "part.stl"))
+    text = AUTO.replace("part.step", "part.stl")
+    (workshop.folder / "job.yaml").write_text(text.replace("auto", "surface"), encoding="utf-8")
+    refused = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert refused.status == 2 and "SELF_INTERSECTION" in refused.err
+    report, rows = planned(workshop, text)
+    told = {issue["code"]: issue["message"] for issue in report["issues"]}
+    assert told["PROPOSED"].startswith("kind: solid, layers: planes: ") and "with its 4 holes of up to 7" in told["PROPOSED"]
+    assert "4 holes were closed, the largest 70.7 mm across" in told["MENDED"]
+    way = Vector(40, 0, 10)
+    whole = Part.makeCylinder(25, 40).fuse(Part.makeCylinder(9, way.Length, Vector(10, 0, 20), way))
+    assert report["deposit"]["deposited_cm3"] == pytest.approx(whole.Volume / 1000.0, rel=0.04)
+    laid = [dict(zip(rows[0], row)) for row in rows[1:]]
+    points = np.array([[float(row[key]) for key in ("x_mm", "y_mm", "z_mm")] for row in laid if row["kind"] == "deposit"])
+    assert points[:, 0].max() > 45.0 and np.hypot(*points[points[:, 2] > 34.0, :2].T).min() < 4.0, "the spout, the lid"
+    outside = [whole.distToShape(Part.Vertex(Vector(*point)))[0] for point in points[::20]
+               if not whole.isInside(Vector(*point), 0.3, True)]
+    assert max(outside, default=0.0) < 2.6, "half a layer, by which the ends of a leaning spout differ"
+    small = text.replace("chord_error: 0.1 mm", "chord_error: 0.1 mm, mend: 20 mm")
+    (workshop.folder / "job.yaml").write_text(small, encoding="utf-8")
+    refused = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert refused.status == 2 and "OPEN_MESH" in refused.err, "what the job says of holes counts"
+
+
 def of_mesh(corners):
     return proposed(Taken("scan", None, Mesh.Mesh(corners.tolist()), np.eye(4)), (), None, False, 8.0, True)
 

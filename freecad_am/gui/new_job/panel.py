@@ -274,6 +274,8 @@ class JobPanel:
             told["kind"] = repr(found.kind)
         if found.layers == GEODESIC:
             told["layers"] = repr(found.layers)
+        if found.mend:
+            told["mend"] = repr(found.mend)
         if found.kind in (DEVELOPABLE, SOLID):
             told.update(_of_solids(found))
         else:

@@ -20,7 +20,7 @@ REVOLUTION, SURFACE, DEVELOPABLE, SOLID, CURVES = "revolution", "surface", "deve
 @dataclass(frozen=True)
 class JobProposal:
     """A family, why it, what is deposited, and what it grows on. missing: what to select besides, '' for nothing. layers: of
-    solids."""
+    solids. mend: mm across of the largest hole that has to be closed for it, 0 for the usual one."""
 
     kind: str
     reason: str
@@ -28,6 +28,7 @@ class JobProposal:
     ground: Pick | None = None
     missing: str = ""
     layers: str = ""
+    mend: float = 0.0
 
     @property
     def choice(self) -> str:
@@ -120,7 +121,7 @@ def _of_several(known: Sequence[tuple[Pick, Taken]], width: float) -> JobProposa
 
 def _as_told(found: Proposal, parts: tuple[Pick, ...], ground: Pick | None) -> JobProposal:
     missing = _ground_missing(parts[0], ground) if found.kind == SURFACE else ""
-    return JobProposal(found.kind, translated(found.reason), parts, ground, missing, found.layers)
+    return JobProposal(found.kind, translated(found.reason), parts, ground, missing, found.layers, found.mend)
 
 
 def _ground_missing(wall: Pick, ground: Pick | None) -> str:

@@ -134,7 +134,8 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
         at = place(crossed.places[crossed.length.argmax()])
         raise InputError(
             "SELF_INTERSECTION", label, f"the wall cuts itself: {len(crossed.pairs)} pairs of its triangles cross, for "
-            f"instance at {at}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid",
+            f"instance at {at}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes "
+            "of up to strategy.mend closed",
         )
     return _Read(found.vertices, found.triangles, (*found.issues, *mended_issues(label, list(found.mended))))
 
