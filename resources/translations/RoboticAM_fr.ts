@@ -10068,8 +10068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>the wall cuts itself: {0} pairs of its triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid</source>
-        <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide</translation>
+        <source>the wall cuts itself: {0} pairs of its triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid, with holes of up to strategy.mend closed</source>
+        <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide, les trous jusqu&apos;à strategy.mend étant fermés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
@@ -11110,6 +11110,11 @@
         <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>{0} is a thin wall that grows on {1}</source>
         <translation>{0} est une paroi mince qui croît sur {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>{0} is an open mesh that cuts itself at {1} pairs of its triangles, as at {2}, so it is no wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
+        <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
