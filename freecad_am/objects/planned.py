@@ -218,13 +218,21 @@ def _cladding_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body],
     from ..core.strategies import wall_clearance
 
     free = dataclasses.replace(of.build, max_tilt=np.pi)
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, free, None, feature, _tell_tilting)
+
+
+def _tell_tilting(points: int) -> None:
+    """Tell it where tilts are searched for at so many points that it takes long."""
+    from ..core.strategies import size
+
+    for issue in size.of_tilting(points):
+        progress.tell(issue)
 
 
 def _curves_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     from ..core.strategies import wall_clearance
 
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting)
 
 
 def _revolution_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
@@ -252,7 +260,7 @@ def _wall_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], fea
 
 def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], feature: int | None) -> CoreToolpath:
     """On a hub the machine turns them, so that no vertical bounds the tool axes."""
-    from ..core.strategies import size, wall_clearance
+    from ..core.strategies import wall_clearance
     from ..core.strategies.solids import plan as solids_plan
 
     if not solids_plan.on_planes(of.wall):
@@ -261,11 +269,7 @@ def _solids_cleared(toolpath: CoreToolpath, of: Given, bodies: Sequence[Body], f
     if feature is None and solids_plan.clear_by_itself(toolpath, of.wall):
         return toolpath
 
-    def told(points: int) -> None:
-        for issue in size.of_tilting(points):
-            progress.tell(issue)
-
-    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, told)
+    return wall_clearance.kept_clear(toolpath, bodies, of.nozzle, of.build, None, feature, _tell_tilting)
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ CODE = "UNSUPPORTED"
 REACH = 1.5  # layer heights that what carries a bead may be below it
 BESIDE = 0.1  # layer heights; what is no farther below than this is beside
 GRACE = 0.05  # of the width that counts; pieces have places, and chords are not arcs
-PIECE = 0.25  # of the width: no piece of a bead is longer
+PIECE = 0.25  # of the width: no piece of a bead is longer, but for the chord error, by which beads count as wider
 SIDE = 0.25  # of the width, from the middle of a bead to those of its halves
 BACK = 1.5  # how much longer than REACH the way back along a bead has to be, for it to lie on itself as a spiral does
 MOST_TOLD = 10  # layers
@@ -106,7 +106,8 @@ def _cut(toolpath: Toolpath) -> _Pieces:
     length = np.linalg.norm(way, axis=1)
     kept = length > 0.0
     start, way, length = start[kept], way[kept], length[kept]
-    count = np.maximum(np.ceil(length / (PIECE * 0.5 * (wide[start] + wide[start + 1]))).astype(np.intp), 1)
+    longest = np.maximum(PIECE * 0.5 * (wide[start] + wide[start + 1]), toolpath.chord_error)
+    count = np.maximum(np.ceil(length / longest).astype(np.intp), 1)
     row = np.repeat(np.arange(len(start)), count)
     number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
     share = (number + 0.5) / count[row]

@@ -43,8 +43,11 @@ FEWEST = 24  # points of a bead on a wall
 PLACES = 181  # at which meridians and tubes are looked at
 ASKED = 20_000  # vertices that tell how far a wall reaches
 SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
-# s of the processor that a point takes through all stages, measured; walls on parts march from layer to layer
-_SECONDS_A_POINT: dict[type, float] = {RevolutionParameters: 7e-5, SurfaceParameters: 2e-3, FilledParameters: 2.5e-4}
+# s of the processor that a point takes through all stages, measured; walls on parts march from layer to
+# layer, and layers of cladding are laid flat to be filled
+_SECONDS_A_POINT: dict[type, float] = {
+    RevolutionParameters: 7e-5, SurfaceParameters: 2e-3, CladdingParameters: 1.5e-3, FilledParameters: 2.5e-4,
+}
 
 
 @dataclass(frozen=True)
@@ -98,9 +101,25 @@ def of_solids(solids: SolidsOnHub, strategy: FilledParameters, spacing: float | 
 def of_cladding(faces: CladFaces, strategy: CladdingParameters) -> Size:
     """That of layers on faces; nothing is told of points where an overlap takes the place of the bead spacing."""
     spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
-    length = strategy.layers * faces.area / spacing
-    extent = float(max(np.ptp(sheet.vertices, axis=0).max() for sheet in faces.sheets))
-    return Size(strategy.layers, length / math.sqrt(4.0 * strategy.chord_error * extent))
+    high = strategy.layers * strategy.layer_height
+    points = sum(
+        weight * _on_sheet(sheet, share * high, strategy.chord_error)
+        for sheet in faces.sheets for share, weight in ((0.0, 1 / 6), (0.5, 2 / 3), (1.0, 1 / 6))  # Simpson's rule
+    )
+    return Size(strategy.layers, strategy.layers * points / spacing)
+
+
+def _on_sheet(sheet: PatchWall, high: float, chord_error: float) -> float:
+    """About how many points, times mm of bead spacing, a layer has that lies so much above a sheet: around a rod it
+    is larger, in a trough smaller. Beads bend as the edges of triangles do, and a quarter of the chord error is theirs."""
+    feet, normals = sheet.project(sheet.vertices)
+    corner, way = (feet + high * normals)[sheet.triangles], normals[sheet.triangles]
+    sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
+    turned = np.linalg.norm(way - np.roll(way, 1, axis=1), axis=2)
+    dense = np.sqrt(turned / np.maximum(sides, 1e-300) / (2.0 * chord_error)).mean(axis=1)
+    area = 0.5 * np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    extent = float(np.ptp(corner, axis=(0, 1)).max())
+    return float((area * np.maximum(dense, 2.0 / extent)).sum())
 
 
 def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = None) -> None:

@@ -246,3 +246,10 @@ def test_beads_that_tell_their_width_carry_no_farther():
     above = rod(0, 100, 2.0, HEIGHT)
     assert told(toolpath([one], [above]))[0] == 0.0
     assert told(toolpath([narrow], [above]))[0] == pytest.approx(100.0)
+
+
+def test_beads_of_no_width_to_speak_of_take_no_memory():
+    """The chord error bounds the number of pieces: 11 TB were asked for here. Above nothing all of the bead is told."""
+    low, high = rod(0.0, 10.0), rod(0.0, 10.0, 0.0, HEIGHT)
+    assert told(toolpath([low], [high], width=1e-9))[0] == 0.0
+    assert told(toolpath([low], [rod(0.0, 10.0, 1.0, HEIGHT)], width=1e-9))[0] == pytest.approx(10.0)

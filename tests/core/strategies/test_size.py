@@ -9,17 +9,19 @@ import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.curves.sampling import arc, line
+from freecad_am.core.geometry.walls.clad_faces import CladFaces
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import (
     MOST_LAYERS,
+    CladdingParameters,
     DevelopableParameters,
     RevolutionParameters,
     SurfaceParameters,
 )
-from freecad_am.core.strategies import revolution, size, surface, wall_fronts
+from freecad_am.core.strategies import cladding, revolution, size, surface, wall_fronts
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, solids
 from tests.core.strategies.test_surface import TILTED, bend, tube
@@ -48,6 +50,13 @@ def on_hub(made, **values):
     return size.of_solids(made, strategy), plan_solids(made, strategy, BuildDirectionParameters(), PROCESS, None)
 
 
+def on_faces(wall, **values):
+    sheet = dataclasses.replace(wall, first=(), rims=(), behind=np.zeros(len(wall.vertices), dtype=bool))
+    strategy = CladdingParameters(**values)
+    faces = CladFaces("part", ("Face1",), (sheet,))
+    return size.of_cladding(faces, strategy), cladding.plan(faces, strategy, BuildDirectionParameters(), PROCESS, None)
+
+
 @pytest.mark.parametrize("make", [
     lambda: turned(DOME, layer_height=0.7), lambda: turned(VASE, layer_height=0.5, chord_error=0.002),
     lambda: turned(VASE, layer_height=0.4, spacing="iso-height"), lambda: turned(SECTOR, layer_height=0.5),
@@ -58,6 +67,9 @@ def on_hub(made, **values):
     lambda: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01),
     lambda: on_hub(solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"),
     lambda: on_hub(solids(CYLINDER, box()), margin=30.0, layer_height=6.0, bead_spacing=8.0),
+    lambda: on_faces(WALLS["a bend"][0](), layers=1, chord_error=0.01),
+    # layers around a bent pipe become three times as long
+    lambda: on_faces(WALLS["a half shell"][0](), layers=3, layer_height=14.0, bead_spacing=15.0, chord_error=0.05),
 ])
 def test_counts_are_about_right(make):
     told, made = make()
@@ -151,6 +163,7 @@ def test_large_jobs_are_not_refused():
 @pytest.mark.parametrize(("family", "points", "told"), [
     (RevolutionParameters, 200_000, None), (RevolutionParameters, 1_000_000, "1.2 min of the processor and 1.5 GB"),
     (SurfaceParameters, 10_000, None), (SurfaceParameters, 60_000, "2 min of the processor and 0.09 GB"),
+    (CladdingParameters, 19_000, None), (CladdingParameters, 76_000, "1.9 min of the processor and 0.12 GB"),
     (DevelopableParameters, 100_000, None), (DevelopableParameters, 370_000, "1.6 min of the processor and 0.56 GB"),
 ])
 def test_large_jobs_are_told(family, points, told):
