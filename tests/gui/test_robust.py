@@ -196,9 +196,16 @@ def test_a_document_closed_while_a_panel_is_open(person, job, command):
 def test_closed_panels_leave_nothing_behind(person, job, coarse):
     """Fields are gone with their panel, not when Python collects cycles, or never: they would be taken for later ones."""
 
+    class Wrappers(dict):
+        """Whether a type is one of Qt's, asked once: there are a million objects."""
+
+        def __missing__(self, kind):
+            return self.setdefault(kind, issubclass(kind, person.core.QObject))
+
+    wraps = Wrappers()
+
     def dead():
-        wrappers = [obj for obj in gc.get_objects() if isinstance(obj, person.core.QObject)]
-        return [obj for obj in wrappers if not person.qt.isValid(obj)]
+        return [obj for obj in gc.get_objects() if wraps[type(obj)] and not person.qt.isValid(obj)]
 
     def press(name):
         """Not by what the main window finds, which it keeps."""
@@ -224,11 +231,14 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
                 for stage in api.stages_of(job):  # what was made new, for its toolpath to be quick
                     if getattr(stage, "LayerHeight", 15) != 15:
                         stage.LayerHeight = 15
+                left = dead()
                 for _ in range(20):  # threads may be at work that were cancelled
-                    if len(dead()) <= before:
+                    if len(left) <= before:
                         break
                     person.idle(0.2)
-                assert len(dead()) <= before, (command, standard_button, {type(obj).__name__ for obj in dead()[before:]})
+                    left = dead()
+                assert len(left) <= before, (command, standard_button, {type(obj).__name__ for obj in left[before:]})
+                del left
     finally:
         gc.enable()
 
