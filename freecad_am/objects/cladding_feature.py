@@ -6,7 +6,10 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+import numpy as np
+
 from ..brep.clad_faces import clad_faces
+from ..core.geometry.walls.clad_mesh import clad_mesh
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CladdingParameters
@@ -41,18 +44,20 @@ class CladdingFeature(Stage):
         self.parameters(obj, BuildDirectionParameters)  # bad ones are told where they stand, not by the toolpath
         source, faces = source_of(obj)
         part, fixtures = taken(source), fixtures_of(obj)
-        if part.shape is None:
-            raise InputError(
-                "NO_FACES", source.Label, "it is a mesh, which has no faces to choose; make a shape of it (Part, Create "
-                "shape from mesh), or take the file that it was made of"
-            )
+        if part.shape is None and faces:
+            raise InputError("UNKNOWN_FACE", source.Label, "a mesh has no faces to choose; leave them out")
         ground = () if obj.Substrate is None else (taken(obj.Substrate),)
-        own = (part,) if part.shape.Solids else ()
+        own = (part,) if part.shape is not None and part.shape.Solids else ()
 
         def work() -> Outcome:
             high = (strategy.layers - 1) * strategy.layer_height
             spacing = strategy.bead_spacing
-            found = clad_faces(part.shape.copy(False), faces, spacing, strategy.side == "back", high, part.label)
+            back = strategy.side == "back"
+            if part.shape is None:
+                body = part.body()
+                found = clad_mesh(body.vertices, body.triangles.astype(np.intp), spacing, back, part.label)
+            else:
+                found = clad_faces(part.shape.copy(False), faces, spacing, back, high, part.label)
             large = size.judged(size.of_cladding(found, strategy), strategy)
             made = dataclasses.replace(found, surroundings=bodies((*own, *ground, *fixtures)))
             return Outcome(made, (*made.issues, *large), (("CladFaces", list(made.faces)), ("CladArea", made.area)))

@@ -116,7 +116,7 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
     progress.report(LOOKED, "looking whether the deposit lies on the part")
     places = on_part.places(toolpath)
     if family_of(of.strategy).kind == "cladding":
-        return _on_faces(toolpath, of, sources[0].shape, places)
+        return _on_faces(toolpath, of, sources[0], places)
     if hasattr(of.strategy, "share_of_cut"):  # where the part was cut, above the surface that beads of the layer lie on
         up = of.strategy.share_of_cut * of.strategy.layer_height * places.build
         places = places._replace(points=places.points + up)
@@ -134,11 +134,16 @@ def looked_at(toolpath: CoreToolpath, of: Given, sources: Sequence[Taken]) -> Co
     return on_part.judged(toolpath, places, off, limit)
 
 
-def _on_faces(toolpath: CoreToolpath, of: Given, shape: Any, places: on_part.Places) -> CoreToolpath:
+def _on_faces(toolpath: CoreToolpath, of: Given, source: Taken, places: on_part.Places) -> CoreToolpath:
     """The toolpath with whether its layers lie as many layer heights above the faces as they should."""
     up = (places.layer % of.strategy.layers) * of.strategy.layer_height
     limit = toolpath.chord_error + on_part.ROUNDED
-    off = off_faces(shape, of.wall.faces, places.points - up[:, None] * places.build, limit)
+    feet = places.points - up[:, None] * places.build
+    if source.shape is not None:
+        off = off_faces(source.shape, of.wall.faces, feet, limit)
+    else:
+        body = source.body()
+        off = np.maximum(off_facets(body.vertices, body.triangles, feet) - of.wall.smoothing, 0.0)
     return on_part.judged(toolpath, places, off, limit)
 
 

@@ -99,6 +99,11 @@ def proposed(
             f"; it turns about one axis, but a wall of one bead would leave out {out / MM3:.3g} of its "
             f"{(balance.part or 0.0) / MM3:.3g} cm3"
         )
+    if names and shape.Solids and not _thin(part, width, names):
+        return Proposal(
+            "cladding", "", f"faces of {part.label} are chosen, which do not turn about one axis, and it is thicker there "
+            f"than a bead of {width:.4g} mm, so they are covered",
+        )
     if names:
         return Proposal(
             "surface", "", f"faces of {part.label} are chosen, which do not turn about one axis, so they are a wall; it "
@@ -183,10 +188,10 @@ def _turned(part: Taken, faces: Sequence[str]) -> RevolvedWall | None:
         return None
 
 
-def _thin(part: Taken, width: float) -> bool:
-    """Whether the faces of a solid tell its wall, and this is one bead."""
+def _thin(part: Taken, width: float, chosen: Sequence[str] = ()) -> bool:
+    """Whether the faces of a solid, those chosen or else what tells its wall, are those of a wall that is one bead."""
     try:
-        names = tuple(name for name, _ in named_faces(part.shape, (), part.label))
+        names = tuple(name for name, _ in named_faces(part.shape, chosen, part.label))
         deep = part_depths.of_faces(part.shape, names, part.label, None)
     except (InputError, *kernel.FAULTS):
         return False

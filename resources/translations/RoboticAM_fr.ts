@@ -1687,6 +1687,11 @@
         <translation>Rechargement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/new_job/panel.py"/>
+        <source>Cladding of faces</source>
+        <translation>Rechargement de faces</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cladding…</source>
         <translation>Rechargement…</translation>
@@ -1715,6 +1720,11 @@
         <location filename="../../freecad_am/gui/new_job/panel.py"/>
         <source>Click what is to be deposited, in the tree or the 3D view; then with Ctrl what it grows on, if there is such.</source>
         <translation>Cliquez sur ce qui est à déposer, dans l&apos;arbre ou la vue 3D ; puis avec Ctrl sur ce sur quoi cela croît, s&apos;il y a lieu.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/new_job/proposal.py"/>
+        <source>Click, with Ctrl, the faces to cover.</source>
+        <translation>Cliquez, avec Ctrl, sur les faces à couvrir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program/window.py"/>
@@ -5692,7 +5702,7 @@
         <translation>un maillage n&apos;a pas de surfaces exactes ; une pièce de révolution demande une représentation par les frontières : STEP, IGES ou BREP</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/surface_feature.py"/>
+        <location filename="../../freecad_am/objects/cladding_feature.py"/>
         <source>a mesh has no faces to choose; leave them out</source>
         <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
     </message>
@@ -6783,6 +6793,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/proposed_family.py"/>
+        <source>faces of {0} are chosen, which do not turn about one axis, and it is thicker there than a bead of {1} mm, so they are covered</source>
+        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe, et elle y est plus épaisse qu&apos;un cordon de {1} mm, elles sont donc recouvertes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/proposed_family.py"/>
         <source>faces of {0} are chosen, which do not turn about one axis, so they are a wall; it needs a substrate, or edges to start from</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
     </message>
@@ -7417,14 +7432,14 @@
         <translation>il ne contient pas de triangles ; exportez la pièce de nouveau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/walls/clad_mesh.py"/>
+        <source>it is a closed mesh, which has no faces to choose; cut out of it what is to be covered (Mesh, Cutting), or take the file that it was made of</source>
+        <translation>c&apos;est un maillage fermé, qui n&apos;a pas de faces à choisir ; découpez-en ce qui est à couvrir (Mesh, Découpe), ou prenez le fichier dont il est issu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/read.py"/>
         <source>it is a folder; name the file of the part</source>
         <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/cladding_feature.py"/>
-        <source>it is a mesh, which has no faces to choose; make a shape of it (Part, Create shape from mesh), or take the file that it was made of</source>
-        <translation>c&apos;est un maillage, qui n&apos;a pas de faces à choisir ; faites-en une forme (Part, Créer une forme à partir d&apos;un maillage), ou prenez le fichier dont il est issu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/names.py"/>

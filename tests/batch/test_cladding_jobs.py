@@ -6,6 +6,7 @@ import json
 import re
 
 import FreeCAD
+import Mesh
 import numpy as np
 import Part
 import pytest
@@ -71,6 +72,46 @@ def covered(rows, points, layer, half):
         t = np.clip((points - a) @ b / max(b @ b, 1e-12), 0.0, 1.0)
         near = np.minimum(near, np.linalg.norm(points - a - t[:, None] * b, axis=1))
     return (near <= half).mean()
+
+
+def test_a_scan_of_a_top_gets_layers_on_the_side_it_looks_to(workshop):
+    """An open mesh of a bent top, with triangles that look down: two layers hang below the exact face, their heights off it.
+    A closed one has no faces to cover."""
+    poles = [[V(x, y, 20 + 4 * np.cos(x / 20) * np.cos(y / 25)) for y in range(0, 41, 10)] for x in range(0, 41, 10)]
+    top = Part.BSplineSurface()
+    top.interpolate(poles)
+    face = top.toShape()
+    corners = np.array([[tuple(point) for point in one.Points] for one in Mesh.Mesh(face.tessellate(0.02)).Facets])
+    down = np.where((np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0.0)[:, None, None],
+                    corners[:, ::-1], corners)
+    Mesh.Mesh(down.tolist()).write(str(workshop.folder / "scan.stl"))
+    text = JOB.format(faces="", more=", layers: 2", clearance="none").replace("part.step", "scan.stl")
+    done = workshop.run("plan", workshop.write_job(text).name, "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    with open(next((workshop.folder / "out").rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    xyz, layer = column(rows, "x_mm", "y_mm", "z_mm")[::5], column(rows, "layer")[::5, 0]
+    assert set(layer) == {0.0, 1.0} and (column(rows, "bz") < -0.8).all()
+    away = np.array([face.distToShape(Part.Vertex(V(*point)))[0] for point in xyz])
+    np.testing.assert_allclose(away, HEIGHT * layer, atol=0.1 + 0.02)
+    inner = top.toShape(0.1, 0.9, 0.1, 0.9).tessellate(0.02)[0]
+    assert covered(rows, np.array([tuple(point) for point in inner]), 0, 0.6 * SPACING) > 0.98
+    Mesh.Mesh(Part.makeBox(20, 20, 20).tessellate(0.5)).write(str(workshop.folder / "scan.stl"))
+    done = workshop.run("plan", workshop.write_job(text).name, "-o", "out", "--no-page")
+    assert done.status == 2 and "NO_FACES" in done.err and "closed mesh" in done.err
+
+
+def test_chosen_faces_of_a_solid_are_covered_by_themselves(planned, workshop):
+    """kind: auto on a face of a thick block, at x = 30."""
+    job = JOB.replace("kind: cladding", "kind: auto").format(faces=", faces: [Face2]", more=", layers: 2", clearance="none")
+    Part.makeBox(30, 20, 25).exportStep(str(workshop.folder / "part.step"))
+    done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
+    assert done.status == 0 and "kind: cladding: faces of" in done.err, done.err
+    with open(next((workshop.folder / "out").rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
+    xyz, layer = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "layer")[:, 0]
+    np.testing.assert_allclose(xyz[:, 0], 30.0 + HEIGHT * layer, atol=1e-6)
+    assert np.ptp(xyz[:, 1]) > 13.0 and np.ptp(xyz[:, 2]) > 18.0 and set(layer) == {0.0, 1.0}
 
 
 def test_a_bent_top_gets_layers_above_it_and_the_program_has_them(planned, workshop):

@@ -55,7 +55,7 @@ def test_a_feature_is_saved_and_changed(doc, cone, tmp_path):
         App.closeDocument(again.Name)
 
 
-def test_a_mesh_and_an_edge_are_refused(doc, cone):
+def test_a_closed_mesh_and_an_edge_are_refused(doc, cone):
     import Mesh
 
     scan = doc.addObject("Mesh::Feature", "Scan")

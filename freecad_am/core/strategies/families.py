@@ -51,7 +51,7 @@ FAMILIES = (
            "{} is for walls; curves are laid along their own directions or one: use local or fixed"),
     Family("solid", SolidParameters, OPTIONAL, True, True, ("local", "layer", "fixed"),
            "{} is for walls; plane layers grow along their normal: use local or fixed", faces=False),
-    Family("cladding", CladdingParameters, OPTIONAL, False, True, ("local",),
+    Family("cladding", CladdingParameters, OPTIONAL, True, True, ("local",),
            "{} is for walls; cladding grows along the normals of its faces: use local"),
 )
 # what `kind: auto` is until its part is known: it may have whatever one of the families takes

@@ -33,7 +33,7 @@ from ..widgets.fold import Fold
 from ..widgets.wheel import scrolls
 from . import proposal
 from .left_out import left_out
-from .proposal import CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
+from .proposal import CLADDING, CURVES, DEVELOPABLE, REVOLUTION, SOLID, SURFACE, JobProposal
 
 _TOLD = 15000  # ms that the next step is told on the status bar
 
@@ -48,7 +48,7 @@ class JobPanel:
         self.kinds = {
             REVOLUTION: tr("Part of revolution"), SURFACE: tr("Wall on a part"), SOLID: tr("Solids in plane layers"),
             GEODESIC: tr("Solids without support"), DEVELOPABLE: tr("Solids on a hub"),
-            CURVES: tr("Curves as beads"),
+            CLADDING: tr("Cladding of faces"), CURVES: tr("Curves as beads"),
         }
         self.picks: list[Pick] = []
         self.found = JobProposal("", "")

@@ -15,6 +15,7 @@ from ..texts.translation import tr, translated
 
 # as in job files
 REVOLUTION, SURFACE, DEVELOPABLE, SOLID, CURVES = "revolution", "surface", "developable", "solid", "curves"
+CLADDING = "cladding"
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,11 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
         return JobProposal(kind, reason, (wall,), ground, unclear or _ground_missing(wall, ground))
     if kind == CURVES:
         return JobProposal(kind, reason, (_with_edges(picks[0]),), next((Pick(one.obj) for one in picks[1:]), None))
+    if kind == CLADDING:
+        faces = picking.with_faces(picks[0])
+        solid = not picking.is_mesh(faces.obj) and bool(global_shape(faces.obj).Solids)
+        missing = tr("Click, with Ctrl, the faces to cover.") if solid and not faces.names else ""
+        return JobProposal(kind, reason, (faces,), next((Pick(one.obj) for one in picks[1:]), None), missing)
     if kind == SOLID:
         return JobProposal(kind, reason, tuple(Pick(pick.obj) for pick in picks), layers=layers)
     faced = [pick for pick in picks if picking.with_faces(pick).names]

@@ -33,7 +33,8 @@ class CladdingPanel(PickPanel):
     stage, icon, function, draft = CladdingFeature, "cladding", "make_cladding_feature", "Cladding"
 
     def __init__(self, obj: Any = None) -> None:
-        self.faces = PickField(FACES, tr("Faces"), None if obj is None else obj.Source, self._arm, picking.FACE)
+        self.faces = PickField(FACES, tr("Faces"), None if obj is None else obj.Source, self._arm, picking.FACE,
+                               meshes=True)
         self.substrate = PickField(SUBSTRATE, tr("Further part"), None if obj is None else obj.Substrate, self._arm)
         self.fixtures = PickField(FIXTURES, tr("Fixtures"), () if obj is None else obj.Fixtures, self._arm)
         picks = [self.faces, self.substrate, self.fixtures]
@@ -77,9 +78,10 @@ class CladdingPanel(PickPanel):
 
         def both() -> tuple[Outcome, str]:
             made = work()
+            sheets = len(made.value.sheets)
             told = tr("{} faces in {} sheets, {:.4g} cm² in each of {} layers")
             found = made.value
-            return made, told.format(len(found.faces), len(found.sheets), found.area / CM2, strategy.layers)
+            return made, told.format(len(found.faces) or sheets, sheets, found.area / CM2, strategy.layers)
 
         return both
 

@@ -27,3 +27,8 @@ class CladFaces:
     def area(self) -> float:
         """mm2 of the faces, by their triangles."""
         return float(sum(sheet.mesh.areas.sum() for sheet in self.sheets))
+
+    @property
+    def smoothing(self) -> float:
+        """How far, mm, the sheets are off what is to be covered, at most: 0 of exact faces."""
+        return max((getattr(sheet, "smoothing", 0.0) for sheet in self.sheets), default=0.0)
