@@ -83,7 +83,7 @@ def _verify_joints(
     issues += points.joint_issues(cell, planned, read, endless) + points.point_issues(planned, path)
     strayed, off = between.beads_between(cell, planned, shown, path, chord_error)
     issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
-    text = text_path.text_joints(cell, planned, shown, half, path, None)
+    text = text_path.text_joints(cell, planned.joints, shown, half, path, None)
     return _concluded(cell, planned, read, path, text, strayed, second, issues)
 
 
@@ -110,7 +110,7 @@ def _verify_poses(
     if read.tool is not None and not read.held and len(planned.ends):
         strayed, off = between.tools_between(cell, planned, asked, tools, told, chord_error)
         issues += planned.issue("VERIFY_BETWEEN", off, STRAYS.format(strayed))
-    text = text_path.text_joints(cell, planned, read.joints, text_path.digits(cell, read), told, asked)
+    text = text_path.text_joints(cell, planned.joints, read.joints, text_path.digits(cell, read), told, asked)
     second = points.second_opinion(cell, planned, joints, flange)
     return _concluded(cell, planned, read, told, text, strayed, second, issues)
 
@@ -125,7 +125,7 @@ def _verify_tips(cell: Cell, planned: Planned, program: Program, read: ReadMoves
         issues += points.joint_issues(cell, planned, read, text_path.shorter_way(cell, program, read))
     issues += points.point_issues(planned, path) + points.point_issues(planned, told)
     shown = _in_turns(cell, planned, program, read)
-    text = text_path.text_joints(cell, planned, shown, text_path.digits(cell, read), told, None)
+    text = text_path.text_joints(cell, planned.joints, shown, text_path.digits(cell, read), told, None)
     second = points.second_opinion(cell, planned, joints, flange)
     return _concluded(cell, planned, read, told, text, 0.0, second, issues)
 

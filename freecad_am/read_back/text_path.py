@@ -16,7 +16,7 @@ from ..core.geometry import frames
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
 from ..core.kinematics.chain import JointFrames
 from ..core.program import Program, ReadMoves
-from .planned import COMPUTED_AXIS, COMPUTED_MM, Planned, pieces
+from .planned import COMPUTED_AXIS, COMPUTED_MM, pieces
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -99,14 +99,15 @@ def _bounds(cell: Cell, at: JointFrames, matrix: Array, half: Array) -> tuple[Ar
     return more * moved + COMPUTED_MM, more * turned + COMPUTED_AXIS
 
 
-def text_joints(cell: Cell, planned: Planned, shown: Array | None, half: Array, path: Path, asked: Array | None) -> Joints:
+def text_joints(cell: Cell, near: Array, shown: Array | None, half: Array, path: Path, asked: Array | None) -> Joints:
     """The joints that a text asks for: its values `shown` (n, axes), as the controller counts them, off by `half` (axes,).
-    Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from the planned ones.
+    Where it has none (NaN) they bring flange or tip to its positions, by one step of Newton from serial joints `near`
+    (n, axes).
 
     asked: (n, 4, 4) flange poses of the text, None where it tells of tip and direction alone.
     """
     machine = cell.machine
-    given = machine.to_controller(planned.joints)
+    given = machine.to_controller(near)
     shown = np.full_like(given, np.nan) if shown is None else shown
     unknown = np.isnan(shown)
     serial = machine.from_controller(np.where(unknown, given, shown))

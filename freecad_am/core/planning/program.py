@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,10 +74,16 @@ def build(
     check_wrist(cell.machine, parameters.motion, parameters.post)
     check_pulses(cell.machine, parameters.motion, parameters.post)
     blocks = _blocks(motion, cell, process, parameters, waits, returns)
+    remarks = _remarks(cell, parameters, [block for block in blocks if isinstance(block, Moves)])
+    return replace(without_moves(cell, parameters, name), blocks=blocks, remarks=remarks)
+
+
+def without_moves(cell: Cell, parameters: ProgramParameters, name: str) -> Program:
+    """What a program tells of its cell before the first move."""
     return Program(
         name=name,
         machine=cell.machine.title,
-        blocks=blocks,
+        blocks=(),
         endless=tuple(bool(e) for e in cell.limits.endless),
         motion=parameters.motion,
         setup=cell.setup,
@@ -86,7 +93,6 @@ def build(
         tool_frame=parameters.tool_frame,
         deposit_output=parameters.deposit_output,
         dry_run=parameters.dry_run,
-        remarks=_remarks(cell, parameters, [block for block in blocks if isinstance(block, Moves)]),
         max_speed=tuple(cell.machine.max_speed.tolist()),
         pulses_per_degree=cell.machine.pulses_per_degree, speed_unit=cell.machine.speed_unit,
         station=_six(frames.inverse(cell.machine.base) @ _frames(cell, parameters)[0]),
