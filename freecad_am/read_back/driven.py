@@ -8,21 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.issues import InputError
-from ..core.kinematics import opw
 from ..core.kinematics.cell import ROTARY_TABLE, Cell
 from ..core.motion import Motion
 from ..core.program import Event, Program, ReadMoves
-from ..core.geometry import frames
-from . import text_path
-from .planned import pieces
+from . import followed, text_path
 from .text_path import Path
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-
-WHERE = "program"
 
 
 @dataclass(frozen=True)
@@ -70,105 +64,30 @@ def beads(motion: Motion) -> list[DrivenBead]:
 
 def _driven(cell: Cell, program: Program, read: ReadMoves) -> tuple[Path, Array]:
     """Where the text takes the tip, and the serial joints (n, axes) that do it."""
-    half = text_path.digits(cell, read)
+    machine, endless = cell.machine, text_path.shorter_way(cell, program, read)
     if read.position is None:
         assert read.joints is not None
-        shown = _in_turns(read.joints, text_path.shorter_way(cell, program, read))
-        return text_path.joint_path(cell, shown, half)[0], cell.machine.from_controller(shown)
+        shown = _in_turns(read.joints, endless)
+        return text_path.joint_path(cell, shown, text_path.digits(cell, read))[0], machine.from_controller(shown)
     if cell.setup == ROTARY_TABLE:
-        assert read.joints is not None
         path = text_path.text_tips(cell, program, read)
-        # the tip goes along with the axes that slide: one step from anywhere is there
-        near = cell.machine.from_controller(np.where(np.isnan(read.joints), 0.0, read.joints))
-        serial = text_path.text_joints(cell, near, read.joints, half, path, None).serial
-        shown = _in_turns(cell.machine.to_controller(serial), text_path.shorter_way(cell, program, read))
-        return path, cell.machine.from_controller(shown)
-    path, asked, _ = text_path.text_path(cell, program, read)
-    return path, _followed(cell, read, asked)
+        serial = followed.by_table(cell, read, path)
+    else:
+        path, asked, _ = text_path.text_path(cell, program, read)
+        serial = followed.by_robot(cell, read, asked)
+    return path, machine.from_controller(_in_turns(machine.to_controller(serial), endless))
 
 
 def _in_turns(shown: Array, endless: Mask) -> Array:
     """Controller values (n, axes) with the axes that go the shorter way counted on from row to row."""
-    counted = np.array(shown)
-    counted[:, endless] = np.unwrap(counted[:, endless], axis=0)
+    counted, known = np.array(shown), np.isfinite(shown).all(axis=1)
+    counted[np.ix_(known, endless)] = np.unwrap(counted[np.ix_(known, endless)], axis=0)
     return counted
-
-
-def _followed(cell: Cell, read: ReadMoves, asked: Array) -> Array:
-    """(n, axes) serial joints of a robot whose flange is at `asked` (n, 4, 4): its values where the text has them, else of the
-    inverse the solution that lies next to the row before."""
-    machine, own = cell.machine, cell.robot.chain.axes
-    shown = np.full((len(asked), machine.chain.axes), np.nan) if read.joints is None else read.joints
-    unknown = np.isnan(shown[:, :own]).any(axis=1)
-    serial = np.full_like(shown, np.nan)
-    serial[~unknown] = machine.from_controller(shown[~unknown])
-    if own < machine.chain.axes:  # the axes beside the robot are told with every position
-        beside = machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[:, own:]
-        asked = frames.inverse(cell.external.base(beside)) @ asked if cell.external is not None else asked
-        serial[unknown, own:] = beside[unknown]
-    edges = np.flatnonzero(np.diff(unknown, prepend=False, append=False))
-    for start, end in zip(edges[::2].tolist(), edges[1::2].tolist()):
-        before = serial[start - 1, :own] if start else None
-        serial[start:end, :own] = _run(cell, read, asked[start:end], start, before)
-    return serial
-
-
-def _run(cell: Cell, read: ReadMoves, poses: Array, start: int, before: Array | None) -> Array:
-    """(k, 6) joints of the arm for flange poses (k, 4, 4) that follow each other from row `start` of the text on."""
-    arm = cell.robot.arm
-    assert arm is not None
-    found = np.concatenate([np.moveaxis(arm.solutions(poses[rows])[0], 0, 1) for rows in pieces(np.arange(len(poses)))])
-    chosen = [_first(cell, read, found[0], start, before)]
-    for rows in pieces(np.arange(len(found) - 1)):
-        apart = _apart(found[rows, :, None], found[rows + 1, None])
-        nearest = np.where(np.isfinite(apart).any(axis=2), apart.argmin(axis=2), np.arange(found.shape[1]))
-        for after in nearest.tolist():
-            chosen.append(after[chosen[-1]])
-    joints: Array = found[np.arange(len(found)), chosen]
-    if before is None or not np.isfinite(before).all():
-        return _counted_on(joints)
-    return _counted_on(np.vstack([before, joints]))[1:]
-
-
-def _counted_on(joints: Array) -> Array:
-    """Joints (n, 6) in [-pi, pi] with their turns counted from the first row on; rows that are not reached stay NaN."""
-    known = np.isfinite(joints).all(axis=1)
-    counted = np.array(joints)
-    counted[known] = np.unwrap(joints[known], axis=0)
-    return counted
-
-
-def _first(cell: Cell, read: ReadMoves, found: Array, row: int, before: Array | None) -> int:
-    """Which of the solutions (configurations, 6) a text means by the position of a row that follows joints `before`."""
-    if read.near is not None and np.isfinite(read.near[row]).all():
-        before = cell.machine.from_controller(read.near[row])[: found.shape[1]]
-    if before is not None and np.isfinite(before).all():
-        return int(_apart(before, found).argmin())
-    told = read.configuration
-    if told is not None:
-        words = (
-            "front" if told.front[row] else "back", "up" if told.up[row] else "down",
-            "noflip" if told.flip[row] == (cell.machine.controller_matrix[4, 4] > 0.0) else "flip",
-        )
-        return opw.branch_index(words)
-    if cell.branch is None:
-        raise InputError(
-            "NO_CONFIGURATION", WHERE, "it begins with a position and does not say by which configuration of the arm; name it "
-            "as cell.branch, such as [front, up, flip]",
-        )
-    return cell.branch
-
-
-def _apart(one: Array, other: Array) -> Array:
-    """(...) how far joints (..., 6) are from others, turns left out; infinite where there are none."""
-    turned = one - other
-    apart = np.abs(turned - 2.0 * np.pi * np.rint(turned / (2.0 * np.pi))).max(axis=-1)
-    return np.where(np.isnan(apart), np.inf, apart)
 
 
 def _durations(cell: Cell, read: ReadMoves, position: Array, serial: Array) -> Array:
-    """(n,) s of each move as the text says it: by a time, a speed of the tip, or a share of the axes' largest speeds; 0 of the
-    first one, which begins wherever the machine stands."""
+    """(n,) s of each move as the text says it: by a time, a speed of the tip, or a share of the axes' largest speeds; 0 of
+    the first one, which begins wherever the machine stands."""
     way = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
     turned = np.abs(np.diff(cell.machine.to_controller(serial), axis=0, prepend=np.nan))
     with np.errstate(invalid="ignore"):
@@ -205,7 +124,8 @@ def _layers(events: tuple[Event, ...], starts: Index) -> NDArray[np.int64]:
 def _places(deposit: Mask, fresh: Mask, layers: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
     """Layer, bead and point (n,) of the rows; rapids carry the bead that they lead to. fresh: the first rows of beads."""
     if not len(layers):
-        return np.zeros((2, len(deposit)), dtype=np.int64)[0], np.zeros(len(deposit), dtype=np.int64), np.arange(len(deposit))
+        nowhere = np.zeros(len(deposit), dtype=np.int64)
+        return nowhere, nowhere, np.arange(len(deposit))
     # beads are counted anew in each layer
     numbers = np.zeros(len(layers), dtype=np.int64)
     for layer in np.unique(layers):
