@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The headless commands: plan, export, batch, inspect, machines.
+"""The headless commands: plan, export, batch, inspect, check, machines.
 
 What a command needs is imported when it runs: starting is most of the time of a small job, and a slip on the
 command line should be told at once.
@@ -12,7 +12,7 @@ import sys
 from typing import Any
 
 DONE, OUR_FAULT, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 1, 2, 3, 130
-COMMANDS = ("plan", "export", "batch", "inspect", "machines")
+COMMANDS = ("plan", "export", "batch", "inspect", "check", "machines")
 USAGE = """usage: freecad-am COMMAND
 
   plan JOB.yaml [-o DIR] [--no-page]                one job: part to programs; DIR is out/<name> beside the job file
@@ -21,6 +21,8 @@ USAGE = """usage: freecad-am COMMAND
   batch TABLE.csv --job JOB.yaml [-o DIR] [-j N]    one plan per row of a table of job keys
   inspect JOB.yaml|DOC.FCStd --measured FILE ...    compare measured points with what is planned; -o DIR,
                                                     --set tolerance=0.3 ..., of a document --object NAME
+  check PROGRAM ... --cell JOB.yaml|CELL.yaml       drive a program that was edited, or written elsewhere, in a cell;
+                                                    -o DIR, --post NAME
   machines [NAME --urdf | --dh | --modified-dh]     list the machines known, or write one as URDF or as a table;
                                                     list some: --maker KUKA --reach '2 m' --payload '20 kg' --post kuka
   demo | test | bench                               see the README
@@ -144,6 +146,10 @@ def _parser(command: str) -> Any:
         parser.add_argument("--set", metavar="KEY=VALUE", nargs="+", action="extend", default=[], dest="settings",
                             help="parameters of the inspection, such as tolerance=0.3 probe_radius=1.5 heights='15 25 35'")
         parser.add_argument("--object", metavar="NAME", default="", help="Name or Label of what was measured, of a document")
+    elif command == "check":
+        parser.add_argument("program", metavar="PROGRAM", nargs="+", help="the files of a program, or their folder")
+        parser.add_argument("--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own")
+        parser.add_argument("--post", metavar="NAME", help="the post that reads it; else that of the job or of the machine")
     else:
         parser.add_argument("table", metavar="TABLE.csv")
         parser.add_argument("--job", metavar="JOB.yaml", required=True)
@@ -196,6 +202,15 @@ def _inspect(options: Any, session: Any) -> int:
     )
     _tell_paths(paths, session)
     return DONE
+
+
+def _check(options: Any, session: Any) -> int:
+    from freecad_am.batch import check
+
+    result = check.check(options.program, options.cell, options.post, options.output, session)
+    session.issues(result.issues)
+    _tell_paths(result.paths, session)
+    return result.exit_status
 
 
 def _machines(options: Any, session: Any) -> int:

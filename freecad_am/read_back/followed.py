@@ -37,6 +37,10 @@ def by_robot(cell: Cell, read: ReadMoves, asked: Array) -> Array:
     if cell.external is not None:  # the axes beside the robot are told with every position
         beside = machine.from_controller(np.where(np.isnan(shown), 0.0, shown))[:, own:]
         asked, serial[:, own:] = frames.inverse(cell.external.base(beside)) @ asked, beside
+    if read.near is not None:
+        told = unknown & np.isfinite(read.near).all(axis=1)
+        serial[told, :own] = _beside(cell, asked[told], machine.from_controller(read.near[told])[:, :own])
+        unknown &= ~told
     for start, end in _runs(unknown):
         before = serial[start - 1, :own] if start else np.full(own, np.nan)
         serial[start:end, :own] = _arm(cell, read, asked, slice(start, end), before)
@@ -78,19 +82,24 @@ def _arm(cell: Cell, read: ReadMoves, asked: Array, rows: slice, before: Array) 
     found = np.concatenate([np.moveaxis(joints, 0, 1) for joints, _ in told])
     if read.configuration is not None:
         return _as_named(cell, read, found, np.concatenate([words.T for _, words in told]), rows)
-    if read.near is not None and np.isfinite(read.near[rows]).all():
-        near = cell.machine.from_controller(read.near[rows])[:, : found.shape[2]]
-        chosen = found[np.arange(len(found)), _apart(near[:, None], found).argmin(axis=1)]
-        counted: Array = chosen + TURN * np.rint((near - chosen) / TURN)
-        return counted
     if not np.isfinite(before).all():
         if cell.branch is None:
             raise InputError(
-                "NO_CONFIGURATION", "program", "it begins with a position and does not say by which configuration of the arm; name "
-                "it in the cell, such as branch: [front, up, flip]",
+                "NO_CONFIGURATION", "program", "it begins with a position and names no configuration of the arm; say it in "
+                "the cell, branch: [front, up, flip]",
             )
         before = found[0, cell.branch]
     return _nearest(found, np.zeros((len(found), found.shape[2]), dtype=bool), before)
+
+
+def _beside(cell: Cell, asked: Array, near: Array) -> Array:
+    """(k, 6) the joints of flange poses (k, 4, 4) next to joints `near` (k, 6), in their turns."""
+    arm = cell.robot.arm
+    assert arm is not None
+    found = np.moveaxis(arm.inverse(asked), 0, 1)
+    chosen = found[np.arange(len(found)), _apart(near[:, None], found).argmin(axis=1)]
+    counted: Array = chosen + TURN * np.rint((near - chosen) / TURN)
+    return counted
 
 
 def _as_named(cell: Cell, read: ReadMoves, found: Array, words: Index, rows: slice) -> Array:

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Drives a program that is there - edited, or written by somebody else - in a cell, and says what it does.
+
+Nothing of a plan is asked: the moves are those of the text, read by the post of its controller.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from freecad_am.core.geometry.file_content import content
+from freecad_am.core.issues import ERROR, NOTE, InputError, Issue
+from freecad_am.core.kinematics import cell as cells
+from freecad_am.core.kinematics import jacobian
+from freecad_am.core.kinematics.cell import Cell
+from freecad_am.core.motion import Motion
+from freecad_am.core.parameters.cell import CellParameters
+from freecad_am.core.parameters.joints import JointParameters
+from freecad_am.core.parameters.program import ProgramParameters
+from freecad_am.core.planning.program import without_moves
+from freecad_am.core.preflight import clearance, joints
+from freecad_am.core.preflight.promise import Promise, row_place
+from freecad_am.core.program import ReadMoves
+from freecad_am.core.simulation import rapid_look, waypoints
+from freecad_am.core.simulation.margins import on_deposit
+from freecad_am.posts import catalogue
+from freecad_am.read_back import driven
+
+from . import job, job_cell, outputs, paths, report, tree
+
+# of the promises about joints and rapids, in their order, where one is not kept
+CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
+LEAST_CONDITION = 0.02  # where a job leaves it to the planner, the least that this ever allows
+LARGEST_MB = 500
+RAPID_PLACES = 20_000
+
+
+class Known(NamedTuple):
+    """What is told of a program beside its text: the cell, how programs are written, what joints are to keep, and the width
+    and height of beads, None where only a cell is given."""
+
+    cell: CellParameters
+    program: ProgramParameters | None
+    joints: JointParameters
+    bead: tuple[float, float] | None
+
+
+class Result(NamedTuple):
+    """Absolute paths of what was written, the issues, and the exit status, 0 or 3."""
+
+    paths: list[str]
+    issues: list[Issue]
+    exit_status: int
+
+
+def check(programs: Sequence[str], cell_file: str, post: str | None, folder: str | None, session: Any) -> Result:
+    """Drive the program of these files, or of all files of a folder, in a cell and write what it does.
+
+    cell_file: a job file, or a file with a cell alone. post: the name of the one that reads it, by default that of the job,
+    else the first one of the machine's that understands it. It goes into `folder`, by default out/<name>-check beside the
+    program. Raises InputError; then nothing is written.
+    """
+    paths.require_freecad()
+    from freecad_am.objects import user_machines
+
+    files = _files(programs)
+    known = _known(cell_file)
+    cell = cells.resolve(known.cell, np.eye(4), folders=user_machines.folders())
+    name, read = _read(files, _posts(cell, known, post))
+    settings = known.program or ProgramParameters(post=name)
+    motion = driven.driven(cell, without_moves(cell, settings, "check"), read)
+    promises = _promises(motion, cell, known)
+    issues = [
+        Issue(ERROR, code, f"{one.promise} - it does not: {one.figure}", *(one.place or (None, None, None)))
+        for code, one in zip(CODES, promises, strict=True) if one.ok is False
+    ]
+    if not motion.deposit.any():
+        issues.append(Issue(NOTE, "NO_DEPOSIT", "the program never switches the deposit on"))
+    stem = os.path.splitext(os.path.basename(catalogue.main_file(files)))[0]
+    target = folder or os.path.join(os.path.dirname(os.path.abspath(programs[0])), "out", f"{stem}-check")
+    with outputs.Outputs(target, session) as written:
+        written.write(outputs.WAYPOINTS, waypoints.text(motion, cell.machine.columns, cell.machine.units))
+        written.write(outputs.REPORT, [report.text(_report(stem, name, motion, cell, promises, issues))])
+        earlier = {one for one in (outputs.WAYPOINTS, outputs.REPORT) if os.path.isfile(os.path.join(written.folder, one))}
+        made = [os.path.join(written.folder, one) for one in written.publish(earlier)]
+    return Result(made, issues, 3 if any(one.level == ERROR for one in issues) else 0)
+
+
+def _files(programs: Sequence[str]) -> dict[str, bytes]:
+    """The files by their names as controllers know them; those of a folder by their paths in it."""
+    found: dict[str, str] = {}
+    for one in programs:
+        if os.path.isdir(one):
+            inside = [os.path.join(top, name) for top, _, names in os.walk(one) for name in names]
+            found |= {os.path.relpath(path, one).replace(os.sep, "/"): path for path in inside}
+        else:
+            found[os.path.basename(one)] = one
+    if not found:
+        raise InputError("NO_FILE", programs[0], "the folder holds no program; name its files, or the folder they are in")
+    try:
+        return {name: content(path, LARGEST_MB, "BAD_FILE", name) for name, path in sorted(found.items())}
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError("NO_FILE", programs[0], f"the program cannot be read ({reason}); name its files") from None
+
+
+def _known(path: str) -> Known:
+    """What a job file, or a file with a cell alone, tells."""
+    values = tree.read(path).values
+    if not {"part", "features", "cell"} & set(values):
+        cell = job_cell.read(os.path.abspath(path), path)
+        assert cell is not None
+        return Known(cell, None, JointParameters(), None)
+    read = job.read_job(path)
+    if read.cell is None:
+        raise InputError("NO_CELL", f"{os.path.basename(path)}: cell", "the job has no cell to drive a program in; add one")
+    heights = max(one.strategy.layer_height for one in read.features)
+    return Known(read.cell, read.program, read.joints, (read.process.bead_width, heights))
+
+
+def _posts(cell: Cell, known: Known, post: str | None) -> tuple[str, ...]:
+    """The names of the posts that may read a program, the most likely one first."""
+    if post is not None:
+        return (post,)
+    if known.program is not None and known.program.post != "none":
+        return (known.program.post,)
+    return catalogue.NAMES if cell.machine.posts is None else cell.machine.posts
+
+
+def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves]:
+    """The post that understands the files, and their moves. Raises InputError of the one that came first."""
+    refusals = []
+    for name in posts:
+        try:
+            return name, catalogue.load(name).read(files)
+        except InputError as error:
+            refusals.append(error)
+    if not refusals:
+        raise InputError("UNKNOWN_POST", "cell.machine", "no post reads programs of this machine; name one with --post")
+    raise refusals[0]
+
+
+def _promises(motion: Motion, cell: Cell, known: Known) -> list[Promise]:
+    """Those of the preflight that a text alone can keep or break, in the order of CODES."""
+    rows = np.flatnonzero(motion.deposit)
+    condition, least = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+    reached = motion.reachable[rows]
+    if not cell.machine.is_table and reached.any():
+        asked = known.joints.min_condition
+        least[:] = LEAST_CONDITION if isinstance(asked, str) else asked
+        condition[reached] = _condition(cell, motion.joints[rows[reached]], known.joints.characteristic_length)
+    found = joints.promises(
+        motion, cell, on_deposit(motion.deposit, condition), on_deposit(motion.deposit, least))
+    found[1] = replace(found[1], how="inverse kinematics of what the text tells in positions, and joints driven")
+    if known.bead is None:
+        what = clearance.rapids((), rapid_look.RapidsLooked(0, 0, 0.0, rows[:0], None)).promise
+        how = "not checked: a cell alone does not tell how wide and high beads are; give a job"
+        return [*found, Promise(what, how, None)]
+    looked = rapid_look.looked_at(motion, driven.beads(motion), cell, [], *known.bead, RAPID_PLACES)
+    place = row_place(motion, int(looked.rows[0])) if len(looked.rows) else None
+    how = f"driven at {looked.places} places against the platform and what is deposited by then; no other body is known"
+    met = float(len(looked.rows))
+    return [*found, Promise(clearance.rapids((), looked).promise, how, not met, met, "rapids", 0.0, place)]
+
+
+def _condition(cell: Cell, serial: Any, length: float) -> Any:
+    """(n,) of the robot alone at the deposition point, for joints (n, axes)."""
+    chain = cell.robot.chain
+    own = serial[:, : chain.axes]
+    flange = chain.forward(own)
+    point = cell.deposition_point(flange)
+    return jacobian.condition(jacobian.jacobian(chain, own, point), length)
+
+
+def _report(
+    name: str, post: str, motion: Motion, cell: Cell, promises: Sequence[Promise], issues: Sequence[Issue]
+) -> dict[str, Any]:
+    """The keys of a plan's report that a text alone can fill."""
+    laid, reached = motion.deposit & motion.moves, motion.reachable
+    way = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
+    shown = motion.joints[reached] / cell.machine.unit_values
+    starts = motion.deposit & (motion.point == 0)
+    return {
+        "version": report.VERSION, "name": name, "post": post,
+        "status": "infeasible" if any(one.level == ERROR for one in issues) else "ok",
+        "issues": [one.as_dict() for one in issues],
+        "counts": {
+            "layers": len(np.unique(motion.layer[motion.deposit])), "beads": int(starts.sum()),
+            "points": int(motion.deposit.sum()),
+        },
+        "length_mm": float(way[laid].sum()), "duration_s": motion.total_time,
+        "joints": {
+            "min_deg": shown.min(axis=0).tolist() if len(shown) else None,
+            "max_deg": shown.max(axis=0).tolist() if len(shown) else None,
+        },
+        "preflight": [one.as_dict() for one in promises],
+        "machine": {
+            "id": cell.machine.id, "title": cell.machine.title, "setup": cell.setup, "limits": cell.limits.name,
+            "axes": list(cell.machine.columns), "labels": list(cell.machine.axes), "units": list(cell.machine.units),
+            "controller": cell.machine.controller_remark,
+        },
+    }

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs that were edited, or come from elsewhere, driven in a cell."""
+
+import csv
+import io
+import json
+import re
+
+import numpy as np
+import pytest
+
+from freecad_am.interop import cell_file
+from tests.posts.planned_jobs import SETUPS, WAYS, written
+
+WAY = WAYS[0]  # of a FANUC, in joints
+
+
+@pytest.fixture
+def sound(workshop):
+    """The folder of a program that is sound, and the file of its cell."""
+    _, motion, _, files = written(WAY)
+    folder = workshop.folder / "edited"
+    folder.mkdir()
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    (workshop.folder / "cell.yaml").write_text(cell_file.text(SETUPS[WAY[3]].cell, str(workshop.folder)), encoding="utf-8")
+    return folder, motion
+
+
+def report(workshop):
+    return json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+
+
+def changed(folder, pattern, by):
+    """Change the first line of the program that fits a pattern."""
+    for path in sorted(folder.iterdir()):
+        text = path.read_bytes().decode("ascii")
+        if re.search(pattern, text):
+            path.write_bytes(re.sub(pattern, by, text, count=1).encode("ascii"))
+            return
+    raise AssertionError(pattern)
+
+
+def run(workshop, *words, cell="cell.yaml"):
+    return workshop.run("check", "edited", "--cell", cell, "-o", "out", *words)
+
+
+def test_a_sound_program_does_what_was_planned(workshop, sound):
+    _, motion = sound
+    done = run(workshop)
+    assert (done.status, done.err) == (0, ""), done.err
+    assert done.out.split() == [str(workshop.folder / "out" / name) for name in ("report.json", "waypoints.csv")]
+    rows = list(csv.DictReader(io.StringIO((workshop.folder / "out" / "waypoints.csv").read_text(encoding="ascii"))))
+    for column, values in zip(("x_mm", "y_mm", "z_mm"), motion.position.T, strict=True):
+        np.testing.assert_allclose([float(row[column]) for row in rows], values, atol=0.03)
+    assert [row["kind"] == "deposit" for row in rows] == motion.deposit.tolist()
+    found = report(workshop)
+    assert (found["status"], found["post"]) == ("ok", "fanuc")
+    assert found["counts"]["points"] == motion.deposit.sum()
+    # nothing green stands for not looked at: of the beads nothing is known but where they are
+    assert [one["ok"] for one in found["preflight"]] == [True, True, True, True, None]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "by", "code"),
+    [
+        (r"J3=\s*-?[\d.]+ deg", "J3=   300.000 deg", "LIMIT"),
+        (r"(TIME=?|)\s*\d+\.?\d*(m?sec)", r"\g<1> 1msec", "SPEED"),
+    ],
+)  # fmt: skip
+def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, code):
+    changed(sound[0], pattern, by)
+    done = run(workshop)
+    assert done.status == 3
+    assert f"error[{code}] layer " in done.err, done.err
+    assert report(workshop)["status"] == "infeasible"
+
+
+def test_programs_that_cannot_be_read_are_refused(workshop, sound):
+    folder, _ = sound
+    done = run(workshop, "--post", "siemens")
+    assert done.status == 2 and "error[UNREADABLE_PROGRAM]" in done.err
+    done = run(workshop, "--post", "klingon")
+    assert done.status == 2 and "error[UNKNOWN_POST]" in done.err
+    done = run(workshop, cell="nowhere.yaml")
+    assert done.status == 2 and "error[NO_FILE]" in done.err
+    done = workshop.run("check", "edited")
+    assert done.status == 2 and "error[USAGE]" in done.err
+    done = workshop.run("check", "nothing", "--cell", "cell.yaml")
+    assert done.status == 2 and "error[NO_FILE]" in done.err
+    for path in folder.iterdir():
+        path.unlink()
+    done = run(workshop)
+    assert done.status == 2 and "error[NO_FILE]" in done.err
+    assert not (workshop.folder / "out").exists()
