@@ -52,7 +52,7 @@ OURS = {
     "interop": {"core", "objects"},
     "api": {"core", "brep", "objects", "posts", "interop"},
     "plots": {"core"},
-    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "verify", "plots"},
+    "batch": {"core", "api", "objects", "posts", "kdl", "brep", "read_back", "verify", "plots"},
     "gui": {"core", "api", "objects", "posts", "brep", "plots"},
 }
 # the foreign modules a part of the package may use besides the standard library

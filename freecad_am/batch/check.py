@@ -36,7 +36,7 @@ from . import job, job_cell, outputs, paths, report, tree
 # of the promises about joints and rapids, in their order, where one is not kept
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
 LEAST_CONDITION = 0.02  # where a job leaves it to the planner, the least that this ever allows
-LARGEST_MB = 500
+LARGEST_MB = 200
 RAPID_PLACES = 20_000
 
 

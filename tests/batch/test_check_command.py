@@ -61,6 +61,22 @@ def test_a_sound_program_does_what_was_planned(workshop, sound):
     assert [one["ok"] for one in found["preflight"]] == [True, True, True, True, None]
 
 
+def test_a_job_tells_how_wide_the_beads_are(workshop, sound):
+    (workshop.folder / "part.step").write_text("not looked at", encoding="utf-8")
+    (workshop.folder / "job.yaml").write_text(
+        "part: {file: part.step}\nstrategy: {layer_height: 3 mm}\ncell: cell.yaml\nprocess: {bead_width: 8 mm}\n"
+        "program: {post: fanuc}\n", encoding="utf-8")
+    done = run(workshop, cell="job.yaml")
+    assert (done.status, done.err) == (0, ""), done.err
+    rapids = report(workshop)["preflight"][-1]
+    assert rapids["ok"] is True and rapids["worst"] == 0.0
+    # beads as high as nobody laid them stand in the way of the rapids
+    job = workshop.folder / "job.yaml"
+    job.write_text(job.read_text(encoding="utf-8").replace("3 mm", "60 mm"), encoding="utf-8")
+    done = run(workshop, cell="job.yaml")
+    assert done.status == 3 and "error[RAPID_COLLISION] layer 0" in done.err, done.err
+
+
 @pytest.mark.parametrize(
     ("pattern", "by", "code"),
     [
