@@ -7087,6 +7087,11 @@
         <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/followed.py"/>
+        <source>it begins with a position and names no configuration of the arm; say it in the cell, branch: [front, up, flip]</source>
+        <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
         <source>it builds more than holds itself; simplify it</source>
         <translation>il construit plus que ce qui se contient soi-même ; simplifiez-le</translation>
@@ -7755,6 +7760,11 @@
         <location filename="../../freecad_am/posts/names.py"/>
         <source>it must start with {0}</source>
         <translation>il doit commencer par {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/followed.py"/>
+        <source>it names turns of other axes than the last one, which cannot be followed; tell these positions in joints</source>
+        <translation>il nomme des tours d&apos;autres axes que le dernier, ce qui ne peut être suivi ; donnez ces positions en valeurs d&apos;axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/three_mf.py"/>
