@@ -3,6 +3,7 @@
 
 import functools
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -52,7 +53,12 @@ def off(path, points, build):
 
 def _merged(job, feature):
     """The sections that tell what a feature is: its own keys over those of the job."""
-    return {name: {**(job.get(name) or {}), **(feature.get(name) or {})} for name in ("part", "strategy", "process")}
+    return {name: {**_section(job, name), **_section(feature, name)} for name in ("part", "strategy", "process")}
+
+
+def _section(job, name):
+    """A section as a mapping: one of blanks is empty to the job file too."""
+    return job[name] if isinstance(job.get(name), dict) else {}
 
 
 def _excess(folder, job, points, build):
@@ -79,6 +85,7 @@ def _excess(folder, job, points, build):
 def cuts(points, build, strategy):
     """Where the part may have been cut for the layers that points lie in: plane layers at bottom, middle or top."""
     high = length(strategy.get("layer_height", 1.0)) if strategy.get("kind") == "solid" else 0.0
+    high = high if math.isfinite(high) else 0.0  # what lies off the part is judged by it too, endlessly mild
     return [points + share * high * build for share in ((0.0, 0.5, 1.0) if high else (0.0,))]
 
 
@@ -86,10 +93,10 @@ def length(value):
     """mm of a length as jobs write it; endless where it is written in another way."""
     if isinstance(value, (int, float)):
         return float(value)
-    number, _, unit = str(value).partition(" ")
+    written = re.fullmatch(r"([-+.\de]*[.\d]) *([a-z]*)", str(value))
     try:
-        return float(number) * {"mm": 1.0, "": 1.0, "m": 1000.0, "in": 25.4, "um": 1e-3}[unit]
-    except (ValueError, KeyError):
+        return float(written[1]) * {"mm": 1.0, "": 1.0, "m": 1000.0, "in": 25.4, "um": 1e-3}[written[2]]
+    except (TypeError, ValueError, KeyError):
         return math.inf
 
 

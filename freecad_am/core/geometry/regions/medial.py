@@ -23,6 +23,9 @@ from .region import Region
 Index = NDArray[np.intp]
 
 BETWEEN_WALLS, ANYWHERE = 0.75, 0.3  # least spread of an edge of the axis
+# places, beyond which they are moved by so much of the region's size: the diagram of many on parallel lines or a circle,
+# exactly, takes a time that grows with more than their square
+MANY, MOVED = 12_000, 1e-9
 
 
 class _Axis(NamedTuple):
@@ -59,7 +62,10 @@ def _axis(region: Region, least: float, step: float) -> _Axis:
     """The axis inside of a region where it is wider than 2 `least` mm, without what runs into corners."""
     places, follows = _places(region.rings(), step)
     middle, size = places.mean(axis=0), max(region.extent, 1e-300)
-    diagram = Voronoi((places - middle) / size)
+    scaled = (places - middle) / size
+    if len(scaled) > MANY:
+        scaled = scaled + MOVED * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
+    diagram = Voronoi(scaled)
     corners = diagram.vertices * size + middle
     pairs = diagram.ridge_points
     ends = np.fromiter(chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)).reshape(-1, 2)
